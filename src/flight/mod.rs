@@ -1,0 +1,16 @@
+//! What was flown: channels with units, maneuvers, their sampling.
+//!
+//! Values inside Trimtab are SI (angles in radians). A channel is converted once, when it is built;
+//! nothing behind this room ever sees a degree or a knot.
+
+mod dimension;
+mod finding;
+mod maneuver;
+mod sampling;
+mod unit;
+
+pub use dimension::Dimension;
+pub use finding::{Finding, Severity};
+pub use maneuver::{Channel, Maneuver, ManeuverError};
+pub use sampling::{GAP_FACTOR, Gap, Sampling};
+pub use unit::{Unit, UnitError};

@@ -1,0 +1,117 @@
+//! How a recording was sampled: its step, whether that is even, and where it has gaps.
+
+use std::ops::Range;
+
+/// A step longer than this many usual steps is a gap: the recording stopped and started again.
+pub const GAP_FACTOR: f64 = 5.0;
+
+/// Steps that differ from the usual one by less than this share are rounding of the time column.
+const EVEN_WITHIN: f64 = 0.02;
+
+#[derive(Clone, PartialEq, Debug)]
+pub struct Sampling {
+    /// The usual (median) step, s.
+    pub step: f64,
+    /// Whether all steps but the gaps equal the usual one, up to rounding of the time column.
+    pub even: bool,
+    pub gaps: Vec<Gap>,
+    samples: usize,
+}
+
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Gap {
+    /// Index (from 0) of the first sample behind the gap.
+    pub before: usize,
+    /// Length of the gap, s.
+    pub duration: f64,
+}
+
+impl Sampling {
+    /// Looks at a strictly increasing time axis of at least two samples.
+    pub(super) fn of(time: &[f64]) -> Self {
+        let steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let mut sorted = steps.clone();
+        sorted.sort_by(f64::total_cmp);
+        let median = sorted[sorted.len() / 2];
+        let is_gap = |step: f64| step > GAP_FACTOR * median;
+        let gaps: Vec<Gap> = steps
+            .iter()
+            .enumerate()
+            .filter(|&(_, &step)| is_gap(step))
+            .map(|(i, &duration)| Gap {
+                before: i + 1,
+                duration,
+            })
+            .collect();
+        let even = steps
+            .iter()
+            .all(|&step| is_gap(step) || (step - median).abs() <= EVEN_WITHIN * median);
+        let step = if even {
+            mean_step(&steps, &is_gap)
+        } else {
+            median
+        };
+        Self {
+            step,
+            even,
+            gaps,
+            samples: time.len(),
+        }
+    }
+
+    /// The stretches between gaps, as ranges of sample indices.
+    pub fn segments(&self) -> Vec<Range<usize>> {
+        let starts = std::iter::once(0).chain(self.gaps.iter().map(|gap| gap.before));
+        let ends = self
+            .gaps
+            .iter()
+            .map(|gap| gap.before)
+            .chain(std::iter::once(self.samples));
+        starts.zip(ends).map(|(start, end)| start..end).collect()
+    }
+}
+
+/// The mean averages rounding of the time column away; it is then rounded to the nanosecond so that
+/// 25 Hz is 0.04 s and not 0.04 s plus the noise of the average.
+fn mean_step(steps: &[f64], is_gap: &impl Fn(f64) -> bool) -> f64 {
+    let (sum, count) = steps
+        .iter()
+        .filter(|&&step| !is_gap(step))
+        .fold((0.0, 0.0), |(sum, count), &step| (sum + step, count + 1.0));
+    let mean: f64 = sum / count;
+    let rounded = (mean * 1e9).round() / 1e9;
+    if (rounded - mean).abs() < 1e-6 * mean {
+        rounded
+    } else {
+        mean
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finds_the_gap_and_the_segments() {
+        let time: Vec<f64> = (0..10)
+            .map(|k| f64::from(k) * 0.04 + if k >= 6 { 30.0 } else { 0.0 })
+            .collect();
+        let sampling = Sampling::of(&time);
+        assert_eq!(sampling.step, 0.04);
+        assert!(sampling.even);
+        assert_eq!(sampling.segments(), vec![0..6, 6..10]);
+        assert!((sampling.gaps[0].duration - 30.04).abs() < 1e-9);
+    }
+
+    #[test]
+    fn rounding_of_the_time_column_is_not_unevenness() {
+        let rounded: Vec<f64> = (0..100)
+            .map(|k| (f64::from(k) * 0.1 * 1e5).round() / 1e5 + f64::from(k % 2) * 1e-5)
+            .collect();
+        assert!(Sampling::of(&rounded).even);
+        let uneven: Vec<f64> = (0..100)
+            .map(|k| f64::from(k) * 0.1 + f64::from(k % 3) * 0.01)
+            .collect();
+        assert!(!Sampling::of(&uneven).even);
+    }
+}

@@ -1,0 +1,2 @@
+//! Trimtab estimates aircraft parameters from flight-test maneuvers.
+pub mod flight;
