@@ -1,0 +1,76 @@
+//! What a user may choose about an estimation.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::simulate::{InputInterpolation, Integrator};
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Options {
+    pub method: Method,
+    pub integrator: Integrator,
+    pub input_interpolation: InputInterpolation,
+    pub noise: Noise,
+    /// Converged when a full step would move the estimate by less than this many standard errors
+    /// (square root of stepᵀ F step, F the information matrix).
+    #[schema(example = 1e-5, exclusive_minimum = 0.0)]
+    pub tolerance: f64,
+    /// The budget of iterations.
+    #[schema(example = 50)]
+    pub max_iterations: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            method: Method::default(),
+            integrator: Integrator::default(),
+            input_interpolation: InputInterpolation::default(),
+            noise: Noise::default(),
+            tolerance: 1e-5,
+            max_iterations: 50,
+        }
+    }
+}
+
+/// How a step is made from gradient and information matrix.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// Damped step, solved by singular value decomposition (Góes, Hemerly, Maciel eq. 36-37).
+    #[default]
+    LevenbergMarquardt,
+    /// Full step, halved while the cost rises.
+    GaussNewton,
+}
+
+/// The covariance R of the measurement noise.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case", tag = "kind", deny_unknown_fields)]
+pub enum Noise {
+    /// R is estimated from the residuals along with θ (relaxation; the likelihood is concentrated in R).
+    Estimated {
+        /// `diagonal`: outputs' noises are independent; `full`: correlated.
+        #[serde(default)]
+        structure: NoiseStructure,
+    },
+    /// R is known: the variance of each output, in SI units squared, in the order of the model's outputs.
+    Given { variance: Vec<f64> },
+}
+
+impl Default for Noise {
+    fn default() -> Self {
+        Self::Estimated {
+            structure: NoiseStructure::default(),
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum NoiseStructure {
+    #[default]
+    Diagonal,
+    Full,
+}

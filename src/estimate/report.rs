@@ -1,0 +1,167 @@
+//! What an estimation answers: the outcome, the parameter table, the fit of each output.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// Why the solver stopped. A result with a reason, apart from the job's own status.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// A further step would move the estimate by less than the tolerance.
+    Converged,
+    /// As converged, with at least one parameter held at its bound.
+    AtBound,
+    /// The data cannot tell some parameters apart, or not see them: see `collinear`.
+    Singular,
+    /// No step lowers the cost any more, before the tolerance was met.
+    Stalled,
+    /// The simulation left the range of numbers and no smaller step brought it back.
+    Diverged,
+    /// The budget of iterations is used up.
+    Budget,
+    /// Stopped on request; the best iterate is kept.
+    Cancelled,
+}
+
+impl Outcome {
+    /// Whether the estimate is the minimum that was asked for.
+    pub fn is_minimum(self) -> bool {
+        matches!(self, Self::Converged | Self::AtBound)
+    }
+}
+
+/// One iteration, as told to an observer.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct Iteration {
+    /// 0 is the start value.
+    #[schema(example = 3)]
+    pub number: usize,
+    /// -ln L, the negative log-likelihood J(θ, R).
+    #[schema(example = -4821.7)]
+    pub cost: f64,
+    /// det R, what the field's programs print as cost.
+    #[schema(example = 8.9377e-12)]
+    pub det_r: f64,
+    /// Variance of each output's residual, SI units squared (the diagonal of R).
+    pub variance: Vec<f64>,
+    /// All free parameters in the order of the parameter table, each in its own unit.
+    pub parameters: Vec<f64>,
+    /// Length of the gradient of the cost, each component times the parameter's standard error.
+    pub gradient_norm: f64,
+    /// Length of the step that led here, in standard errors; 0 for the start.
+    pub step: f64,
+    /// Levenberg-Marquardt damping λ, relative to the scaled information matrix; 0 for Gauss-Newton.
+    pub damping: f64,
+    /// How often the step was shortened.
+    pub halvings: usize,
+}
+
+/// The answer of an estimation job.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct Estimate {
+    pub outcome: Outcome,
+    /// The outcome in a sentence.
+    #[schema(
+        example = "converged: a further step would move the estimate by 3.1e-7 standard errors"
+    )]
+    pub reason: String,
+    pub iterations: usize,
+    /// Simulations with sensitivities, and simulations alone.
+    pub evaluations: usize,
+    pub simulations: usize,
+    /// -ln L at the estimate.
+    pub cost: f64,
+    pub det_r: f64,
+    /// R, rows by outputs, SI units squared.
+    pub noise_covariance: Vec<Vec<f64>>,
+    pub outputs: Vec<OutputFit>,
+    pub parameters: Vec<ParameterEstimate>,
+    /// Correlation of the free parameters' errors, in the order of the free parameters. Empty when singular.
+    pub correlation: Vec<Vec<f64>>,
+    /// Sets of parameters that the data cannot tell apart, or cannot see.
+    pub collinear: Vec<CollinearSet>,
+    /// Samples used, over all segments.
+    pub samples: usize,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct ParameterEstimate {
+    #[schema(example = "Malpha")]
+    pub name: String,
+    #[schema(example = "1/s^2")]
+    pub unit: String,
+    /// Which segment a per-maneuver parameter belongs to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub segment: Option<String>,
+    pub start: f64,
+    #[schema(example = -4.9176)]
+    pub estimate: f64,
+    /// Cramér-Rao bound; absent for fixed parameters, those at a bound, and those the data cannot see.
+    #[schema(example = 0.0200)]
+    pub standard_error: Option<f64>,
+    pub fixed: bool,
+    /// The bound at which the parameter is held.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub at_bound: Option<Bound>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Bound {
+    Lower,
+    Upper,
+}
+
+/// How well one output is reproduced, over all segments.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct OutputFit {
+    #[schema(example = "alpha")]
+    pub name: String,
+    /// SI unit of `rms` and `bias`.
+    #[schema(example = "rad")]
+    pub unit: String,
+    /// Root mean square of the residual.
+    pub rms: f64,
+    /// Mean of the residual.
+    pub bias: f64,
+    /// Coefficient of determination R².
+    pub r_squared: f64,
+    /// Theil's inequality coefficient: 0 perfect, 1 useless.
+    pub theil: f64,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct CollinearSet {
+    /// One name: the data cannot see it. Several: only a combination of them shows.
+    #[schema(example = json!(["a_eq", "de_eq"]))]
+    pub parameters: Vec<String>,
+    /// The direction in which nothing changes, by parameter, in the parameters' units, largest component 1.
+    pub direction: Vec<f64>,
+}
+
+/// Measured and modelled time histories of one segment, SI.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct TimeHistory {
+    pub segment: String,
+    /// Seconds of the recording.
+    pub time: Vec<f64>,
+    pub inputs: Vec<Series>,
+    pub outputs: Vec<OutputSeries>,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct Series {
+    pub name: String,
+    pub unit: String,
+    pub values: Vec<f64>,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct OutputSeries {
+    pub name: String,
+    pub unit: String,
+    pub measured: Vec<f64>,
+    pub model: Vec<f64>,
+    /// measured - model
+    pub residual: Vec<f64>,
+}

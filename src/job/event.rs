@@ -1,0 +1,82 @@
+//! What happened to a job: an append-only, numbered log. Everything else is a reading of it.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::Fault;
+use crate::estimate::{Iteration, Outcome};
+use crate::flight::Finding;
+
+/// One entry of a job's log. `seq` starts at 1 and has no holes.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct Event {
+    #[schema(example = 7)]
+    pub seq: u64,
+    /// When it was recorded, RFC 3339.
+    #[schema(example = "2026-11-21T12:00:00.123Z")]
+    pub at: String,
+    #[serde(flatten)]
+    pub body: EventBody,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(tag = "type", rename_all = "snake_case")]
+pub enum EventBody {
+    /// Accepted and stored; from here on the job is never lost.
+    Queued,
+    /// A worker has it; attempt 2 and later follow a lost or interrupted worker.
+    Claimed { worker: String, attempt: u32 },
+    /// The worker gave it back unfinished (shutdown); it is queued again.
+    Released { reason: String },
+    /// Model compiled, channels resolved, units checked.
+    Prepared(Prepared),
+    /// The solver finished an iteration (number 0: the start value).
+    Iteration(Iteration),
+    /// Somebody asked to cancel.
+    CancelRequested,
+    /// The solver ended and its result is stored; `outcome` says how good it is.
+    Succeeded { outcome: Outcome, reason: String },
+    /// No result: the faults say why.
+    Failed { faults: Vec<Fault> },
+    /// Ended on request; the best iterate is kept if there was one.
+    Cancelled { has_result: bool },
+}
+
+/// What the job amounts to, said before the first iteration.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct Prepared {
+    #[schema(example = json!(["elevator"]))]
+    pub segments: Vec<String>,
+    /// Samples over all segments.
+    pub samples: usize,
+    pub outputs: Vec<String>,
+    /// Free parameters, in the order of the iterations' `parameters`.
+    pub parameters: Vec<String>,
+    /// What is odd about the data in use.
+    pub findings: Vec<Finding>,
+}
+
+impl EventBody {
+    /// The event's name on the wire (the `event:` line of a server-sent event).
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Queued => "queued",
+            Self::Claimed { .. } => "claimed",
+            Self::Released { .. } => "released",
+            Self::Prepared(_) => "prepared",
+            Self::Iteration(_) => "iteration",
+            Self::CancelRequested => "cancel_requested",
+            Self::Succeeded { .. } => "succeeded",
+            Self::Failed { .. } => "failed",
+            Self::Cancelled { .. } => "cancelled",
+        }
+    }
+
+    /// Whether nothing follows.
+    pub fn is_last(&self) -> bool {
+        matches!(
+            self,
+            Self::Succeeded { .. } | Self::Failed { .. } | Self::Cancelled { .. }
+        )
+    }
+}

@@ -1,0 +1,14 @@
+//! What a job is, without saying where it is kept or who runs it: its spec, its log of events, its
+//! status, and the pure function from a spec and its data to a result.
+
+mod event;
+mod fault;
+mod run;
+mod spec;
+mod status;
+
+pub use event::{Event, EventBody, Prepared};
+pub use fault::Fault;
+pub use run::{JobResult, Plan, prepare, run};
+pub use spec::{Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride};
+pub use status::Status;

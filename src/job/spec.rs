@@ -1,0 +1,95 @@
+//! What a client asks for.
+
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::estimate::Options;
+use crate::model::{Edit, ModelDocument, Start};
+
+/// A job: a kind, a model, maneuvers, and how the one meets the others.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JobSpec {
+    #[serde(default)]
+    pub kind: JobKind,
+    /// For people; not unique.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    #[schema(example = "ATTAS elevator 3-2-1-1, run 1")]
+    pub name: String,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(example = json!(["flight 12"]))]
+    pub tags: Vec<String>,
+    pub model: ModelSource,
+    /// Edits of the model, applied in order: an effect is an edit.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub edits: Vec<Edit>,
+    /// One or more; fitted together.
+    pub maneuvers: Vec<ManeuverUse>,
+    /// How model inputs and outputs are made from recorded channels, where not simply by name.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schema(example = json!({"da": "(da_right - da_left)/2"}))]
+    pub channels: IndexMap<String, String>,
+    /// Other start values, bounds or fixings than the document's.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schema(example = json!({"q_bias": {"fixed": true, "start": 0.0}}))]
+    pub parameters: IndexMap<String, ParameterOverride>,
+    #[serde(default)]
+    pub options: Options,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum JobKind {
+    /// Output-error estimation.
+    #[default]
+    Estimate,
+}
+
+/// A model by name or id, or written out.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(untagged)]
+pub enum ModelSource {
+    /// A catalog name such as `short-period`, or the id of a stored model.
+    Reference(String),
+    Document(Box<ModelDocument>),
+}
+
+/// One recording and the part of it to use.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ManeuverUse {
+    /// The SHA-256 under which it was uploaded.
+    #[schema(example = "3f0a1c0f6f5a7a0e8f3a0f0c8f7a1b2c3d4e5f60718293a4b5c6d7e8f9a0b1c2")]
+    pub id: String,
+    /// First and last row to use, 1-based, both included; absent: all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = json!([1, 751]))]
+    pub rows: Option<[usize; 2]>,
+    /// What to do where the recording has gaps.
+    #[serde(default)]
+    pub gaps: Gaps,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Gaps {
+    /// Each part is a segment of its own, simulated from its own initial state.
+    #[default]
+    Split,
+    /// Gaps are closed up: one continuous time history at the usual step.
+    Join,
+}
+
+#[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ParameterOverride {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<Start>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lower: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fixed: Option<bool>,
+}

@@ -1,0 +1,155 @@
+//! The model document: the one representation of a model, in TOML or JSON.
+//!
+//! A document is what an engineer writes and reads. Nothing here knows how equations are evaluated;
+//! [`super::Model`] is what a document compiles to.
+
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// States, inputs, outputs and parameters with their units, and equations as text:
+/// dx/dt = f(x, u, θ), x(0) = x0(θ), y = g(x, u, θ).
+///
+/// Constants, inputs, states, definitions and parameters share one namespace; an output may be
+/// called like a state. `t` is the time since the start of the segment in seconds, `pi` is π.
+#[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModelDocument {
+    /// Short name, letters, digits and `-`.
+    #[schema(example = "short-period")]
+    pub name: String,
+    /// One line for lists.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub title: String,
+    /// Where the equations come from: paper and equation number.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub source: String,
+    /// What the reader should know before using it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub description: String,
+    /// Known numbers: mass, wing area, gravity.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub constants: IndexMap<String, Constant>,
+    /// Recorded quantities that drive the model, u.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub inputs: IndexMap<String, Input>,
+    /// Unknowns θ, free or fixed.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub parameters: IndexMap<String, Parameter>,
+    /// Named intermediate quantities (`qbar`, `CL`), each defined by those before or after it.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub definitions: IndexMap<String, Definition>,
+    /// The states x with their differential equations. A model without states is allowed.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub states: IndexMap<String, State>,
+    /// The outputs y, compared with recorded channels.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub outputs: IndexMap<String, Output>,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Constant {
+    #[schema(example = 9.80665)]
+    pub value: f64,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    #[schema(example = "m/s^2")]
+    pub unit: String,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub description: String,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Input {
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    #[schema(example = "rad")]
+    pub unit: String,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub description: String,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct State {
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    #[schema(example = "rad")]
+    pub unit: String,
+    /// Value at the start of each segment: an expression in parameters and constants.
+    #[schema(example = "alpha_0")]
+    pub initial: String,
+    /// dx/dt.
+    #[schema(example = "Za*(alpha - alpha_eq) + Zq*q + Zde*(de - de_eq)")]
+    pub derivative: String,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub description: String,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Definition {
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    #[schema(example = "-")]
+    pub unit: String,
+    #[schema(example = "CL0 + CLalpha*alpha")]
+    pub equation: String,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub description: String,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Output {
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    #[schema(example = "rad/s")]
+    pub unit: String,
+    #[schema(example = "q + q_bias")]
+    pub equation: String,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub description: String,
+}
+
+/// One unknown. Numbers are in the parameter's own unit.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Parameter {
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    #[schema(example = "1/s")]
+    pub unit: String,
+    pub start: Start,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lower: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper: Option<f64>,
+    /// A fixed parameter stays at its start value.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub fixed: bool,
+    /// `job`: one value for all maneuvers; `maneuver`: each segment has its own (initial states, biases, wind).
+    #[serde(default, skip_serializing_if = "Per::is_job")]
+    pub per: Per,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub description: String,
+}
+
+/// Where a parameter starts: a number, or an expression in recorded channels such as
+/// `first(alpha)` (first sample) or `mean(de, 5)` (mean over the first 5 seconds), in SI.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(untagged)]
+pub enum Start {
+    Value(f64),
+    FromData(String),
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Per {
+    #[default]
+    Job,
+    Maneuver,
+}
+
+impl Per {
+    fn is_job(&self) -> bool {
+        *self == Self::Job
+    }
+}
