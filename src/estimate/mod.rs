@@ -1,8 +1,29 @@
-//! Cost, steps, output error, error bounds.
+//! Estimation by the output-error method: cost, steps, iterations, error bounds.
+//!
+//! [`Problem`] is a model with its data, [`output_error`] finds the θ of least negative log-likelihood
+//!
+//!     J(θ, R) = ½ Σ_k (z_k − y_k)ᵀ R⁻¹ (z_k − y_k) + (N/2) ln|R| + (N n_y/2) ln 2π
+//!
+//! and [`Estimate`] is the answer, with the reason why the solver stopped.
+
+mod evaluation;
+mod fit;
+mod information;
+mod likelihood;
 mod options;
+mod output_error;
+mod problem;
 mod report;
+mod step;
+mod unknowns;
+
+pub use evaluation::{Evaluator, LeftRange};
+pub use fit::histories;
 pub use options::{Method, Noise, NoiseStructure, Options};
+pub use output_error::{Observer, output_error};
+pub use problem::Problem;
 pub use report::{
     Bound, CollinearSet, Estimate, Iteration, Outcome, OutputFit, OutputSeries, ParameterEstimate,
     Series, TimeHistory,
 };
+pub use unknowns::{Unknown, Unknowns};

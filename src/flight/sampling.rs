@@ -71,20 +71,29 @@ impl Sampling {
     }
 }
 
-/// The mean averages rounding of the time column away; it is then rounded to the nanosecond so that
-/// 25 Hz is 0.04 s and not 0.04 s plus the noise of the average.
+/// The mean averages rounding of the time column away, but for that of its ends. Within what that leaves
+/// open the roundest number is meant: 0.1 s, not 0.100000033 s.
 fn mean_step(steps: &[f64], is_gap: &impl Fn(f64) -> bool) -> f64 {
-    let (sum, count) = steps
+    let kept: Vec<f64> = steps
         .iter()
-        .filter(|&&step| !is_gap(step))
-        .fold((0.0, 0.0), |(sum, count), &step| (sum + step, count + 1.0));
-    let mean: f64 = sum / count;
-    let rounded = (mean * 1e9).round() / 1e9;
-    if (rounded - mean).abs() < 1e-6 * mean {
-        rounded
-    } else {
-        mean
-    }
+        .copied()
+        .filter(|&step| !is_gap(step))
+        .collect();
+    let mean = kept.iter().sum::<f64>() / kept.len() as f64;
+    let roughest = kept
+        .iter()
+        .map(|step| (step - mean).abs())
+        .fold(0.0, f64::max);
+    let stretches = (steps.len() - kept.len() + 1) as f64;
+    let open = 2.0 * roughest * stretches / kept.len() as f64 + 1e-12 * mean;
+    let rounded = (0..12).map(|digits| {
+        let unit = 10_f64.powi(digits);
+        (mean * unit).round() / unit
+    });
+    rounded
+        .into_iter()
+        .find(|rounded| (rounded - mean).abs() <= open)
+        .unwrap_or(mean)
 }
 
 #[cfg(test)]
@@ -109,6 +118,7 @@ mod tests {
             .map(|k| (f64::from(k) * 0.1 * 1e5).round() / 1e5 + f64::from(k % 2) * 1e-5)
             .collect();
         assert!(Sampling::of(&rounded).even);
+        assert_eq!(Sampling::of(&rounded).step, 0.1);
         let uneven: Vec<f64> = (0..100)
             .map(|k| f64::from(k) * 0.1 + f64::from(k % 3) * 0.01)
             .collect();

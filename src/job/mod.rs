@@ -3,6 +3,7 @@
 
 mod event;
 mod fault;
+mod resolve;
 mod run;
 mod spec;
 mod status;

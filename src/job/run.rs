@@ -6,16 +6,21 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::{Fault, JobSpec, Prepared};
-use crate::estimate::{Estimate, Iteration, TimeHistory};
+use super::resolve::{self, Named};
+use super::{Fault, JobSpec, ModelSource, Prepared};
+use crate::estimate::{
+    Estimate, Iteration, Noise, Options, Problem, TimeHistory, Unknowns, histories, output_error,
+};
 use crate::flight::Maneuver;
-use crate::model::ModelDocument;
+use crate::model::{ChannelFormula, Model, ModelDocument, ModelError, Start};
+use crate::simulate::Segment;
 
 /// A job whose model is compiled and whose data are resolved: nothing left that bad input could break.
 pub struct Plan {
     pub prepared: Prepared,
     /// The model as estimated: the declared one with the job's edits and parameter overrides in it.
     pub model: ModelDocument,
+    pub problem: Problem,
 }
 
 /// Everything a finished job answers.
@@ -25,6 +30,11 @@ pub struct JobResult {
     pub model: ModelDocument,
     pub histories: Vec<TimeHistory>,
 }
+
+/// Most maneuvers in one job.
+pub const MOST_MANEUVERS: usize = 256;
+/// Most iterations that a job may ask for.
+pub const MOST_ITERATIONS: usize = 1_000;
 
 /// Compiles the model, applies edits and overrides, makes inputs and outputs from recorded channels,
 /// checks units. `maneuvers` are in the order of `spec.maneuvers`; `declared` is the spec's model, looked up.
@@ -36,12 +46,281 @@ pub fn prepare(
     declared: &ModelDocument,
     maneuvers: &[Arc<Maneuver>],
 ) -> Result<Plan, Vec<Fault>> {
-    let _ = (spec, declared, maneuvers);
-    Err(vec![Fault::new("", "not_built_yet", "stub")])
+    let mut faults = Vec::new();
+    let document = edited(spec, declared, &mut faults);
+    check_shape(spec, maneuvers.len(), &mut faults);
+    let model = match Model::compile(&document) {
+        Ok(model) => model,
+        Err(errors) => {
+            faults.extend(
+                errors
+                    .into_iter()
+                    .map(|error| model_fault(spec, declared, error)),
+            );
+            return Err(faults);
+        }
+    };
+    check_options(&spec.options, &model, &mut faults);
+    check_names(spec, &model, &mut faults);
+
+    let mut findings = Vec::new();
+    let recordings: Vec<&Maneuver> = maneuvers.iter().map(Arc::as_ref).collect();
+    let stretches = resolve::stretches(spec, &recordings, &mut findings, &mut faults);
+    let mut resolved = Vec::new();
+    for (index, stretches) in stretches.iter().enumerate() {
+        for stretch in stretches {
+            resolved.push((
+                resolve::segment(spec, &model, stretch, index, &mut faults),
+                stretch,
+            ));
+        }
+    }
+    if !faults.is_empty() {
+        return Err(faults);
+    }
+    let start = |parameter: usize, segment: usize| {
+        let info = &model.parameters[parameter];
+        let (segment, stretch) = &resolved[segment];
+        match &info.document.start {
+            Start::Value(value) => Ok(info.unit.to_si(*value)),
+            Start::FromData(text) => start_from_data(
+                text,
+                &Named {
+                    model: &model,
+                    stretch,
+                    segment,
+                },
+                info.unit.dimension,
+            )
+            .map_err(|(code, message)| {
+                Fault::new(
+                    format!("/model/parameters/{}/start", info.name),
+                    code,
+                    message,
+                )
+            }),
+        }
+    };
+    let unknowns = Unknowns::new(&model, resolved.len(), start).map_err(|fault| vec![fault])?;
+    let segments: Vec<Segment> = resolved.into_iter().map(|(segment, _)| segment).collect();
+    check_size(&model, &segments, &unknowns)?;
+    let problem = Problem::new(model, segments, unknowns, spec.options.clone());
+    let prepared = Prepared {
+        segments: problem
+            .segments
+            .iter()
+            .map(|segment| segment.label.clone())
+            .collect(),
+        samples: problem.samples(),
+        outputs: problem
+            .model
+            .outputs
+            .iter()
+            .map(|output| output.name.clone())
+            .collect(),
+        parameters: (0..problem.unknowns.len())
+            .map(|place| problem.name(place))
+            .collect(),
+        findings,
+    };
+    Ok(Plan {
+        prepared,
+        model: document,
+        problem,
+    })
 }
 
 /// Runs a plan; `observer` is told of each iteration and may stop it.
-pub fn run(plan: &Plan, observer: &mut dyn FnMut(&Iteration) -> ControlFlow<()>) -> JobResult {
-    let _ = observer;
-    unimplemented!("{}", plan.model.name)
+///
+/// # Errors
+/// The start values lead nowhere: there is no iterate to speak of.
+pub fn run(
+    plan: &Plan,
+    observer: &mut dyn FnMut(&Iteration) -> ControlFlow<()>,
+) -> Result<JobResult, Vec<Fault>> {
+    let problem = &plan.problem;
+    let (estimate, theta) = output_error(problem, observer).map_err(|left| {
+        let place = problem.segments.get(left.segment).zip(left.sample).map_or(String::new(), |(segment, sample)| {
+            let time = segment.time[sample.min(segment.len() - 1)];
+            format!(" in segment {} at {time:.3} s (sample {})", segment.label, sample + 1)
+        });
+        let message = format!(
+            "with the start values the simulation leaves the range of numbers{place}; give other \"start\" values, or a shorter stretch of \"rows\""
+        );
+        vec![Fault::new("/parameters", "diverged_at_start", message)]
+    })?;
+    Ok(JobResult {
+        histories: histories(problem, &theta),
+        estimate,
+        model: plan.model.clone(),
+    })
+}
+
+/// The declared document with the job's edits and overrides in it.
+fn edited(spec: &JobSpec, declared: &ModelDocument, faults: &mut Vec<Fault>) -> ModelDocument {
+    let mut document = declared.clone();
+    for (i, edit) in spec.edits.iter().enumerate() {
+        match edit.apply(&document) {
+            Ok(edited) => document = edited,
+            Err(error) => faults.push(Fault::new(
+                format!("/edits/{i}"),
+                error.code(),
+                error.to_string(),
+            )),
+        }
+    }
+    for (name, change) in &spec.parameters {
+        let Some(parameter) = document.parameters.get_mut(name) else {
+            let known: Vec<&str> = document.parameters.keys().map(String::as_str).collect();
+            let message = format!(
+                "the model has no parameter '{name}'; it has {}",
+                known.join(", ")
+            );
+            faults.push(Fault::new(
+                format!("/parameters/{name}"),
+                "unknown_parameter",
+                message,
+            ));
+            continue;
+        };
+        if let Some(start) = &change.start {
+            parameter.start = start.clone();
+        }
+        parameter.lower = change.lower.or(parameter.lower);
+        parameter.upper = change.upper.or(parameter.upper);
+        parameter.fixed = change.fixed.unwrap_or(parameter.fixed);
+    }
+    document
+}
+
+/// Where a fault of the edited document came from: an override, or the model itself.
+fn model_fault(spec: &JobSpec, declared: &ModelDocument, error: ModelError) -> Fault {
+    let parameter = error
+        .pointer
+        .strip_prefix("/parameters/")
+        .and_then(|rest| rest.split('/').next());
+    let overridden = parameter.is_some_and(|name| {
+        spec.parameters.contains_key(name) && declared.parameters.contains_key(name)
+    });
+    let prefix = if overridden { "" } else { "/model" };
+    Fault::from(error).under(prefix)
+}
+
+impl From<ModelError> for Fault {
+    fn from(error: ModelError) -> Self {
+        Self::new(error.pointer, error.code, error.message)
+    }
+}
+
+fn check_shape(spec: &JobSpec, maneuvers: usize, faults: &mut Vec<Fault>) {
+    if maneuvers == 0 {
+        faults.push(Fault::new(
+            "/maneuvers",
+            "no_maneuvers",
+            "a job needs at least one maneuver",
+        ));
+    }
+    if maneuvers > MOST_MANEUVERS {
+        let message =
+            format!("{maneuvers} maneuvers; at most {MOST_MANEUVERS} are allowed in one job");
+        faults.push(Fault::new("/maneuvers", "too_many_maneuvers", message));
+    }
+    if let ModelSource::Reference(name) = &spec.model
+        && name.is_empty()
+    {
+        faults.push(Fault::new(
+            "/model",
+            "unknown_model",
+            "name a model of the catalog, or send a document",
+        ));
+    }
+}
+
+fn check_options(options: &Options, model: &Model, faults: &mut Vec<Fault>) {
+    if !(options.tolerance.is_finite() && options.tolerance > 0.0) {
+        faults.push(Fault::new(
+            "/options/tolerance",
+            "bad_option",
+            "tolerance must be a positive number",
+        ));
+    }
+    if !(1..=MOST_ITERATIONS).contains(&options.max_iterations) {
+        let message = format!("max_iterations must be from 1 to {MOST_ITERATIONS}");
+        faults.push(Fault::new("/options/max_iterations", "bad_option", message));
+    }
+    if let Noise::Given { variance } = &options.noise {
+        let outputs: Vec<&str> = model
+            .outputs
+            .iter()
+            .map(|output| output.name.as_str())
+            .collect();
+        if variance.len() != outputs.len() || variance.iter().any(|v| !(v.is_finite() && *v > 0.0))
+        {
+            let message = format!(
+                "give one positive variance for each output: {}",
+                outputs.join(", ")
+            );
+            faults.push(Fault::new("/options/noise/variance", "bad_option", message));
+        }
+    }
+}
+
+fn check_names(spec: &JobSpec, model: &Model, faults: &mut Vec<Fault>) {
+    for name in spec.channels.keys() {
+        let mut known = model
+            .inputs
+            .iter()
+            .chain(&model.outputs)
+            .map(|quantity| quantity.name.as_str());
+        if !known.clone().any(|k| k == name) {
+            let known: Vec<&str> = known.by_ref().collect();
+            let message = format!(
+                "the model has no input or output '{name}'; it has {}",
+                known.join(", ")
+            );
+            faults.push(Fault::new(
+                format!("/channels/{name}"),
+                "unknown_channel",
+                message,
+            ));
+        }
+    }
+}
+
+fn check_size(model: &Model, segments: &[Segment], unknowns: &Unknowns) -> Result<(), Vec<Fault>> {
+    if unknowns.is_empty() {
+        let message = "all parameters are fixed: there is nothing to estimate; free one with \"fixed\": false";
+        return Err(vec![Fault::new(
+            "/parameters",
+            "nothing_to_estimate",
+            message,
+        )]);
+    }
+    let values = segments.iter().map(Segment::len).sum::<usize>() * model.outputs.len();
+    if values <= unknowns.len() || segments.iter().any(|segment| segment.len() < 2) {
+        let message = format!(
+            "{values} measured values for {} unknowns; at least two samples a segment and more values than unknowns are needed",
+            unknowns.len()
+        );
+        return Err(vec![Fault::new("/maneuvers", "too_few_samples", message)]);
+    }
+    Ok(())
+}
+
+fn start_from_data(
+    text: &str,
+    on: &Named<'_>,
+    wanted: crate::flight::Dimension,
+) -> Result<f64, (&'static str, String)> {
+    let formula = ChannelFormula::parse(text).map_err(|error| (error.code(), error.to_string()))?;
+    let number = formula.number(on).map_err(|error| {
+        (error.code(), format!("{error}; give the start as a number: \"parameters\": {{\"<name>\": {{\"start\": ...}}}}"))
+    })?;
+    match formula.dimension(on) {
+        Ok(Some(found)) if found != wanted => Err((
+            "unit_mismatch",
+            format!("'{text}' is in {found} where the parameter is in {wanted}"),
+        )),
+        _ => Ok(number),
+    }
 }

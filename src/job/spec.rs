@@ -62,6 +62,10 @@ pub struct ManeuverUse {
     /// The SHA-256 under which it was uploaded.
     #[schema(example = "3f0a1c0f6f5a7a0e8f3a0f0c8f7a1b2c3d4e5f60718293a4b5c6d7e8f9a0b1c2")]
     pub id: String,
+    /// What its segments are called in tables; absent: its number in the job.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "elevator")]
+    pub label: Option<String>,
     /// First and last row to use, 1-based, both included; absent: all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = json!([1, 751]))]

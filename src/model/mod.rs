@@ -1,8 +1,67 @@
-//! Models as data.
+//! Models as data: a document that an engineer reads, and what it compiles to.
+//!
+//! There is one way from a model to numbers: [`ModelDocument`] → [`Model::compile`] → [`Program`]s for
+//! f, g, x0 and their exact Jacobians. An effect is an [`Edit`] of the document.
+
 pub mod catalog;
+mod compile;
+mod dimensions;
 mod document;
 mod edit;
+pub mod expression;
+mod fault;
+mod formula;
+mod graph;
+mod jacobian;
+pub mod limits;
+mod names;
+mod program;
+mod scalar;
+
 pub use document::{
     Constant, Definition, Input, ModelDocument, Output, Parameter, Per, Start, State,
 };
 pub use edit::{Edit, EditError, EditKind};
+pub use fault::ModelError;
+pub use formula::{ChannelFormula, FormulaError, Recorded};
+pub use jacobian::Jacobian;
+pub use program::{Program, Workspace};
+pub use scalar::{LANES, Lanes, Scalar};
+
+use crate::flight::Unit;
+
+/// A compiled model: everything in SI, everything that could be wrong checked.
+#[derive(Clone, Debug)]
+pub struct Model {
+    pub document: ModelDocument,
+    pub inputs: Vec<Quantity>,
+    pub states: Vec<Quantity>,
+    pub outputs: Vec<Quantity>,
+    pub parameters: Vec<ParameterInfo>,
+    /// x0(θ)
+    pub initial: Program,
+    /// f(x, u, t, θ)
+    pub dynamics: Program,
+    /// g(x, u, t, θ)
+    pub observation: Program,
+    pub initial_jacobian: Jacobian,
+    pub dynamics_jacobian: Jacobian,
+    pub observation_jacobian: Jacobian,
+}
+
+/// A named quantity of a model and the unit its document gives it.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Quantity {
+    pub name: String,
+    pub unit: Unit,
+    /// The SI unit in which its values are, as the field writes it: `rad/s`.
+    pub si: String,
+}
+
+/// A parameter as the document has it; its numbers are in `unit`.
+#[derive(Clone, PartialEq, Debug)]
+pub struct ParameterInfo {
+    pub name: String,
+    pub unit: Unit,
+    pub document: Parameter,
+}

@@ -26,3 +26,49 @@ pub enum InputInterpolation {
     /// The value of the earlier sample, held.
     Hold,
 }
+
+/// The stages of an explicit Runge-Kutta method in which each stage builds on the one before it:
+/// X_s = x + h advance_s K_(s-1), K_s = f(X_s, u(t + h node_s)), x' = x + h Σ weight_s K_s.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Stage {
+    pub advance: f64,
+    pub node: f64,
+    pub weight: f64,
+}
+
+const fn stage(advance: f64, weight: f64) -> Stage {
+    Stage {
+        advance,
+        node: advance,
+        weight,
+    }
+}
+
+const EULER: [Stage; 1] = [stage(0.0, 1.0)];
+const RK2: [Stage; 2] = [stage(0.0, 0.5), stage(1.0, 0.5)];
+const RK4: [Stage; 4] = [
+    stage(0.0, 1.0 / 6.0),
+    stage(0.5, 1.0 / 3.0),
+    stage(0.5, 1.0 / 3.0),
+    stage(1.0, 1.0 / 6.0),
+];
+
+impl Integrator {
+    pub(super) fn stages(self) -> &'static [Stage] {
+        match self {
+            Self::Euler => &EULER,
+            Self::Rk2 => &RK2,
+            Self::Rk4 => &RK4,
+        }
+    }
+}
+
+impl InputInterpolation {
+    /// The share of the later sample at the fraction `node` of a step.
+    pub(super) fn share_of_next(self, node: f64) -> f64 {
+        match self {
+            Self::Linear => node,
+            Self::Hold => 0.0,
+        }
+    }
+}

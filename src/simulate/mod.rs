@@ -1,3 +1,15 @@
-//! Outputs of a model for parameters and a maneuver.
+//! Outputs of a model for parameters and a maneuver, and their sensitivities.
+//!
+//! dx/dt = f(x, u, θ), x(0) = x0(θ), y_k = g(x_k, u_k, θ), stepped once a sample by an explicit method.
+//! [`simulate`] gives y for any kind of number; [`Sensitivities`] gives y and ∂y/∂θ.
+
 mod method;
+mod segment;
+mod sensitivity;
+mod stepper;
+mod trajectory;
+
 pub use method::{InputInterpolation, Integrator};
+pub use segment::{Segment, Steps};
+pub use sensitivity::{Block, Columns, Sensitivities};
+pub use trajectory::{Diverged, simulate};

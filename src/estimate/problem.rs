@@ -1,0 +1,62 @@
+//! An estimation problem: a model, its data, its unknowns, and how to go about it.
+
+use super::options::Options;
+use super::unknowns::Unknowns;
+use crate::model::Model;
+use crate::simulate::{Columns, Segment};
+
+/// Everything an estimation needs; built once, then only read.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    pub model: Model,
+    pub segments: Vec<Segment>,
+    pub unknowns: Unknowns,
+    pub options: Options,
+    pub(super) columns: Columns,
+}
+
+impl Problem {
+    pub fn new(model: Model, segments: Vec<Segment>, unknowns: Unknowns, options: Options) -> Self {
+        let is_free = |parameter: &usize| {
+            unknowns
+                .all
+                .iter()
+                .any(|u| u.parameter == *parameter && !u.fixed)
+        };
+        let free: Vec<usize> = (0..model.parameters.len()).filter(is_free).collect();
+        let columns = Columns::new(&model, &free);
+        Self {
+            model,
+            segments,
+            unknowns,
+            options,
+            columns,
+        }
+    }
+
+    /// Samples over all segments.
+    pub fn samples(&self) -> usize {
+        self.segments.iter().map(Segment::len).sum()
+    }
+
+    /// What an unknown is called: the parameter's name, with the segment where each has its own.
+    pub fn name(&self, place: usize) -> String {
+        let unknown = self.unknowns.at(place);
+        let name = &self.model.parameters[unknown.parameter].name;
+        match unknown.segment {
+            Some(segment) if self.segments.len() > 1 => {
+                format!("{name}[{}]", self.segments[segment].label)
+            }
+            _ => name.clone(),
+        }
+    }
+
+    /// θ in the parameters' own units.
+    pub fn in_own_units(&self, theta: &[f64]) -> Vec<f64> {
+        let own = |(place, &value): (usize, &f64)| {
+            let unit = self.model.parameters[self.unknowns.at(place).parameter].unit;
+            (value - unit.offset) / unit.scale
+        };
+        theta.iter().enumerate().map(own).collect()
+    }
+}

@@ -1,0 +1,57 @@
+//! The models that come with Trimtab, each one a document with its source cited.
+
+use super::ModelDocument;
+
+const DOCUMENTS: [&str; 3] = [
+    include_str!("short-period.toml"),
+    include_str!("lateral-directional-2.toml"),
+    include_str!("lateral-directional-4.toml"),
+];
+
+/// Looks a catalog model up by its name.
+pub fn find(name: &str) -> Option<ModelDocument> {
+    all().into_iter().find(|document| document.name == name)
+}
+
+/// All catalog models, in the order of the list.
+pub fn all() -> Vec<ModelDocument> {
+    // that each of them can be read is what the test below is for
+    DOCUMENTS
+        .iter()
+        .filter_map(|text| toml::from_str(text).ok())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Model;
+    use super::*;
+
+    #[test]
+    fn every_document_can_be_read_and_compiled_and_cites_its_source() {
+        assert_eq!(all().len(), DOCUMENTS.len());
+        for document in all() {
+            let model = Model::compile(&document)
+                .unwrap_or_else(|faults| panic!("{}: {faults:?}", document.name));
+            assert!(
+                document.source.contains("eq."),
+                "{} cites no equation",
+                document.name
+            );
+            assert!(!model.states.is_empty() && !document.title.is_empty());
+        }
+    }
+
+    #[test]
+    fn toml_and_json_are_one_schema() {
+        for document in all() {
+            let json = serde_json::to_string(&document).unwrap();
+            assert_eq!(
+                serde_json::from_str::<ModelDocument>(&json).unwrap(),
+                document
+            );
+            let text = toml::to_string(&document).unwrap();
+            assert_eq!(toml::from_str::<ModelDocument>(&text).unwrap(), document);
+        }
+    }
+}

@@ -1,0 +1,493 @@
+//! From document to model: names resolved, units checked, equations and their derivatives compiled.
+//!
+//! All faults of a document are found in one go, as far as one does not hide another.
+
+use super::dimensions::measure;
+use super::document::{ModelDocument, Start};
+use super::expression::{self, BinaryOperator, Expression, Function, Kind, Span};
+use super::fault::{ModelError, escape};
+use super::graph::{Binary, Graph, MOST_GRAPH_NODES, NodeId, Unary};
+use super::jacobian::Jacobian;
+use super::names::{Meaning, Names};
+use super::program::{Program, Slots};
+use super::{Model, ParameterInfo, Quantity, limits};
+use crate::flight::{Dimension, Unit};
+
+impl Model {
+    /// Compiles a document.
+    ///
+    /// # Errors
+    /// Every fault with its place: syntax, unknown names, cycles, units that do not agree, bounds.
+    pub fn compile(document: &ModelDocument) -> Result<Self, Vec<ModelError>> {
+        let mut faults = limits::check(document);
+        if !faults.is_empty() {
+            return Err(faults);
+        }
+        if document.outputs.is_empty() {
+            let message = "a model needs at least one output to compare with a recording";
+            faults.push(ModelError::new("/outputs", "no_outputs", message));
+        }
+        let names = Names::collect(document, &mut faults);
+        let equations = Equations::read(document, &names, &mut faults);
+        let parameters = parameters(document, &mut faults);
+        if !faults.is_empty() {
+            return Err(faults);
+        }
+        let slots = Slots {
+            states: document.states.len(),
+            inputs: document.inputs.len(),
+            parameters: parameters.len(),
+        };
+        let mut graph = Graph::default();
+        let mut builder = Builder {
+            names: &names,
+            slots,
+            graph: &mut graph,
+            definitions: Vec::new(),
+        };
+        let roots = builder.build(document, &equations)?;
+        let model = Self {
+            initial: Program::compile(&graph, slots, &roots.initial),
+            dynamics: Program::compile(&graph, slots, &roots.dynamics),
+            observation: Program::compile(&graph, slots, &roots.observation),
+            initial_jacobian: Jacobian::derive(&mut graph, slots, &roots.initial),
+            dynamics_jacobian: Jacobian::derive(&mut graph, slots, &roots.dynamics),
+            observation_jacobian: Jacobian::derive(&mut graph, slots, &roots.observation),
+            inputs: quantities(
+                document
+                    .inputs
+                    .iter()
+                    .map(|(name, input)| (name, &input.unit)),
+            ),
+            states: quantities(
+                document
+                    .states
+                    .iter()
+                    .map(|(name, state)| (name, &state.unit)),
+            ),
+            outputs: quantities(
+                document
+                    .outputs
+                    .iter()
+                    .map(|(name, output)| (name, &output.unit)),
+            ),
+            parameters,
+            document: document.clone(),
+        };
+        if graph.is_too_large() {
+            Err(vec![too_large()])
+        } else {
+            Ok(model)
+        }
+    }
+}
+
+fn too_large() -> ModelError {
+    let message = format!(
+        "equations and their derivatives need more than {MOST_GRAPH_NODES} operations; simplify them"
+    );
+    ModelError::new("", "model_too_large", message)
+}
+
+/// The parsed and checked equations of a document, in its order.
+struct Equations {
+    definitions: Vec<Expression>,
+    initial: Vec<Expression>,
+    dynamics: Vec<Expression>,
+    observation: Vec<Expression>,
+}
+
+impl Equations {
+    fn read(document: &ModelDocument, names: &Names, faults: &mut Vec<ModelError>) -> Self {
+        let mut read = |pointer: String, text: &str, unit: &str, of: Option<Dimension>| {
+            read_equation(&pointer, text, unit, of, names, faults)
+        };
+        let dimension = |unit: &str| Unit::parse(unit).ok().map(|unit| unit.dimension);
+        let definitions = (document.definitions.iter())
+            .map(|(name, d)| {
+                read(
+                    format!("/definitions/{}/equation", escape(name)),
+                    &d.equation,
+                    &d.unit,
+                    dimension(&d.unit),
+                )
+            })
+            .collect();
+        let initial = (document.states.iter())
+            .map(|(name, s)| {
+                read(
+                    format!("/states/{}/initial", escape(name)),
+                    &s.initial,
+                    &s.unit,
+                    dimension(&s.unit),
+                )
+            })
+            .collect();
+        let dynamics = (document.states.iter())
+            .map(|(name, s)| {
+                let rate = dimension(&s.unit).map(|d| d.over(Dimension::SECOND));
+                let unit = if matches!(s.unit.as_str(), "" | "-") {
+                    "1/s".to_string()
+                } else {
+                    format!("{}/s", s.unit)
+                };
+                read(
+                    format!("/states/{}/derivative", escape(name)),
+                    &s.derivative,
+                    &unit,
+                    rate,
+                )
+            })
+            .collect();
+        let observation = (document.outputs.iter())
+            .map(|(name, o)| {
+                read(
+                    format!("/outputs/{}/equation", escape(name)),
+                    &o.equation,
+                    &o.unit,
+                    dimension(&o.unit),
+                )
+            })
+            .collect();
+        for (name, state) in &document.states {
+            initial_is_constant(name, &state.initial, names, faults);
+        }
+        Self {
+            definitions,
+            initial,
+            dynamics,
+            observation,
+        }
+    }
+}
+
+/// Parses one equation, checks its names and units. What cannot be read counts as 0, with a fault added.
+fn read_equation(
+    pointer: &str,
+    text: &str,
+    unit: &str,
+    wanted: Option<Dimension>,
+    names: &Names,
+    faults: &mut Vec<ModelError>,
+) -> Expression {
+    let mut fault = |code, message: String| faults.push(ModelError::new(pointer, code, message));
+    let zero = Expression {
+        kind: Kind::Number(0.0),
+        span: Span::default(),
+    };
+    let parsed = match expression::parse(text) {
+        Ok(parsed) => parsed,
+        Err(error) => {
+            fault("syntax_error", error.to_string());
+            return zero;
+        }
+    };
+    let mut all_known = true;
+    for (name, span) in parsed.names() {
+        if names.meaning(name).is_none() {
+            all_known = false;
+            fault(
+                "unknown_symbol",
+                format!("column {}: {}", span.start + 1, names.unknown(name)),
+            );
+        }
+    }
+    if let Some(function) = data_function(&parsed) {
+        let message = format!(
+            "{}() looks at a recording and may stand only in a parameter's start",
+            function.name()
+        );
+        fault("syntax_error", message);
+        return zero;
+    }
+    if all_known {
+        match (measure(&parsed, &|name| names.dimension(name)), wanted) {
+            (Err(mismatch), _) => {
+                let place = mismatch.span.start + 1;
+                fault(
+                    "unit_mismatch",
+                    format!("column {place}: {}", mismatch.message),
+                );
+            }
+            (Ok(Some(found)), Some(wanted)) if found != wanted => {
+                let unit = if unit.is_empty() { "-" } else { unit };
+                fault(
+                    "unit_mismatch",
+                    format!("'{text}' is in {found} where {wanted} is needed (unit '{unit}')"),
+                );
+            }
+            _ => {}
+        }
+    }
+    parsed
+}
+
+/// The first function in the tree that needs a recording.
+fn data_function(expression: &Expression) -> Option<Function> {
+    match &expression.kind {
+        Kind::Number(_) | Kind::Name(_) => None,
+        Kind::Negate(inner) => data_function(inner),
+        Kind::Binary(_, left, right) => data_function(left).or_else(|| data_function(right)),
+        Kind::Call(function @ (Function::First | Function::Mean), _) => Some(*function),
+        Kind::Call(_, arguments) => arguments.iter().find_map(data_function),
+    }
+}
+
+/// An initial state is known before anything is recorded.
+fn initial_is_constant(state: &str, text: &str, names: &Names, faults: &mut Vec<ModelError>) {
+    let Ok(parsed) = expression::parse(text) else {
+        return;
+    };
+    for (name, span) in parsed.names() {
+        if !matches!(
+            names.meaning(name),
+            None | Some(Meaning::Constant(_) | Meaning::Parameter(_))
+        ) {
+            let message = format!(
+                "column {}: '{name}' is not a parameter or constant; make a parameter with start = \"first({name})\" where the initial state is to be read off the data",
+                span.start + 1
+            );
+            let pointer = format!("/states/{}/initial", escape(state));
+            faults.push(ModelError::new(pointer, "initial_depends_on_data", message));
+        }
+    }
+}
+
+fn parameters(document: &ModelDocument, faults: &mut Vec<ModelError>) -> Vec<ParameterInfo> {
+    let info = |(name, parameter): (&String, &super::Parameter)| {
+        let pointer = format!("/parameters/{}", escape(name));
+        let unit = Unit::parse(&parameter.unit).unwrap_or(Unit::NONE);
+        let numbers = [
+            parameter.lower,
+            parameter.upper,
+            match parameter.start {
+                Start::Value(value) => Some(value),
+                Start::FromData(_) => None,
+            },
+        ];
+        if numbers
+            .into_iter()
+            .flatten()
+            .any(|number| !number.is_finite())
+        {
+            faults.push(ModelError::new(
+                &pointer,
+                "not_finite",
+                "start and bounds must be finite numbers",
+            ));
+        }
+        if let (Some(lower), Some(upper)) = (parameter.lower, parameter.upper)
+            && lower >= upper
+        {
+            let message = format!("lower bound {lower} is not below upper bound {upper}");
+            faults.push(ModelError::new(&pointer, "bad_bounds", message));
+        } else if let Start::Value(start) = parameter.start
+            && (parameter.lower.is_some_and(|lower| start < lower)
+                || parameter.upper.is_some_and(|upper| start > upper))
+        {
+            let message = format!("start {start} is outside the bounds");
+            faults.push(ModelError::new(
+                format!("{pointer}/start"),
+                "bad_bounds",
+                message,
+            ));
+        }
+        if let Start::FromData(text) = &parameter.start
+            && let Err(error) = expression::parse(text)
+        {
+            faults.push(ModelError::new(
+                format!("{pointer}/start"),
+                "syntax_error",
+                error.to_string(),
+            ));
+        }
+        ParameterInfo {
+            name: name.clone(),
+            unit,
+            document: parameter.clone(),
+        }
+    };
+    document.parameters.iter().map(info).collect()
+}
+
+fn quantities<'a>(list: impl Iterator<Item = (&'a String, &'a String)>) -> Vec<Quantity> {
+    let quantity = |(name, unit): (&String, &String)| Quantity {
+        name: name.clone(),
+        unit: Unit::parse(unit).unwrap_or(Unit::NONE),
+        si: Unit::si_name(unit),
+    };
+    list.map(quantity).collect()
+}
+
+struct Roots {
+    initial: Vec<NodeId>,
+    dynamics: Vec<NodeId>,
+    observation: Vec<NodeId>,
+}
+
+/// Turns trees into nodes of the graph.
+struct Builder<'a> {
+    names: &'a Names<'a>,
+    slots: Slots,
+    graph: &'a mut Graph,
+    definitions: Vec<Progress>,
+}
+
+/// How far a definition is.
+#[derive(Clone, Copy)]
+enum Progress {
+    Untouched,
+    Started,
+    Done(NodeId),
+}
+
+impl Builder<'_> {
+    fn build(
+        &mut self,
+        document: &ModelDocument,
+        equations: &Equations,
+    ) -> Result<Roots, Vec<ModelError>> {
+        self.definitions = vec![Progress::Untouched; equations.definitions.len()];
+        for i in 0..equations.definitions.len() {
+            let mut path = Vec::new();
+            self.definition(i, equations, &mut path).map_err(|cycle| {
+                let name = |&i: &usize| {
+                    document
+                        .definitions
+                        .get_index(i)
+                        .map_or("?", |(name, _)| name.as_str())
+                };
+                let first = cycle.first().map_or("?", name);
+                let message = format!(
+                    "the definition needs itself: {}; break the circle",
+                    cycle.iter().map(name).collect::<Vec<_>>().join(" -> ")
+                );
+                vec![ModelError::new(
+                    format!("/definitions/{}/equation", escape(first)),
+                    "cyclic_definition",
+                    message,
+                )]
+            })?;
+        }
+        let mut all =
+            |list: &[Expression]| -> Vec<NodeId> { list.iter().map(|e| self.node(e)).collect() };
+        let roots = Roots {
+            initial: all(&equations.initial),
+            dynamics: all(&equations.dynamics),
+            observation: all(&equations.observation),
+        };
+        if self.graph.is_too_large() {
+            Err(vec![too_large()])
+        } else {
+            Ok(roots)
+        }
+    }
+
+    /// Builds definition `i` and those it needs; the error is the circle, by index.
+    fn definition(
+        &mut self,
+        i: usize,
+        equations: &Equations,
+        path: &mut Vec<usize>,
+    ) -> Result<(), Vec<usize>> {
+        match self.definitions[i] {
+            Progress::Done(_) => return Ok(()),
+            Progress::Started => {
+                let start = path.iter().position(|&at| at == i).unwrap_or(0);
+                return Err(path[start..].iter().copied().chain([i]).collect());
+            }
+            Progress::Untouched => {}
+        }
+        self.definitions[i] = Progress::Started;
+        path.push(i);
+        for (name, _) in equations.definitions[i].names() {
+            if let Some(Meaning::Definition(needed)) = self.names.meaning(name) {
+                self.definition(needed, equations, path)?;
+            }
+        }
+        path.pop();
+        let node = self.node(&equations.definitions[i]);
+        self.definitions[i] = Progress::Done(node);
+        Ok(())
+    }
+
+    fn node(&mut self, expression: &Expression) -> NodeId {
+        match &expression.kind {
+            Kind::Number(value) => self.graph.constant(*value),
+            Kind::Name(name) => self.named(name),
+            Kind::Negate(inner) => {
+                let inner = self.node(inner);
+                self.graph.unary(Unary::Negate, inner)
+            }
+            Kind::Binary(operator, left, right) => {
+                let (a, b) = (self.node(left), self.node(right));
+                match operator {
+                    BinaryOperator::Add => self.graph.add(a, b),
+                    BinaryOperator::Subtract => self.graph.subtract(a, b),
+                    BinaryOperator::Multiply => self.graph.multiply(a, b),
+                    BinaryOperator::Divide => self.graph.divide(a, b),
+                    BinaryOperator::Power => self.graph.power(a, b),
+                    BinaryOperator::Less => self.graph.binary(Binary::Less, a, b),
+                    BinaryOperator::LessOrEqual => self.graph.binary(Binary::LessOrEqual, a, b),
+                    BinaryOperator::Greater => self.graph.binary(Binary::Less, b, a),
+                    BinaryOperator::GreaterOrEqual => self.graph.binary(Binary::LessOrEqual, b, a),
+                }
+            }
+            Kind::Call(function, arguments) => {
+                let nodes: Vec<NodeId> = arguments
+                    .iter()
+                    .map(|argument| self.node(argument))
+                    .collect();
+                self.call(*function, &nodes)
+            }
+        }
+    }
+
+    fn call(&mut self, function: Function, arguments: &[NodeId]) -> NodeId {
+        let unary = match function {
+            Function::Sin => Unary::Sin,
+            Function::Cos => Unary::Cos,
+            Function::Tan => Unary::Tan,
+            Function::Asin => Unary::Asin,
+            Function::Acos => Unary::Acos,
+            Function::Atan => Unary::Atan,
+            Function::Tanh => Unary::Tanh,
+            Function::Exp => Unary::Exp,
+            Function::Ln => Unary::Ln,
+            Function::Sqrt => Unary::Sqrt,
+            Function::Abs => Unary::Abs,
+            Function::Sign => Unary::Sign,
+            Function::Atan2 => return self.graph.binary(Binary::Atan2, arguments[0], arguments[1]),
+            Function::Min | Function::Max => {
+                let (a, b) = (arguments[0], arguments[1]);
+                let less = self.graph.binary(Binary::Less, a, b);
+                return match function {
+                    Function::Min => self.graph.select(less, a, b),
+                    _ => self.graph.select(less, b, a),
+                };
+            }
+            Function::If => return self.graph.select(arguments[0], arguments[1], arguments[2]),
+            // refused by `read_equation`
+            Function::First | Function::Mean => return self.graph.constant(f64::NAN),
+        };
+        self.graph.unary(unary, arguments[0])
+    }
+
+    fn named(&mut self, name: &str) -> NodeId {
+        let slots = self.slots;
+        match self.names.meaning(name) {
+            Some(Meaning::Constant(value)) => self.graph.constant(value),
+            Some(Meaning::Input(i)) => self.graph.symbol(slots.input(i)),
+            Some(Meaning::Parameter(i)) => self.graph.symbol(slots.parameter(i)),
+            Some(Meaning::State(i)) => self.graph.symbol(slots.state(i)),
+            Some(Meaning::Time) => self.graph.symbol(slots.time()),
+            Some(Meaning::Definition(i)) => match self.definitions[i] {
+                Progress::Done(node) => node,
+                // definitions are built before what uses them
+                Progress::Untouched | Progress::Started => self.graph.constant(f64::NAN),
+            },
+            // refused by `read_equation`
+            None => self.graph.constant(f64::NAN),
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! Unit checking: what an expression measures, or why it cannot be added up.
+
+use super::expression::{BinaryOperator, Expression, Function, Kind, Span};
+use crate::flight::Dimension;
+
+/// The dimension of an expression; `None` for a literal zero, which may stand for any quantity.
+pub(super) type Measured = Option<Dimension>;
+
+/// Like is not added to like: where, and in words.
+#[derive(Clone, PartialEq, Debug)]
+pub(super) struct Mismatch {
+    pub span: Span,
+    pub message: String,
+}
+
+/// Works out what `expression` measures; `dimension_of` knows the names.
+/// A name it does not know counts as any quantity: that fault is reported elsewhere.
+pub(super) fn measure(
+    expression: &Expression,
+    dimension_of: &dyn Fn(&str) -> Option<Dimension>,
+) -> Result<Measured, Mismatch> {
+    let of = |inner: &Expression| measure(inner, dimension_of);
+    let pure = |inner: &Expression, what: &str| match of(inner)? {
+        Some(dimension) if !dimension.is_none() => Err(Mismatch {
+            span: inner.span,
+            message: format!("{what} must be a pure number or an angle, it is in {dimension}"),
+        }),
+        _ => Ok(()),
+    };
+    let alike = |left: &Expression, right: &Expression, doing: &str| match (of(left)?, of(right)?) {
+        (Some(a), Some(b)) if a != b => {
+            let span = Span {
+                start: left.span.start,
+                end: right.span.end,
+            };
+            Err(Mismatch {
+                span,
+                message: format!("cannot {doing} {a} and {b}: '{left}' and '{right}'"),
+            })
+        }
+        (a, b) => Ok(a.or(b)),
+    };
+    match &expression.kind {
+        Kind::Number(value) => Ok((*value != 0.0).then_some(Dimension::NONE)),
+        Kind::Name(name) => Ok(dimension_of(name)),
+        Kind::Negate(inner) => of(inner),
+        Kind::Binary(operator, left, right) => match operator {
+            BinaryOperator::Add => alike(left, right, "add"),
+            BinaryOperator::Subtract => alike(left, right, "subtract"),
+            BinaryOperator::Multiply => Ok(both(of(left)?, of(right)?, Dimension::times)),
+            BinaryOperator::Divide => Ok(both(of(left)?, of(right)?, Dimension::over)),
+            BinaryOperator::Power => {
+                pure(right, "an exponent")?;
+                power(left, of(left)?, right)
+            }
+            _ => alike(left, right, "compare").map(|_| Some(Dimension::NONE)),
+        },
+        Kind::Call(function, arguments) => match (function, arguments.as_slice()) {
+            (Function::Abs | Function::First, [value]) => of(value),
+            (Function::Sign, [value]) => of(value).map(|_| Some(Dimension::NONE)),
+            (Function::Sqrt, [value]) => match of(value)? {
+                None => Ok(None),
+                Some(dimension) => match dimension.to_power(0.5) {
+                    Some(root) => Ok(Some(root)),
+                    None => Err(Mismatch {
+                        span: value.span,
+                        message: format!("{dimension} has no square root"),
+                    }),
+                },
+            },
+            (Function::Atan2, [y, x]) => {
+                alike(y, x, "divide in atan2").map(|_| Some(Dimension::NONE))
+            }
+            (Function::Min | Function::Max, [left, right]) => alike(left, right, "compare"),
+            (Function::Mean, [value, duration]) => {
+                match of(duration)? {
+                    Some(d) if !d.is_none() && d != Dimension::SECOND => {
+                        let message = format!("mean takes a time in seconds, not {d}");
+                        return Err(Mismatch {
+                            span: duration.span,
+                            message,
+                        });
+                    }
+                    _ => {}
+                }
+                of(value)
+            }
+            (Function::If, [condition, yes, no]) => {
+                of(condition)?;
+                alike(yes, no, "choose between")
+            }
+            (function, arguments) => {
+                for argument in arguments {
+                    pure(argument, &format!("the argument of {}", function.name()))?;
+                }
+                Ok(Some(Dimension::NONE))
+            }
+        },
+    }
+}
+
+fn both(
+    left: Measured,
+    right: Measured,
+    combine: fn(Dimension, Dimension) -> Dimension,
+) -> Measured {
+    match (left, right) {
+        (Some(left), Some(right)) => Some(combine(left, right)),
+        _ => None,
+    }
+}
+
+fn power(
+    base: &Expression,
+    measured: Measured,
+    exponent: &Expression,
+) -> Result<Measured, Mismatch> {
+    let Some(dimension) = measured.filter(|d| !d.is_none()) else {
+        return Ok(measured);
+    };
+    let number = match &exponent.kind {
+        Kind::Number(value) => Some(*value),
+        Kind::Negate(inner) => match inner.kind {
+            Kind::Number(value) => Some(-value),
+            _ => None,
+        },
+        _ => None,
+    };
+    let fault = |message| Mismatch {
+        span: exponent.span,
+        message,
+    };
+    let number = number.ok_or_else(|| {
+        fault(format!(
+            "'{base}' is in {dimension}: its exponent must be a written number"
+        ))
+    })?;
+    match dimension.to_power(number) {
+        Some(result) => Ok(Some(result)),
+        None => Err(fault(format!(
+            "{dimension} to the power {number} has no meaning"
+        ))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::expression::parse;
+    use super::*;
+    use crate::flight::Unit;
+
+    fn measured(text: &str) -> Result<String, String> {
+        let dimension_of = |name: &str| {
+            let unit = match name {
+                "V" => "m/s",
+                "q" => "rad/s",
+                "alpha" => "rad",
+                "rho" => "kg/m^3",
+                _ => return None,
+            };
+            Unit::parse(unit).ok().map(|unit| unit.dimension)
+        };
+        measure(&parse(text).unwrap(), &dimension_of)
+            .map(|m| m.map_or("any".to_string(), |d| d.to_string()))
+            .map_err(|mismatch| format!("{}: {}", mismatch.span.start, mismatch.message))
+    }
+
+    #[test]
+    fn follows_the_rules_of_quantities() {
+        assert_eq!(measured("0.5*rho*V^2"), Ok("kg/(m*s^2)".into()));
+        assert_eq!(measured("sqrt(V^2 + V*V)"), Ok("m/s".into()));
+        assert_eq!(measured("0"), Ok("any".into()));
+        assert_eq!(measured("if(q < 0, 0, q)"), Ok("1/s".into()));
+        assert_eq!(measured("sin(alpha)*V"), Ok("m/s".into()));
+        assert_eq!(measured("2^alpha"), Ok("-".into()));
+        assert_eq!(measured("mean(V, 5)"), Ok("m/s".into()));
+    }
+
+    #[test]
+    fn names_the_place() {
+        assert_eq!(
+            measured("V + q"),
+            Err("0: cannot add m/s and 1/s: 'V' and 'q'".into())
+        );
+        assert_eq!(
+            measured("alpha*(q - alpha)"),
+            Err("7: cannot subtract 1/s and -: 'q' and 'alpha'".into())
+        );
+        assert!(
+            measured("sin(q)")
+                .unwrap_err()
+                .contains("the argument of sin")
+        );
+        assert!(
+            measured("V^alpha")
+                .unwrap_err()
+                .contains("must be a written number")
+        );
+        assert!(measured("V < q").unwrap_err().contains("cannot compare"));
+    }
+}

@@ -1,0 +1,88 @@
+//! The functions that equations may call.
+
+/// A function by name. `first` and `mean` look at a whole recording and are allowed only where a
+/// parameter's start value is worked out.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Function {
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Atan2,
+    Tanh,
+    Exp,
+    Ln,
+    Sqrt,
+    Abs,
+    Sign,
+    Min,
+    Max,
+    If,
+    First,
+    Mean,
+}
+
+const ALL: [(&str, Function, usize); 18] = [
+    ("sin", Function::Sin, 1),
+    ("cos", Function::Cos, 1),
+    ("tan", Function::Tan, 1),
+    ("asin", Function::Asin, 1),
+    ("acos", Function::Acos, 1),
+    ("atan", Function::Atan, 1),
+    ("atan2", Function::Atan2, 2),
+    ("tanh", Function::Tanh, 1),
+    ("exp", Function::Exp, 1),
+    ("ln", Function::Ln, 1),
+    ("sqrt", Function::Sqrt, 1),
+    ("abs", Function::Abs, 1),
+    ("sign", Function::Sign, 1),
+    ("min", Function::Min, 2),
+    ("max", Function::Max, 2),
+    ("if", Function::If, 3),
+    ("first", Function::First, 1),
+    ("mean", Function::Mean, 2),
+];
+
+impl Function {
+    pub fn find(name: &str) -> Option<Self> {
+        ALL.iter()
+            .find(|(known, ..)| *known == name)
+            .map(|&(_, function, _)| function)
+    }
+
+    pub fn name(self) -> &'static str {
+        self.entry().0
+    }
+
+    pub fn arguments(self) -> usize {
+        self.entry().2
+    }
+
+    /// Names of all functions, for messages.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        ALL.iter().map(|(name, ..)| *name)
+    }
+
+    fn entry(self) -> &'static (&'static str, Self, usize) {
+        // the table holds every variant: `every_function_is_in_the_table` below
+        ALL.iter()
+            .find(|(_, function, _)| *function == self)
+            .unwrap_or(&ALL[0])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_function_is_in_the_table() {
+        for &(name, function, count) in &ALL {
+            assert_eq!(Function::find(name), Some(function));
+            assert_eq!((function.name(), function.arguments()), (name, count));
+        }
+        assert_eq!(Function::Mean as usize + 1, ALL.len());
+    }
+}

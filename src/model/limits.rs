@@ -1,0 +1,29 @@
+//! Bounds on a model document: a document from the network is hostile until proven otherwise.
+
+use super::{ModelDocument, ModelError};
+
+pub const MOST_STATES: usize = 64;
+pub const MOST_INPUTS: usize = 64;
+pub const MOST_OUTPUTS: usize = 64;
+pub const MOST_PARAMETERS: usize = 512;
+pub const MOST_DEFINITIONS: usize = 256;
+pub const MOST_CONSTANTS: usize = 256;
+
+pub(super) fn check(document: &ModelDocument) -> Vec<ModelError> {
+    let counts = [
+        ("states", document.states.len(), MOST_STATES),
+        ("inputs", document.inputs.len(), MOST_INPUTS),
+        ("outputs", document.outputs.len(), MOST_OUTPUTS),
+        ("parameters", document.parameters.len(), MOST_PARAMETERS),
+        ("definitions", document.definitions.len(), MOST_DEFINITIONS),
+        ("constants", document.constants.len(), MOST_CONSTANTS),
+    ];
+    let too_many = counts
+        .into_iter()
+        .filter(|&(_, count, most)| count > most)
+        .map(|(what, count, most)| {
+            let message = format!("{count} {what}; at most {most} are allowed");
+            ModelError::new(format!("/{what}"), "model_too_large", message)
+        });
+    too_many.collect()
+}

@@ -1,0 +1,171 @@
+//! The names of a document: what each stands for, and whether they are fit to be used.
+
+use indexmap::IndexMap;
+
+use super::document::ModelDocument;
+use super::expression::{Function, is_name};
+use super::fault::{ModelError, escape};
+use crate::flight::{Dimension, Unit};
+
+/// What a name in an equation stands for.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) enum Meaning {
+    /// A number in SI.
+    Constant(f64),
+    Input(usize),
+    Parameter(usize),
+    Definition(usize),
+    State(usize),
+    Time,
+}
+
+/// All names of a document, with what they stand for and measure.
+pub(super) struct Names<'d> {
+    table: IndexMap<&'d str, (Meaning, Option<Dimension>)>,
+}
+
+/// Names with a meaning of their own.
+const TIME: &str = "t";
+const PI: &str = "pi";
+
+impl<'d> Names<'d> {
+    /// Collects names and units; what is wrong with them is added to `faults`.
+    pub fn collect(document: &'d ModelDocument, faults: &mut Vec<ModelError>) -> Self {
+        let mut table = IndexMap::new();
+        table.insert(TIME, (Meaning::Time, Some(Dimension::SECOND)));
+        table.insert(
+            PI,
+            (
+                Meaning::Constant(std::f64::consts::PI),
+                Some(Dimension::NONE),
+            ),
+        );
+        let mut names = Self { table };
+        for (name, constant) in &document.constants {
+            let unit = unit(
+                &constant.unit,
+                &format!("/constants/{}/unit", escape(name)),
+                faults,
+            );
+            if !constant.value.is_finite() {
+                let pointer = format!("/constants/{}/value", escape(name));
+                faults.push(ModelError::new(
+                    pointer,
+                    "not_finite",
+                    "a constant must be a finite number",
+                ));
+            }
+            let value = unit.map_or(constant.value, |unit| unit.to_si(constant.value));
+            names.add("constants", name, Meaning::Constant(value), unit, faults);
+        }
+        for (i, (name, input)) in document.inputs.iter().enumerate() {
+            let unit = unit(
+                &input.unit,
+                &format!("/inputs/{}/unit", escape(name)),
+                faults,
+            );
+            names.add("inputs", name, Meaning::Input(i), unit, faults);
+        }
+        for (i, (name, parameter)) in document.parameters.iter().enumerate() {
+            let unit = unit(
+                &parameter.unit,
+                &format!("/parameters/{}/unit", escape(name)),
+                faults,
+            );
+            names.add("parameters", name, Meaning::Parameter(i), unit, faults);
+        }
+        for (i, (name, definition)) in document.definitions.iter().enumerate() {
+            let unit = unit(
+                &definition.unit,
+                &format!("/definitions/{}/unit", escape(name)),
+                faults,
+            );
+            names.add("definitions", name, Meaning::Definition(i), unit, faults);
+        }
+        for (i, (name, state)) in document.states.iter().enumerate() {
+            let unit = unit(
+                &state.unit,
+                &format!("/states/{}/unit", escape(name)),
+                faults,
+            );
+            names.add("states", name, Meaning::State(i), unit, faults);
+        }
+        for name in document.outputs.keys() {
+            let pointer = format!("/outputs/{}", escape(name));
+            if let Some(fault) = unfit(name, &pointer) {
+                faults.push(fault);
+            }
+            if document.inputs.contains_key(name) {
+                let message = format!(
+                    "'{name}' is an input too; what is recorded once cannot drive the model and test it"
+                );
+                faults.push(ModelError::new(pointer, "duplicate_name", message));
+            }
+        }
+        names
+    }
+
+    pub fn meaning(&self, name: &str) -> Option<Meaning> {
+        self.table.get(name).map(|&(meaning, _)| meaning)
+    }
+
+    pub fn dimension(&self, name: &str) -> Option<Dimension> {
+        self.table.get(name).and_then(|&(_, dimension)| dimension)
+    }
+
+    /// What is said of a name that is not there.
+    pub fn unknown(&self, name: &str) -> String {
+        let known = self.table.keys().copied();
+        let near = known
+            .map(|candidate| (strsim::damerau_levenshtein(candidate, name), candidate))
+            .filter(|&(distance, candidate)| distance <= 2.min(candidate.len() / 2))
+            .min();
+        match near {
+            Some((_, candidate)) => format!("'{name}' is not defined; did you mean '{candidate}'?"),
+            None => format!(
+                "'{name}' is not a constant, input, parameter, definition or state of this model"
+            ),
+        }
+    }
+
+    fn add(
+        &mut self,
+        section: &str,
+        name: &'d str,
+        meaning: Meaning,
+        unit: Option<Unit>,
+        faults: &mut Vec<ModelError>,
+    ) {
+        let pointer = format!("/{section}/{}", escape(name));
+        if let Some(fault) = unfit(name, &pointer) {
+            faults.push(fault);
+        } else if self
+            .table
+            .insert(name, (meaning, unit.map(|unit| unit.dimension)))
+            .is_some()
+        {
+            let message = format!(
+                "'{name}' is defined twice; constants, inputs, parameters, definitions and states share their names"
+            );
+            faults.push(ModelError::new(pointer, "duplicate_name", message));
+        }
+    }
+}
+
+fn unfit(name: &str, pointer: &str) -> Option<ModelError> {
+    let why = if !is_name(name) {
+        "a name is a letter or '_' followed by letters, digits and '_', at most 64 in all"
+            .to_string()
+    } else if name == TIME || name == PI || Function::find(name).is_some() {
+        format!("'{name}' has a meaning of its own in equations; choose another name")
+    } else {
+        return None;
+    };
+    Some(ModelError::new(pointer, "invalid_name", why))
+}
+
+fn unit(text: &str, pointer: &str, faults: &mut Vec<ModelError>) -> Option<Unit> {
+    Unit::parse(text)
+        .map_err(|error| faults.push(ModelError::new(pointer, "unknown_unit", error.to_string())))
+        .ok()
+}

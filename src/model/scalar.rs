@@ -1,0 +1,179 @@
+//! The numbers that a compiled model can be evaluated on: one, several side by side, complex.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use num_complex::Complex64;
+
+/// A number as compiled equations need it.
+pub trait Scalar:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    fn from_f64(value: f64) -> Self;
+    fn sin(self) -> Self;
+    fn cos(self) -> Self;
+    fn tan(self) -> Self;
+    fn asin(self) -> Self;
+    fn acos(self) -> Self;
+    fn atan(self) -> Self;
+    fn tanh(self) -> Self;
+    fn exp(self) -> Self;
+    fn ln(self) -> Self;
+    fn sqrt(self) -> Self;
+    fn abs(self) -> Self;
+    /// -1, 0 or 1.
+    fn sign(self) -> Self;
+    fn power(self, exponent: Self) -> Self;
+    fn atan2(self, x: Self) -> Self;
+    /// 1 where self < other, else 0.
+    fn less(self, other: Self) -> Self;
+    fn less_or_equal(self, other: Self) -> Self;
+    /// `yes` where self is not 0, else `no`.
+    fn select(self, yes: Self, no: Self) -> Self;
+}
+
+fn truth(value: bool) -> f64 {
+    f64::from(u8::from(value))
+}
+
+macro_rules! forward {
+    ($type:ty: $($name:ident)*) => { $(#[inline(always)] fn $name(self) -> Self { <$type>::$name(self) })* };
+}
+
+impl Scalar for f64 {
+    #[inline(always)]
+    fn from_f64(value: f64) -> Self {
+        value
+    }
+    forward!(f64: sin cos tan asin acos atan tanh exp ln sqrt abs);
+    #[inline(always)]
+    fn sign(self) -> Self {
+        if self == 0.0 { 0.0 } else { self.signum() }
+    }
+    #[inline(always)]
+    fn power(self, exponent: Self) -> Self {
+        self.powf(exponent)
+    }
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        f64::atan2(self, x)
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> Self {
+        truth(self < other)
+    }
+    #[inline(always)]
+    fn less_or_equal(self, other: Self) -> Self {
+        truth(self <= other)
+    }
+    #[inline(always)]
+    fn select(self, yes: Self, no: Self) -> Self {
+        if self != 0.0 { yes } else { no }
+    }
+}
+
+/// Complex numbers, for complex-step differences: what is not analytic follows the real part.
+impl Scalar for Complex64 {
+    fn from_f64(value: f64) -> Self {
+        Self::new(value, 0.0)
+    }
+    forward!(Complex64: sin cos tan asin acos atan tanh exp ln sqrt);
+    fn abs(self) -> Self {
+        if self.re < 0.0 { -self } else { self }
+    }
+    fn sign(self) -> Self {
+        Self::from_f64(Scalar::sign(self.re))
+    }
+    fn power(self, exponent: Self) -> Self {
+        // exact in the real part, where the general formula would lose digits
+        let real = self.re.powf(exponent.re);
+        let slope = exponent.re * self.re.powf(exponent.re - 1.0) * self.im
+            + if exponent.im == 0.0 {
+                0.0
+            } else {
+                real * self.re.ln() * exponent.im
+            };
+        Self::new(real, slope)
+    }
+    fn atan2(self, x: Self) -> Self {
+        let squares = self.re * self.re + x.re * x.re;
+        Self::new(
+            self.re.atan2(x.re),
+            (x.re * self.im - self.re * x.im) / squares,
+        )
+    }
+    fn less(self, other: Self) -> Self {
+        Self::from_f64(truth(self.re < other.re))
+    }
+    fn less_or_equal(self, other: Self) -> Self {
+        Self::from_f64(truth(self.re <= other.re))
+    }
+    fn select(self, yes: Self, no: Self) -> Self {
+        if self.re != 0.0 { yes } else { no }
+    }
+}
+
+/// How many samples are evaluated side by side.
+pub const LANES: usize = 16;
+
+/// Samples side by side: one instruction of a program serves all of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(64))]
+pub struct Lanes(pub [f64; LANES]);
+
+impl Lanes {
+    #[inline(always)]
+    fn map(self, f: impl Fn(f64) -> f64) -> Self {
+        Self(self.0.map(f))
+    }
+
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
+    }
+}
+
+macro_rules! lanes_operator {
+    ($($trait:ident $name:ident $operator:tt),*) => {
+        $(impl $trait for Lanes {
+            type Output = Self;
+            #[inline(always)]
+            fn $name(self, other: Self) -> Self {
+                self.zip(other, |a, b| a $operator b)
+            }
+        })*
+    };
+}
+lanes_operator!(Add add +, Sub sub -, Mul mul *, Div div /);
+
+impl Neg for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.map(|a| -a)
+    }
+}
+
+macro_rules! lanes_unary {
+    ($($name:ident)*) => { $(#[inline(always)] fn $name(self) -> Self { self.map(Scalar::$name) })* };
+}
+macro_rules! lanes_binary {
+    ($($name:ident)*) => { $(#[inline(always)] fn $name(self, other: Self) -> Self { self.zip(other, Scalar::$name) })* };
+}
+
+impl Scalar for Lanes {
+    #[inline(always)]
+    fn from_f64(value: f64) -> Self {
+        Self([value; LANES])
+    }
+    lanes_unary!(sin cos tan asin acos atan tanh exp ln sqrt abs sign);
+    lanes_binary!(power atan2 less less_or_equal);
+    #[inline(always)]
+    fn select(self, yes: Self, no: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i].select(yes.0[i], no.0[i])))
+    }
+}

@@ -1,0 +1,68 @@
+//! Simulation of a segment for any kind of number.
+
+use super::method::{InputInterpolation, Integrator};
+use super::segment::Segment;
+use super::stepper::Stepper;
+use crate::model::{Model, Scalar};
+
+/// The simulation left the range of numbers.
+#[derive(Clone, Copy, PartialEq, Debug, thiserror::Error)]
+#[error("the simulation leaves the range of numbers at sample {}", sample + 1)]
+pub struct Diverged {
+    /// Index of the first sample at which something is not finite, as far as it is known.
+    pub sample: usize,
+}
+
+/// Simulates a segment and hands the outputs of each sample to `sink`.
+///
+/// `parameters` are all parameters of the model, SI, in its order. Generic over the number, so that the
+/// same code gives outputs (`f64`) and complex-step derivatives (`Complex64`).
+pub fn simulate<T: Scalar>(
+    model: &Model,
+    integrator: Integrator,
+    interpolation: InputInterpolation,
+    segment: &Segment,
+    parameters: &[T],
+    mut sink: impl FnMut(usize, &[T]),
+) {
+    let mut stepper = Stepper::new(model, integrator, interpolation);
+    stepper.set_parameters(parameters);
+    let mut state = initial_state(model, parameters);
+    let mut observation = model.observation.workspace();
+    model
+        .observation
+        .set_parameters(&mut observation, parameters);
+    let mut outputs = vec![T::from_f64(0.0); model.outputs.len()];
+    let mut elapsed = 0.0;
+    for k in 0..segment.len() {
+        model
+            .observation
+            .states(&mut observation)
+            .copy_from_slice(&state);
+        for (to, samples) in model
+            .observation
+            .inputs(&mut observation)
+            .iter_mut()
+            .zip(&segment.inputs)
+        {
+            *to = T::from_f64(samples[k]);
+        }
+        *model.observation.time(&mut observation) = T::from_f64(elapsed);
+        model.observation.run(&mut observation);
+        model.observation.results(&observation, &mut outputs);
+        sink(k, &outputs);
+        if k + 1 < segment.len() {
+            stepper.step(segment, k, elapsed, &mut state);
+            elapsed += segment.steps.length(k);
+        }
+    }
+}
+
+pub(super) fn initial_state<T: Scalar>(model: &Model, parameters: &[T]) -> Vec<T> {
+    let mut workspace = model.initial.workspace();
+    model.initial.set_parameters(&mut workspace, parameters);
+    model.initial.run(&mut workspace);
+    let mut state = vec![T::from_f64(0.0); model.states.len()];
+    model.initial.results(&workspace, &mut state);
+    state
+}
