@@ -1,2 +1,3 @@
 //! Trimtab estimates aircraft parameters from flight-test maneuvers.
 pub mod flight;
+pub mod ingest;
