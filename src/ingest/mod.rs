@@ -8,6 +8,7 @@
 mod axis;
 mod cell;
 mod csv;
+mod export;
 mod fault;
 mod header;
 mod json;
@@ -17,6 +18,7 @@ mod recording;
 mod text;
 mod units;
 
+pub use export::{to_csv, to_json};
 pub use fault::{Fault, IngestError, code};
 pub use limits::Limits;
 pub use recording::Recording;
