@@ -4,6 +4,9 @@
 //! [`IngestError`], whose faults each name the place (a column, a row, a JSON pointer) and the remedy.
 //! Its memory is bounded by [`Limits`] *before* it is used: both formats are surveyed in one cheap pass
 //! before anything is built from them.
+//!
+//! What is readable may still be poor: [`quality`] finds gaps, missing values, stuck sensors and spikes,
+//! and [`summary`] is what a user sees of a maneuver without downloading it.
 
 mod axis;
 mod cell;
@@ -14,14 +17,18 @@ mod header;
 mod json;
 mod limits;
 mod name;
+mod quality;
 mod recording;
+mod summary;
 mod text;
 mod units;
 
 pub use export::{to_csv, to_json};
 pub use fault::{Fault, IngestError, code};
 pub use limits::Limits;
+pub use quality::quality;
 pub use recording::Recording;
+pub use summary::{ChannelSummary, Summary, summary};
 
 use crate::flight::Maneuver;
 
