@@ -1,0 +1,202 @@
+//! What is wrong with a recording: the place, a stable word, and a message with the remedy.
+
+use std::fmt;
+
+use serde::Serialize;
+
+/// One fault of a recording.
+#[derive(Clone, PartialEq, Eq, Debug, Serialize)]
+pub struct Fault {
+    /// Where. CSV: `/columns/<name, or number from 1>`, `/rows/<data row from 1>/<column name>`,
+    /// `/rows/<data row from 1>`. JSON: an RFC 6901 pointer into the document. Empty: the whole file.
+    pub pointer: String,
+    /// A stable word out of [`code`].
+    pub code: &'static str,
+    /// What is wrong and what would fix it.
+    pub message: String,
+}
+
+impl Fault {
+    /// Faults of cells and rows are listed up to this many; behind them reading stops.
+    pub const CELLS_LISTED: usize = 20;
+
+    pub(super) fn new(
+        pointer: impl Into<String>,
+        code: &'static str,
+        message: impl Into<String>,
+    ) -> Self {
+        Self {
+            pointer: pointer.into(),
+            code,
+            message: message.into(),
+        }
+    }
+
+    /// A fault of the file as a whole.
+    pub(super) fn of_file(code: &'static str, message: impl Into<String>) -> Self {
+        Self::new("", code, message)
+    }
+}
+
+/// Why a recording was refused: one fault or more.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct IngestError {
+    faults: Vec<Fault>,
+}
+
+impl IngestError {
+    /// Never empty.
+    pub fn faults(&self) -> &[Fault] {
+        &self.faults
+    }
+
+    pub fn into_faults(self) -> Vec<Fault> {
+        self.faults
+    }
+
+    /// Refuses if there is a fault.
+    pub(super) fn refuse(faults: Vec<Fault>) -> Result<(), Self> {
+        if faults.is_empty() {
+            Ok(())
+        } else {
+            Err(Self { faults })
+        }
+    }
+}
+
+impl From<Fault> for IngestError {
+    fn from(fault: Fault) -> Self {
+        Self {
+            faults: vec![fault],
+        }
+    }
+}
+
+impl fmt::Display for IngestError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, fault) in self.faults.iter().enumerate() {
+            let separator = if i == 0 { "" } else { "\n" };
+            let at = if fault.pointer.is_empty() { "" } else { ": " };
+            write!(f, "{separator}{}{at}{}", fault.pointer, fault.message)?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for IngestError {}
+
+/// A JSON pointer (RFC 6901) of the segments given.
+pub(super) fn pointer<S: AsRef<str>>(segments: impl IntoIterator<Item = S>) -> String {
+    segments.into_iter().fold(String::new(), |path, segment| {
+        let escaped = segment.as_ref().replace('~', "~0").replace('/', "~1");
+        path + "/" + &escaped
+    })
+}
+
+/// The words that [`Fault::code`] can be. They never change their meaning.
+pub mod code {
+    pub const EMPTY_BODY: &str = "empty_body";
+    pub const NOT_UTF8: &str = "not_utf8";
+    pub const WRONG_DELIMITER: &str = "wrong_delimiter";
+    pub const INVALID_JSON: &str = "invalid_json";
+    pub const WRONG_SHAPE: &str = "wrong_shape";
+    pub const TOO_MANY_COLUMNS: &str = "too_many_columns";
+    pub const TOO_MANY_SAMPLES: &str = "too_many_samples";
+    pub const TOO_MANY_VALUES: &str = "too_many_values";
+    pub const TOO_FEW_SAMPLES: &str = "too_few_samples";
+    pub const NO_CHANNELS: &str = "no_channels";
+    pub const EMPTY_NAME: &str = "empty_name";
+    pub const INVALID_NAME: &str = "invalid_name";
+    pub const NAME_TOO_LONG: &str = "name_too_long";
+    pub const DUPLICATE_CHANNEL: &str = "duplicate_channel";
+    pub const UNKNOWN_UNIT: &str = "unknown_unit";
+    pub const NO_TIME_COLUMN: &str = "no_time_column";
+    pub const TIME_UNIT: &str = "time_unit";
+    pub const TIME_MISSING: &str = "time_missing";
+    pub const TIME_NOT_INCREASING: &str = "time_not_increasing";
+    pub const NOT_A_NUMBER: &str = "not_a_number";
+    pub const ROW_LENGTH: &str = "row_length";
+    pub const LENGTH_MISMATCH: &str = "length_mismatch";
+
+    /// Every code with its meaning, for the documentation.
+    pub const ALL: &[(&str, &str)] = &[
+        (EMPTY_BODY, "There are no bytes, or only blanks."),
+        (NOT_UTF8, "The file is not UTF-8 text."),
+        (
+            WRONG_DELIMITER,
+            "The cells are not separated by commas but by something else.",
+        ),
+        (INVALID_JSON, "The body is not JSON."),
+        (
+            WRONG_SHAPE,
+            "The body is JSON of another shape than a recording's.",
+        ),
+        (TOO_MANY_COLUMNS, "The limit of columns is exceeded."),
+        (TOO_MANY_SAMPLES, "The limit of samples is exceeded."),
+        (TOO_MANY_VALUES, "The limit of values is exceeded."),
+        (TOO_FEW_SAMPLES, "A maneuver needs at least two samples."),
+        (NO_CHANNELS, "There is no channel beside time."),
+        (EMPTY_NAME, "A channel has no name."),
+        (
+            INVALID_NAME,
+            "A channel's name is not an identifier, or is reserved.",
+        ),
+        (NAME_TOO_LONG, "A channel's name is too long."),
+        (DUPLICATE_CHANNEL, "Two channels have one name."),
+        (UNKNOWN_UNIT, "A unit is unknown or cannot be read."),
+        (NO_TIME_COLUMN, "No column is named t or time."),
+        (TIME_UNIT, "The unit of time is not a time."),
+        (TIME_MISSING, "A sample has no time."),
+        (TIME_NOT_INCREASING, "Time does not increase."),
+        (
+            NOT_A_NUMBER,
+            "A cell holds neither a number nor a sign for a missing value.",
+        ),
+        (
+            ROW_LENGTH,
+            "A row has another number of cells than the header.",
+        ),
+        (
+            LENGTH_MISMATCH,
+            "A channel has another number of values than the time axis.",
+        ),
+    ];
+}
+
+/// `code pointer` of each fault of a recording that must be refused.
+#[cfg(test)]
+pub(super) fn places<T>(result: Result<T, IngestError>) -> Vec<String> {
+    let error = result.err().unwrap_or_else(|| panic!("it was accepted"));
+    let place = |fault: &Fault| format!("{} {}", fault.code, fault.pointer);
+    error.faults().iter().map(place).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pointers_escape_what_rfc_6901_says() {
+        assert_eq!(pointer(["channels", "a/b~c"]), "/channels/a~1b~0c");
+        assert_eq!(pointer::<&str>([]), "");
+    }
+
+    #[test]
+    fn an_error_prints_each_fault_with_its_place() {
+        let faults = vec![
+            Fault::new("/rows/1", code::ROW_LENGTH, "one"),
+            Fault::of_file(code::NOT_UTF8, "two"),
+        ];
+        let error = IngestError::refuse(faults).unwrap_err();
+        assert_eq!(error.to_string(), "/rows/1: one\ntwo");
+        assert_eq!(IngestError::refuse(Vec::new()), Ok(()));
+    }
+
+    #[test]
+    fn codes_are_distinct() {
+        let mut words: Vec<_> = code::ALL.iter().map(|(word, _)| word).collect();
+        words.sort_unstable();
+        words.dedup();
+        assert_eq!(words.len(), code::ALL.len());
+    }
+}

@@ -1,0 +1,128 @@
+//! What is odd about recorded data. Nothing is repaired: each finding says what can be done.
+//!
+//! The tests are conservative. A control step, a quantised signal and a steady stretch before the
+//! maneuver are ordinary, and an alarm that is usually false is not read.
+
+mod missing;
+mod repeats;
+mod spikes;
+mod time;
+mod wraps;
+
+use crate::flight::{Finding, Maneuver, Severity};
+
+/// Everything odd about a maneuver: first the time axis, then channel by channel.
+pub fn quality(maneuver: &Maneuver) -> Vec<Finding> {
+    let segments = maneuver.sampling().segments();
+    let mut findings: Vec<Finding> = time::gaps(maneuver)
+        .into_iter()
+        .chain(time::uneven(maneuver))
+        .collect();
+    let repeated = repeats::RepeatedRows::of(maneuver, &segments);
+    findings.extend(repeated.finding());
+    for (name, channel) in maneuver.channels() {
+        let values = &channel.values;
+        findings.extend(missing::missing(name, values));
+        if let Some(constant) = repeats::constant(name, values) {
+            findings.push(constant);
+            continue;
+        }
+        findings.extend(repeats::stuck(name, values, &segments, &repeated));
+        findings.extend(spikes::spikes(name, values, &segments));
+        findings.extend(wraps::wraps(name, channel));
+    }
+    findings
+}
+
+/// A finding at `rows` (indices from 0).
+fn finding(
+    code: &str,
+    severity: Severity,
+    channel: Option<&str>,
+    rows: &[usize],
+    message: String,
+    remedy: &str,
+) -> Finding {
+    Finding {
+        code: code.to_string(),
+        severity,
+        channel: channel.map(str::to_string),
+        rows: rows
+            .iter()
+            .take(Finding::ROWS_LISTED)
+            .map(|row| row + 1)
+            .collect(),
+        count: rows.len(),
+        message,
+        remedy: remedy.to_string(),
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use indexmap::IndexMap;
+
+    use crate::flight::{Channel, Unit};
+
+    /// A maneuver at 25 Hz of channels in degrees.
+    pub(super) fn maneuver(channels: &[(&str, Vec<f64>)]) -> Maneuver {
+        let count = channels[0].1.len();
+        let time = (0..count).map(|k| k as f64 * 0.04).collect();
+        let degree = Unit::parse("deg").unwrap();
+        let channels = channels.iter().map(|(name, values)| {
+            let channel = Channel::from_recorded("deg", degree, values.clone());
+            (name.to_string(), channel)
+        });
+        Maneuver::new(time, channels.collect::<IndexMap<_, _>>()).unwrap()
+    }
+
+    /// Noise without a generator: uniform in -1..1.
+    pub(super) fn noise(k: usize) -> f64 {
+        let mixed = (k as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let mixed = (mixed ^ (mixed >> 31)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        (mixed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    #[test]
+    fn a_clean_response_to_a_3211_has_no_finding() {
+        // pulses of 3, 2, 1 and 1 steps of 0.8 s, the response of a first-order lag, both noise-free
+        let elevator: Vec<f64> = (0..500)
+            .map(|k| match k {
+                50..110 => 2.0,
+                110..150 => -2.0,
+                150..170 => 2.0,
+                170..190 => -2.0,
+                _ => 0.0,
+            })
+            .collect();
+        let mut state = 0.0;
+        let response: Vec<f64> = elevator
+            .iter()
+            .map(|input| {
+                state += 0.1 * (input - state);
+                state
+            })
+            .collect();
+        let noisy: Vec<f64> = response
+            .iter()
+            .enumerate()
+            .map(|(k, v)| v + 0.01 * noise(k))
+            .collect();
+        let noisy_elevator: Vec<f64> = elevator
+            .iter()
+            .enumerate()
+            .map(|(k, v)| v + 0.02 * noise(k + 7777))
+            .collect();
+        let warnings: Vec<_> = quality(&maneuver(&[
+            ("de", elevator),
+            ("de_noisy", noisy_elevator),
+            ("q", response),
+            ("alpha", noisy),
+        ]))
+        .into_iter()
+        .filter(|finding| finding.severity == Severity::Warning)
+        .collect();
+        assert_eq!(warnings, []);
+    }
+}
