@@ -1,3 +1,4 @@
 //! What integration tests share.
 
 pub mod flight_data;
+pub mod published_cases;
