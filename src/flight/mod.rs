@@ -7,6 +7,7 @@ mod dimension;
 mod finding;
 mod maneuver;
 mod sampling;
+mod si_name;
 mod unit;
 
 pub use dimension::Dimension;

@@ -67,20 +67,6 @@ impl Unit {
         }
     }
 
-    /// What a quantity recorded in `text` is in behind the door: `rad/s` for `deg/s`, `m` for `ft`.
-    pub fn si_name(text: &str) -> String {
-        let is_si = |unit: &Self| unit.scale == 1.0 && unit.offset == 0.0;
-        let text = text.trim();
-        let angle = text.replace("deg", "rad").replace('°', "rad");
-        match Self::parse(text) {
-            _ if text.is_empty() => "-".to_string(),
-            Ok(unit) if is_si(&unit) => text.to_string(),
-            Ok(_) if Self::parse(&angle).as_ref().is_ok_and(is_si) => angle,
-            Ok(unit) => unit.dimension.to_string(),
-            Err(_) => text.to_string(),
-        }
-    }
-
     fn scaled(scale: f64, dimension: Dimension) -> Self {
         Self {
             scale,
@@ -322,21 +308,6 @@ mod tests {
         assert_eq!(dimension("-"), "-");
         assert_eq!(dimension(""), "-");
         assert_eq!(dimension("m s^-2"), "m/s^2");
-    }
-
-    #[test]
-    fn names_the_si_unit_as_the_field_does() {
-        for (recorded, si) in [
-            ("deg/s", "rad/s"),
-            ("deg", "rad"),
-            ("ft", "m"),
-            ("N", "N"),
-            ("hPa", "kg/(m*s^2)"),
-            ("", "-"),
-            ("degC", "K"),
-        ] {
-            assert_eq!(Unit::si_name(recorded), si);
-        }
     }
 
     #[test]

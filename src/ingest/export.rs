@@ -7,9 +7,7 @@ use std::fmt::Write;
 use indexmap::IndexMap;
 use serde::Serialize;
 
-use crate::flight::{Channel, Maneuver};
-
-use super::units::si_unit;
+use crate::flight::{Channel, Maneuver, Unit};
 
 #[derive(Serialize)]
 struct Document<'a> {
@@ -26,7 +24,7 @@ struct Series<'a> {
 impl<'a> Series<'a> {
     fn of(channel: &'a Channel) -> Self {
         Self {
-            unit: si_unit(channel),
+            unit: Unit::si_name(&channel.recorded_unit),
             values: &channel.values,
         }
     }
@@ -59,7 +57,10 @@ pub fn to_csv(maneuver: &Maneuver, keep: impl Fn(&str) -> bool) -> String {
         .collect();
     let mut csv = String::from("t[s]");
     for (name, channel) in &kept {
-        csv.push_str(&format!(",{name}[{}]", si_unit(channel)));
+        csv.push_str(&format!(
+            ",{name}[{}]",
+            Unit::si_name(&channel.recorded_unit)
+        ));
     }
     csv.push('\n');
     for (k, time) in maneuver.time().iter().enumerate() {

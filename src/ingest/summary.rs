@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::flight::{Channel, Finding, Maneuver};
+use crate::flight::{Channel, Finding, Maneuver, Unit};
 
-use super::{quality, units::si_unit};
+use super::quality;
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Summary {
@@ -81,7 +81,7 @@ impl ChannelSummary {
         Self {
             name: name.to_string(),
             unit: channel.recorded_unit.clone(),
-            si_unit: si_unit(channel),
+            si_unit: Unit::si_name(&channel.recorded_unit),
             min: present.clone().reduce(f64::min),
             max: present.reduce(f64::max),
             mean: (count > 0 && mean.is_finite()).then_some(mean),

@@ -74,81 +74,14 @@ impl RecordedUnit {
     }
 }
 
-/// The SI unit that a channel's values are in, as text that reads back with scale 1.
-///
-/// The dimension alone would call every angle a pure number; where the recording speaks of degrees the
-/// answer speaks of radians.
-pub(super) fn si_unit(channel: &Channel) -> String {
-    if is_si(&channel.unit) {
-        return channel.recorded_unit.clone();
-    }
-    let in_radians = degrees_to_radians(&channel.recorded_unit);
-    let named = ["N", "Pa", "W", "V"].map(str::to_string);
-    std::iter::once(in_radians)
-        .chain(named)
-        .find(|text| {
-            Unit::parse(text)
-                .is_ok_and(|unit| is_si(&unit) && unit.dimension == channel.unit.dimension)
-        })
-        .unwrap_or_else(|| channel.unit.dimension.to_string())
-}
-
 /// Whether a channel is an angle (and not some other pure number).
 pub(super) fn is_angle(channel: &Channel) -> bool {
-    let unit = channel.recorded_unit.as_str();
-    unit == "rad" || (degrees_to_radians(unit) == "rad")
-}
-
-fn is_si(unit: &Unit) -> bool {
-    unit.scale == 1.0 && unit.offset == 0.0
-}
-
-fn degrees_to_radians(text: &str) -> String {
-    let is_symbol = |c: char| c.is_alphabetic() || matches!(c, '°' | '_' | '%');
-    let mut result = String::new();
-    let mut rest = text;
-    while let Some(first) = rest.chars().next() {
-        let symbol = is_symbol(first);
-        let end = rest.find(|c| is_symbol(c) != symbol).unwrap_or(rest.len());
-        let (token, behind) = rest.split_at(end);
-        result.push_str(match token {
-            "deg" | "°" | "mrad" | "rev" => "rad",
-            other => other,
-        });
-        rest = behind;
-    }
-    result
+    Unit::si_name(&channel.recorded_unit) == "rad"
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn si(text: &str) -> String {
-        si_unit(&RecordedUnit::parse(text).unwrap().channel(vec![1.0]))
-    }
-
-    #[test]
-    fn si_units_read_as_an_engineer_writes_them() {
-        let expected = [
-            ("deg", "rad"),
-            ("deg/s^2", "rad/s^2"),
-            ("1/deg", "1/rad"),
-            ("°/s", "rad/s"),
-            ("rad/s", "rad/s"),
-            ("kt", "m/s"),
-            ("hPa", "Pa"),
-            ("lbf", "N"),
-            ("degC", "K"),
-            ("%", "-"),
-            ("", "-"),
-            ("rpm", "1/s"),
-        ];
-        for (recorded, unit) in expected {
-            assert_eq!(si(recorded), unit, "of {recorded}");
-            assert!(is_si(&Unit::parse(unit).unwrap()), "{unit}");
-        }
-    }
 
     #[test]
     fn only_a_unit_of_time_is_one() {

@@ -1,15 +1,20 @@
 //! Outputs of a model for parameters and a maneuver, and their sensitivities.
 //!
 //! dx/dt = f(x, u, θ), x(0) = x0(θ), y_k = g(x_k, u_k, θ), stepped once a sample by an explicit method.
-//! [`simulate`] gives y for any kind of number; [`Sensitivities`] gives y and ∂y/∂θ.
+//! [`simulate`] gives y for any kind of number; [`Sensitivities`] gives y and ∂y/∂θ. A [`Scenario`] makes a
+//! maneuver of known truth.
 
+mod input_design;
 mod method;
+mod scenario;
 mod segment;
 mod sensitivity;
 mod stepper;
 mod trajectory;
 
+pub use input_design::InputDesign;
 pub use method::{InputInterpolation, Integrator};
+pub use scenario::{Scenario, ScenarioError};
 pub use segment::{Segment, Steps};
 pub use sensitivity::{Block, Columns, Sensitivities};
 pub use trajectory::{Diverged, simulate};

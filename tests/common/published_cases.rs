@@ -22,22 +22,37 @@ pub struct Case {
 
 /// Reads a case from the directory of flight data.
 pub fn read(directory: &Path, name: &str) -> Case {
-    let text = std::fs::read_to_string(directory.join("published_cases.json")).expect("published_cases.json");
+    let text = std::fs::read_to_string(directory.join("published_cases.json"))
+        .expect("published_cases.json");
     let all: Value = serde_json::from_str(&text).expect("valid JSON");
     let cases = all["cases"].as_array().expect("cases");
-    let case = cases.iter().find(|case| case["case"] == name).unwrap_or_else(|| panic!("no case {name}"));
+    let case = cases
+        .iter()
+        .find(|case| case["case"] == name)
+        .unwrap_or_else(|| panic!("no case {name}"));
     let reference = &case["reference_results"]["gauss_newton"];
     let number = |value: &Value| value.as_f64().expect("a number");
     Case {
         name: name.to_string(),
         segments: list(&case["segments"])
-            .map(|s| (text_of(&s["file"]), [0, 1].map(|i| s["rows"][i].as_u64().expect("row") as usize)))
+            .map(|s| {
+                (
+                    text_of(&s["file"]),
+                    [0, 1].map(|i| s["rows"][i].as_u64().expect("row") as usize),
+                )
+            })
             .collect(),
         model: model(case),
         channels: channels(case),
         det_r: number(&reference["det_R"]),
         reference: list(&reference["estimates"])
-            .map(|e| (text_of(&e["name"]), number(&e["value"]), number(&e["std_dev_at_final_estimate"])))
+            .map(|e| {
+                (
+                    text_of(&e["name"]),
+                    number(&e["value"]),
+                    number(&e["std_dev_at_final_estimate"]),
+                )
+            })
             .collect(),
         variance: reference["R_diag"]
             .as_object()
@@ -58,20 +73,37 @@ fn text_of(value: &Value) -> String {
 
 /// `m^2/kg (wing area / mass)` is `m^2/kg`.
 fn unit(value: &Value) -> String {
-    value.as_str().unwrap_or("-").split(" (").next().unwrap_or("-").trim().to_string()
+    value
+        .as_str()
+        .unwrap_or("-")
+        .split(" (")
+        .next()
+        .unwrap_or("-")
+        .trim()
+        .to_string()
 }
 
 fn model(case: &Value) -> Value {
     let units = |list_of: &str| -> Map<String, Value> {
-        list(&case[list_of]).map(|q| (text_of(&q["name"]), json!({"unit": unit(&q["unit"])}))).collect()
+        list(&case[list_of])
+            .map(|q| (text_of(&q["name"]), json!({"unit": unit(&q["unit"])})))
+            .collect()
     };
     let constants: Map<String, Value> = (case["constants"].as_object().expect("constants").iter())
-        .map(|(name, value)| (name.clone(), json!({"value": value, "unit": unit(&case["constant_units"][name])})))
+        .map(|(name, value)| {
+            (
+                name.clone(),
+                json!({"value": value, "unit": unit(&case["constant_units"][name])}),
+            )
+        })
         .collect();
     let mut parameters: Map<String, Value> = list(&case["parameters"])
         .map(|p| {
             let fixed = !p["free"].as_bool().expect("free");
-            (text_of(&p["name"]), json!({"unit": unit(&p["unit"]), "start": p["start"], "fixed": fixed}))
+            (
+                text_of(&p["name"]),
+                json!({"unit": unit(&p["unit"]), "start": p["start"], "fixed": fixed}),
+            )
         })
         .collect();
     let mut states = units("states");
@@ -93,8 +125,15 @@ fn model(case: &Value) -> Value {
         .into_iter()
         .flatten()
         .map(|line| {
-            let (name, equation) = line.as_str().expect("a text").split_once('=').expect("name = equation");
-            (name.trim().to_string(), json!({"equation": equation.trim(), "unit": definition_unit(name.trim())}))
+            let (name, equation) = line
+                .as_str()
+                .expect("a text")
+                .split_once('=')
+                .expect("name = equation");
+            (
+                name.trim().to_string(),
+                json!({"equation": equation.trim(), "unit": definition_unit(name.trim())}),
+            )
         })
         .collect();
     json!({
@@ -116,5 +155,9 @@ fn definition_unit(name: &str) -> &'static str {
 fn channels(case: &Value) -> Value {
     let quantities = list(&case["inputs"]).chain(list(&case["outputs"]));
     let formula = |q: &Value| text_of(&q["from_columns"]).replace("*pi/180", "");
-    Value::Object(quantities.map(|q| (text_of(&q["name"]), json!(formula(q)))).collect())
+    Value::Object(
+        quantities
+            .map(|q| (text_of(&q["name"]), json!(formula(q))))
+            .collect(),
+    )
 }

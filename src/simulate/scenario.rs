@@ -1,0 +1,254 @@
+//! A scenario: a maneuver to be simulated, with the truth that an estimation should find.
+
+use indexmap::IndexMap;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use serde::{Deserialize, Serialize};
+
+use super::input_design::InputDesign;
+use super::{InputInterpolation, Integrator, Segment, Steps, simulate};
+use crate::flight::{Channel, Maneuver, Unit};
+use crate::model::{Model, Start};
+
+/// Everything that makes a simulated maneuver; the same scenario gives the same numbers.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scenario {
+    /// A catalog name.
+    pub model: String,
+    #[serde(default)]
+    pub description: String,
+    pub seed: u64,
+    /// Between samples, s.
+    pub step: f64,
+    /// Of the recording, s.
+    pub duration: f64,
+    /// Parameters, in their own units; those left out have the document's start value.
+    pub truth: IndexMap<String, f64>,
+    pub inputs: IndexMap<String, ScenarioInput>,
+    /// Outputs as they are recorded.
+    pub outputs: IndexMap<String, ScenarioOutput>,
+    /// Channels that the model does not make but a recording has, such as the airspeed.
+    #[serde(default)]
+    pub channels: IndexMap<String, ScenarioChannel>,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScenarioInput {
+    pub unit: String,
+    /// The deflection of the steady flight.
+    #[serde(default)]
+    pub trim: f64,
+    pub design: InputDesign,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScenarioOutput {
+    pub unit: String,
+    /// Standard deviation of white measurement noise.
+    pub noise: f64,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScenarioChannel {
+    pub unit: String,
+    pub value: f64,
+    pub noise: f64,
+}
+
+#[derive(Clone, PartialEq, Debug, thiserror::Error)]
+pub enum ScenarioError {
+    #[error("{what}: {message}")]
+    Unfit { what: String, message: String },
+}
+
+/// Integration steps between two samples: the truth is finer than what is recorded of it.
+const SUBSTEPS: usize = 10;
+
+/// Most samples of a simulated maneuver.
+const MOST_SAMPLES: f64 = 1e6;
+
+impl Scenario {
+    /// Simulates the maneuver and adds noise. Channels are in the units of the scenario.
+    ///
+    /// # Errors
+    /// Names or units that the model does not have, or a simulation that leaves the range of numbers.
+    pub fn fly(&self, model: &Model) -> Result<Maneuver, ScenarioError> {
+        let unfit = |what: &str, message: String| ScenarioError::Unfit {
+            what: what.to_string(),
+            message,
+        };
+        let samples = (self.duration / self.step).round() + 1.0;
+        if !(self.step > 0.0 && (2.0..=MOST_SAMPLES).contains(&samples)) {
+            return Err(unfit(
+                "step",
+                format!("duration over step must give 2 to {MOST_SAMPLES:e} samples"),
+            ));
+        }
+        let count = samples as usize;
+        let parameters = self.parameters(model)?;
+        let inputs = model.inputs.iter().map(|input| {
+            let design = self.inputs.get(&input.name).ok_or_else(|| {
+                unfit(
+                    &format!("inputs.{}", input.name),
+                    "the model's input is not designed here".to_string(),
+                )
+            })?;
+            let unit = unit_like(
+                &design.unit,
+                input.unit,
+                &format!("inputs.{}.unit", input.name),
+            )?;
+            let at = |k: usize| unit.to_si(design.trim + design.design.at(k as f64 * self.step));
+            Ok((0..count).map(at).collect())
+        });
+        let inputs = inputs.collect::<Result<Vec<Vec<f64>>, ScenarioError>>()?;
+        let outputs = self.simulate(model, &parameters, &inputs, count);
+        if outputs.iter().flatten().any(|y| !y.is_finite()) {
+            return Err(unfit(
+                "truth",
+                "the simulation leaves the range of numbers".to_string(),
+            ));
+        }
+
+        let mut random = ChaCha8Rng::seed_from_u64(self.seed);
+        let mut noisy = |value: f64, deviation: f64| {
+            let unit: f64 = StandardNormal.sample(&mut random);
+            value + deviation * unit
+        };
+        let mut channels = IndexMap::new();
+        for (input, values) in model.inputs.iter().zip(inputs) {
+            let unit = &self.inputs[&input.name].unit;
+            channels.insert(input.name.clone(), channel(unit, values)?);
+        }
+        for (output, values) in model.outputs.iter().zip(outputs) {
+            let what = format!("outputs.{}", output.name);
+            let Some(recorded) = self.outputs.get(&output.name) else {
+                return Err(unfit(
+                    &what,
+                    "the scenario does not say how this output is recorded".to_string(),
+                ));
+            };
+            let unit = unit_like(&recorded.unit, output.unit, &format!("{what}.unit"))?;
+            let values = values
+                .into_iter()
+                .map(|y| noisy(y, recorded.noise * unit.scale))
+                .collect();
+            channels.insert(output.name.clone(), channel(&recorded.unit, values)?);
+        }
+        for (name, recorded) in &self.channels {
+            let unit = Unit::parse(&recorded.unit)
+                .map_err(|e| unfit(&format!("channels.{name}.unit"), e.to_string()))?;
+            let values = (0..count)
+                .map(|_| unit.to_si(noisy(recorded.value, recorded.noise)))
+                .collect();
+            channels.insert(name.clone(), channel(&recorded.unit, values)?);
+        }
+        let time = (0..count).map(|k| k as f64 * self.step).collect();
+        Maneuver::new(time, channels).map_err(|error| unfit("scenario", error.to_string()))
+    }
+
+    fn parameters(&self, model: &Model) -> Result<Vec<f64>, ScenarioError> {
+        let what = |name: &str| format!("truth.{name}");
+        if let Some(name) = self
+            .truth
+            .keys()
+            .find(|name| !model.parameters.iter().any(|p| p.name == **name))
+        {
+            return Err(ScenarioError::Unfit {
+                what: what(name),
+                message: "the model has no such parameter".into(),
+            });
+        }
+        let value = |info: &crate::model::ParameterInfo| match (
+            self.truth.get(&info.name),
+            &info.document.start,
+        ) {
+            (Some(value), _) | (None, Start::Value(value)) => Ok(info.unit.to_si(*value)),
+            (None, Start::FromData(_)) => {
+                let message =
+                    "the model reads this parameter off the data: state its truth".to_string();
+                Err(ScenarioError::Unfit {
+                    what: what(&info.name),
+                    message,
+                })
+            }
+        };
+        model.parameters.iter().map(value).collect()
+    }
+
+    /// Outputs at the samples, integrated with finer steps.
+    fn simulate(
+        &self,
+        model: &Model,
+        parameters: &[f64],
+        inputs: &[Vec<f64>],
+        count: usize,
+    ) -> Vec<Vec<f64>> {
+        let fine = (count - 1) * SUBSTEPS + 1;
+        let between = |samples: &Vec<f64>| -> Vec<f64> {
+            let at = |i: usize| {
+                let (k, share) = (i / SUBSTEPS, (i % SUBSTEPS) as f64 / SUBSTEPS as f64);
+                samples[k] + share * (samples[(k + 1).min(count - 1)] - samples[k])
+            };
+            (0..fine).map(at).collect()
+        };
+        let step = self.step / SUBSTEPS as f64;
+        let segment = Segment {
+            label: String::new(),
+            time: (0..fine).map(|i| i as f64 * step).collect(),
+            steps: Steps::Even(step),
+            inputs: inputs.iter().map(between).collect(),
+            measured: Vec::new(),
+        };
+        let mut outputs = vec![Vec::with_capacity(count); model.outputs.len()];
+        simulate(
+            model,
+            Integrator::Rk4,
+            InputInterpolation::Linear,
+            &segment,
+            parameters,
+            |i, y: &[f64]| {
+                if i.is_multiple_of(SUBSTEPS) {
+                    outputs
+                        .iter_mut()
+                        .zip(y)
+                        .for_each(|(series, &y)| series.push(y));
+                }
+            },
+        );
+        outputs
+    }
+}
+
+/// A channel whose values are in SI already.
+fn channel(unit: &str, values: Vec<f64>) -> Result<Channel, ScenarioError> {
+    let parsed = Unit::parse(unit).map_err(|error| ScenarioError::Unfit {
+        what: "unit".to_string(),
+        message: error.to_string(),
+    })?;
+    Ok(Channel {
+        recorded_unit: unit.to_string(),
+        unit: parsed,
+        values,
+    })
+}
+
+fn unit_like(text: &str, like: Unit, what: &str) -> Result<Unit, ScenarioError> {
+    let unfit = |message: String| ScenarioError::Unfit {
+        what: what.to_string(),
+        message,
+    };
+    let unit = Unit::parse(text).map_err(|error| unfit(error.to_string()))?;
+    if unit.dimension != like.dimension {
+        return Err(unfit(format!(
+            "{} where the model has {}",
+            unit.dimension, like.dimension
+        )));
+    }
+    Ok(unit)
+}
