@@ -66,6 +66,10 @@ impl<'p> Evaluator<'p> {
         }
     }
 
+    pub(super) fn problem(&self) -> &'p Problem {
+        self.problem
+    }
+
     /// Residuals alone.
     pub(super) fn residuals(&mut self, theta: &[f64]) -> Result<ResidualSums, LeftRange> {
         self.simulations += 1;

@@ -8,8 +8,48 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::evaluation::{ResidualSums, Sums, pair};
+use super::evaluation::{Evaluator, LeftRange, ResidualSums, Sums, pair};
 use super::options::{Noise, NoiseStructure};
+
+/// All that an iteration needs to know at a θ, but for the small solve.
+#[derive(Clone, Debug)]
+pub struct NormalEquations {
+    pub(super) weighting: Weighting,
+    /// The information matrix F.
+    pub information: DMatrix<f64>,
+    /// -∂J/∂θ
+    pub descent: DVector<f64>,
+    /// What the change of R with θ takes off the information matrix; where R is estimated.
+    pub(super) relaxation: Option<DMatrix<f64>>,
+}
+
+impl NormalEquations {
+    /// Simulates with sensitivities and sums up. θ holds the free unknowns, SI.
+    ///
+    /// # Errors
+    /// The simulation leaves the range of numbers.
+    pub fn at(evaluator: &mut Evaluator<'_>, theta: &[f64]) -> Result<Self, LeftRange> {
+        let sums = evaluator.sums(theta)?;
+        let problem = evaluator.problem();
+        let noise = &problem.options.noise;
+        let samples = problem.samples();
+        let weighting =
+            Weighting::new(noise, &sums.residuals, samples).ok_or(LeftRange::default())?;
+        Ok(Self {
+            information: weighting.information(&sums),
+            descent: weighting.descent(&sums),
+            relaxation: match noise {
+                Noise::Estimated { .. } => Some(weighting.relaxation(&sums, samples)),
+                Noise::Given { .. } => None,
+            },
+            weighting,
+        })
+    }
+
+    pub fn det_r(&self) -> f64 {
+        self.weighting.det()
+    }
+}
 
 /// R and what follows from it.
 #[derive(Clone, Debug)]

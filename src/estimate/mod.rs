@@ -19,6 +19,7 @@ mod unknowns;
 
 pub use evaluation::{Evaluator, LeftRange};
 pub use fit::histories;
+pub use likelihood::NormalEquations;
 pub use options::{Method, Noise, NoiseStructure, Options};
 pub use output_error::{Observer, output_error};
 pub use problem::Problem;

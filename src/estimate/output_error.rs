@@ -4,11 +4,11 @@ use std::ops::ControlFlow;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::evaluation::{Evaluator, LeftRange, Sums};
+use super::evaluation::{Evaluator, LeftRange};
 use super::fit::fits;
 use super::information::Spectrum;
-use super::likelihood::Weighting;
-use super::options::{Method, Noise};
+use super::likelihood::{NormalEquations, Weighting};
+use super::options::Method;
 use super::problem::Problem;
 use super::report::{Bound, CollinearSet, Estimate, Iteration, Outcome, ParameterEstimate};
 use super::step::{Newton, advanced, held};
@@ -185,14 +185,19 @@ impl Iterate {
         evaluator: &mut Evaluator<'_>,
         theta: Vec<f64>,
     ) -> Result<Self, LeftRange> {
-        let sums = evaluator.sums(&theta)?;
-        let noise = &problem.options.noise;
-        let weighting =
-            Weighting::new(noise, &sums.residuals, problem.samples()).ok_or(LeftRange::default())?;
-        let information = weighting.information(&sums);
-        let descent = weighting.descent(&sums);
-        let held = held(&problem.unknowns, &theta, &descent);
-        let newton = Self::newton(problem, &weighting, &information, &descent, &held, &sums);
+        let equations = NormalEquations::at(evaluator, &theta)?;
+        let held = held(&problem.unknowns, &theta, &equations.descent);
+        let newton = Newton::new(
+            &equations.information,
+            equations.relaxation.as_ref(),
+            &equations.descent,
+            &held,
+        );
+        let NormalEquations {
+            weighting,
+            information,
+            ..
+        } = equations;
         Ok(Self {
             theta,
             weighting,
@@ -200,21 +205,6 @@ impl Iterate {
             held,
             newton,
         })
-    }
-
-    fn newton(
-        problem: &Problem,
-        weighting: &Weighting,
-        information: &DMatrix<f64>,
-        descent: &DVector<f64>,
-        held: &[Option<Bound>],
-        sums: &Sums,
-    ) -> Option<Newton> {
-        let relaxation = match problem.options.noise {
-            Noise::Estimated { .. } => Some(weighting.relaxation(sums, problem.samples())),
-            Noise::Given { .. } => None,
-        };
-        Newton::new(information, relaxation.as_ref(), descent, held)
     }
 
     fn report(&self, problem: &Problem, number: usize, taken: &Taken) -> Iteration {

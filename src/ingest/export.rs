@@ -74,6 +74,32 @@ pub fn to_csv(maneuver: &Maneuver, keep: impl Fn(&str) -> bool) -> String {
     csv
 }
 
+/// The maneuver as a recorder writes it: in the recorded units, with as many digits as sensors have.
+pub fn to_csv_as_recorded(maneuver: &Maneuver) -> String {
+    let mut csv = String::from("t[s]");
+    for (name, channel) in maneuver.channels() {
+        let _ = write!(csv, ",{name}[{}]", channel.recorded_unit);
+    }
+    csv.push('\n');
+    for (k, time) in maneuver.time().iter().enumerate() {
+        let _ = write!(csv, "{}", round(*time));
+        for channel in maneuver.channels().values() {
+            let value = (channel.values[k] - channel.unit.offset) / channel.unit.scale;
+            csv.push(',');
+            if value.is_finite() {
+                let _ = write!(csv, "{}", round(value));
+            }
+        }
+        csv.push('\n');
+    }
+    csv
+}
+
+/// To six decimals, without the minus of a zero.
+fn round(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6 + 0.0
+}
+
 /// The shortest text that reads back to the same double.
 fn push_number(csv: &mut String, value: f64) {
     if value.is_nan() {

@@ -23,7 +23,7 @@ mod summary;
 mod text;
 mod units;
 
-pub use export::{to_csv, to_json};
+pub use export::{to_csv, to_csv_as_recorded, to_json};
 pub use fault::{Fault, IngestError, code};
 pub use limits::Limits;
 pub use quality::quality;

@@ -1,0 +1,140 @@
+//! A client of a Trimtab server: uploads, jobs, events, results.
+
+use std::path::Path;
+use std::time::Duration;
+
+use eventsource_stream::Eventsource;
+use futures_util::StreamExt;
+use reqwest::{RequestBuilder, Response, Url};
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+use super::Failure;
+use super::request::format_of;
+use crate::estimate::Estimate;
+use crate::ingest::Format;
+use crate::job::{Event, JobSpec};
+
+pub struct Client {
+    http: reqwest::Client,
+    server: Url,
+}
+
+/// What of a stored maneuver or job a client needs to go on.
+#[derive(Deserialize)]
+pub struct Stored {
+    pub id: String,
+}
+
+/// How often a lost event stream is taken up again before giving up, and after what pause.
+const MOST_RECONNECTS: usize = 30;
+const RECONNECT_AFTER: Duration = Duration::from_secs(1);
+
+impl Client {
+    pub fn new(server: &str) -> Result<Self, Failure> {
+        let server: Url = server.parse().map_err(|error| Failure::new(format!("'{server}' is no URL: {error}")))?;
+        let builder = reqwest::Client::builder();
+        // without TLS no certificates are needed, and a small image may have none
+        let builder = if server.scheme() == "http" { builder.tls_certs_only([]) } else { builder };
+        let http = builder.build().map_err(|error| Failure::new(format!("no HTTP client: {error}")))?;
+        Ok(Self { http, server })
+    }
+
+    pub fn url(&self, path: &str) -> Result<Url, Failure> {
+        self.server.join(path).map_err(|error| Failure::new(format!("{path}: {error}")))
+    }
+
+    /// Uploads a recording; the same one again is no harm.
+    pub async fn upload(&self, name: &str, file: &Path, bytes: Vec<u8>) -> Result<Stored, Failure> {
+        let content_type = match format_of(file) {
+            Format::Csv => "text/csv",
+            Format::Json => "application/json",
+        };
+        let mut url = self.url("/v1/maneuvers")?;
+        url.query_pairs_mut().append_pair("name", name);
+        let request = self.http.post(url).header("content-type", content_type).body(bytes);
+        json(self.send(request).await?).await
+    }
+
+    pub async fn submit(&self, spec: &JobSpec) -> Result<Stored, Failure> {
+        json(self.send(self.http.post(self.url("/v1/jobs")?).json(spec)).await?).await
+    }
+
+    pub async fn estimate(&self, job: &str) -> Result<Estimate, Failure> {
+        let url = self.url(&format!("/v1/jobs/{job}/estimate"))?;
+        json(self.send(self.http.get(url)).await?).await
+    }
+
+    pub async fn spec(&self, job: &str) -> Result<JobSpec, Failure> {
+        let url = self.url(&format!("/v1/jobs/{job}/spec"))?;
+        json(self.send(self.http.get(url)).await?).await
+    }
+
+    /// Hands every event of a job to `sink`, from the first to the last, each once, over lost connections.
+    pub async fn follow(&self, job: &str, mut sink: impl FnMut(&Event)) -> Result<(), Failure> {
+        let url = self.url(&format!("/v1/jobs/{job}/events"))?;
+        let mut seen = 0;
+        let mut failures = 0;
+        loop {
+            let request = self.http.get(url.clone()).header("accept", "text/event-stream");
+            let request = if seen > 0 { request.header("last-event-id", seen.to_string()) } else { request };
+            match request.send().await {
+                Ok(response) if response.status().is_server_error() => {}
+                Ok(response) => {
+                    let mut stream = accepted(response).await?.bytes_stream().eventsource();
+                    while let Some(Ok(message)) = stream.next().await {
+                        let event: Event = serde_json::from_str(&message.data)
+                            .map_err(|error| Failure::new(format!("an event cannot be read: {error}")))?;
+                        seen = event.seq;
+                        failures = 0;
+                        sink(&event);
+                        if event.body.is_last() {
+                            return Ok(());
+                        }
+                    }
+                }
+                Err(error) if failures == MOST_RECONNECTS => return Err(Failure::new(unreachable(&error))),
+                Err(_) => {}
+            }
+            failures += 1;
+            tokio::time::sleep(RECONNECT_AFTER).await;
+        }
+    }
+
+    async fn send(&self, request: RequestBuilder) -> Result<Response, Failure> {
+        let response = request.send().await.map_err(|error| Failure::new(unreachable(&error)))?;
+        accepted(response).await
+    }
+}
+
+fn unreachable(error: &reqwest::Error) -> String {
+    use std::error::Error;
+    let cause = std::iter::successors(error.source(), |cause| cause.source()).last();
+    let cause = cause.map_or(String::new(), |cause| format!(" ({cause})"));
+    format!("the server does not answer: {error}{cause}; start one with `trimtab serve`, or name it with --server")
+}
+
+/// The response, or what the server's problem document says.
+async fn accepted(response: Response) -> Result<Response, Failure> {
+    let status = response.status();
+    if status.is_success() {
+        return Ok(response);
+    }
+    let problem: Value = response.json().await.unwrap_or(Value::Null);
+    let faults: Vec<String> = problem["errors"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .map(|fault| {
+            let text = |key: &str| fault[key].as_str().unwrap_or("").to_string();
+            format!("{}: {}", text("pointer"), text("message"))
+        })
+        .collect();
+    let title = problem["detail"].as_str().or(problem["title"].as_str()).unwrap_or("no explanation");
+    Err(Failure::faults(&format!("the server answers {status}: {title}"), &faults))
+}
+
+async fn json<T: DeserializeOwned>(response: Response) -> Result<T, Failure> {
+    response.json().await.map_err(|error| Failure::new(format!("the server's answer cannot be read: {error}")))
+}

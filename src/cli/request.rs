@@ -1,0 +1,129 @@
+//! The options by which `fit` and `submit` describe a job: files, a model, and how they meet.
+
+use std::path::{Path, PathBuf};
+
+use indexmap::IndexMap;
+
+use super::Failure;
+use crate::estimate::{Method, Options};
+use crate::ingest::Format;
+use crate::job::{Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride};
+use crate::model::{ModelDocument, Start, catalog};
+
+#[derive(clap::Args, Debug)]
+pub struct Request {
+    /// Recordings: CSV with `name[unit]` headers, or JSON. Several are fitted together.
+    #[arg(required = true)]
+    pub files: Vec<PathBuf>,
+    /// A catalog model (short-period, lateral-directional-2, ...) or a model document (.toml, .json).
+    #[arg(long, short)]
+    pub model: String,
+    /// How a model input or output is made from recorded channels: "da=(da_right - da_left)/2".
+    #[arg(long = "channel", short, value_name = "NAME=FORMULA")]
+    channels: Vec<String>,
+    /// Another start value: "Ma=-3.5", or "alpha_0=first(alpha)".
+    #[arg(long = "start", short, value_name = "NAME=VALUE")]
+    starts: Vec<String>,
+    /// Hold a parameter at its start value.
+    #[arg(long, value_name = "NAME")]
+    fix: Vec<String>,
+    /// Estimate a parameter that the model holds.
+    #[arg(long, value_name = "NAME")]
+    free: Vec<String>,
+    /// Run recordings with gaps as one continuous time history.
+    #[arg(long)]
+    join: bool,
+    /// Gauss-Newton steps in place of Levenberg-Marquardt.
+    #[arg(long)]
+    gauss_newton: bool,
+    /// Stop when a step is shorter than this many standard errors.
+    #[arg(long, default_value_t = Options::default().tolerance)]
+    pub tolerance: f64,
+    #[arg(long, default_value_t = Options::default().max_iterations)]
+    max_iterations: usize,
+}
+
+impl Request {
+    /// The model: a name that the catalog (or the server) knows, or the document in a file.
+    pub fn model(&self) -> Result<ModelSource, Failure> {
+        let path = Path::new(&self.model);
+        let extension = path.extension().and_then(|extension| extension.to_str());
+        let document: ModelDocument = match extension {
+            Some("toml") => toml::from_str(&read_text(path)?).map_err(|e| Failure::new(format!("{}: {e}", self.model)))?,
+            Some("json") => {
+                serde_json::from_str(&read_text(path)?).map_err(|e| Failure::new(format!("{}: {e}", self.model)))?
+            }
+            _ => return Ok(ModelSource::Reference(self.model.clone())),
+        };
+        Ok(ModelSource::Document(Box::new(document)))
+    }
+
+    /// The document that `model` stands for here, without a server.
+    pub fn document(&self) -> Result<ModelDocument, Failure> {
+        match self.model()? {
+            ModelSource::Document(document) => Ok(*document),
+            ModelSource::Reference(name) => catalog::find(&name).ok_or_else(|| {
+                let known: Vec<String> = catalog::all().into_iter().map(|document| document.name).collect();
+                Failure::new(format!("there is no catalog model '{name}'; known are {}, or give a .toml file", known.join(", ")))
+            }),
+        }
+    }
+
+    /// The job, for recordings that are known by `ids`.
+    pub fn spec(&self, ids: &[String]) -> Result<JobSpec, Failure> {
+        let mut parameters: IndexMap<String, ParameterOverride> = IndexMap::new();
+        for text in &self.starts {
+            let (name, value) = pair(text, "--start")?;
+            let start = value.parse().map_or_else(|_| Start::FromData(value.to_string()), Start::Value);
+            parameters.entry(name.to_string()).or_default().start = Some(start);
+        }
+        for (names, fixed) in [(&self.fix, true), (&self.free, false)] {
+            for name in names {
+                parameters.entry(name.clone()).or_default().fixed = Some(fixed);
+            }
+        }
+        let channels = self.channels.iter().map(|text| {
+            let (name, formula) = pair(text, "--channel")?;
+            Ok((name.to_string(), formula.to_string()))
+        });
+        let labels = self.files.iter().map(|file| file.file_stem().map(|stem| stem.to_string_lossy().into_owned()));
+        let gaps = if self.join { Gaps::Join } else { Gaps::Split };
+        let usage = |(id, label): (&String, Option<String>)| ManeuverUse { id: id.clone(), label, rows: None, gaps };
+        Ok(JobSpec {
+            kind: JobKind::Estimate,
+            name: String::new(),
+            tags: Vec::new(),
+            model: self.model()?,
+            edits: Vec::new(),
+            maneuvers: ids.iter().zip(labels).map(usage).collect(),
+            channels: channels.collect::<Result<_, Failure>>()?,
+            parameters,
+            options: Options {
+                method: if self.gauss_newton { Method::GaussNewton } else { Method::LevenbergMarquardt },
+                tolerance: self.tolerance,
+                max_iterations: self.max_iterations,
+                ..Options::default()
+            },
+        })
+    }
+}
+
+/// The format of a recording, by the end of its name.
+pub fn format_of(file: &Path) -> Format {
+    if file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) { Format::Json } else { Format::Csv }
+}
+
+pub fn read_bytes(file: &Path) -> Result<Vec<u8>, Failure> {
+    std::fs::read(file).map_err(|error| Failure::new(format!("{}: {error}", file.display())))
+}
+
+fn read_text(file: &Path) -> Result<String, Failure> {
+    std::fs::read_to_string(file).map_err(|error| Failure::new(format!("{}: {error}", file.display())))
+}
+
+fn pair<'a>(text: &'a str, option: &str) -> Result<(&'a str, &'a str), Failure> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() => Ok((name.trim(), value.trim())),
+        _ => Err(Failure::new(format!("{option} '{text}' should read NAME=VALUE"))),
+    }
+}

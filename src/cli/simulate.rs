@@ -1,0 +1,36 @@
+//! `trimtab simulate`: a maneuver of known truth from a scenario.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use super::Failure;
+use crate::ingest;
+use crate::model::{Model, catalog};
+use crate::simulate::Scenario;
+
+/// Simulates a maneuver from a scenario and writes it as CSV. The same scenario gives the same file.
+#[derive(clap::Args, Debug)]
+pub struct Simulate {
+    /// The scenario, TOML: model, truth, inputs, noise. See data/elevator.toml.
+    scenario: PathBuf,
+    /// Where to write; standard output without it.
+    #[arg(long, short)]
+    output: Option<PathBuf>,
+}
+
+impl Simulate {
+    pub fn run(&self) -> Result<(), Failure> {
+        let path = self.scenario.display();
+        let text = std::fs::read_to_string(&self.scenario).map_err(|e| Failure::new(format!("{path}: {e}")))?;
+        let scenario: Scenario = toml::from_str(&text).map_err(|e| Failure::new(format!("{path}: {e}")))?;
+        let document = catalog::find(&scenario.model)
+            .ok_or_else(|| Failure::new(format!("{path}: there is no catalog model '{}'", scenario.model)))?;
+        let model = Model::compile(&document).map_err(|faults| Failure::faults(&document.name, &faults))?;
+        let maneuver = scenario.fly(&model).map_err(|e| Failure::new(format!("{path}: {e}")))?;
+        let csv = ingest::to_csv_as_recorded(&maneuver);
+        match &self.output {
+            Some(file) => std::fs::write(file, csv).map_err(|e| Failure::new(format!("{}: {e}", file.display()))),
+            None => std::io::stdout().write_all(csv.as_bytes()).map_err(|e| Failure::new(e.to_string())),
+        }
+    }
+}

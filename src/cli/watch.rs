@@ -1,0 +1,63 @@
+//! `trimtab watch`: a job of a server, followed to its end.
+
+use super::client::Client;
+use super::progress::Progress;
+use super::{Failure, table};
+use crate::estimate::Estimate;
+use crate::job::EventBody;
+
+/// Follows a job and prints its parameter table.
+#[derive(clap::Args, Debug)]
+pub struct Watch {
+    /// The job's id.
+    job: String,
+    #[arg(long, env = "TRIMTAB_SERVER", default_value = super::DEFAULT_SERVER)]
+    server: String,
+}
+
+impl Watch {
+    pub async fn run(&self) -> Result<(), Failure> {
+        let client = Client::new(&self.server)?;
+        let estimate = follow(&client, &self.job).await?;
+        println!("{}\n\n{}", table::parameters(&estimate, None), table::outputs(&estimate));
+        Ok(())
+    }
+}
+
+/// Follows a job with a progress bar; the estimate, when there is one.
+pub async fn follow(client: &Client, job: &str) -> Result<Estimate, Failure> {
+    let tolerance = client.spec(job).await?.options.tolerance;
+    let progress = Progress::new(tolerance);
+    let mut ending = None;
+    client
+        .follow(job, |event| match &event.body {
+            EventBody::Queued => progress.say("queued"),
+            EventBody::Claimed { worker, attempt: 1 } => progress.say(&format!("claimed by worker {worker}")),
+            EventBody::Claimed { worker, attempt } => {
+                progress.say(&format!("claimed by worker {worker}, attempt {attempt}"));
+            }
+            EventBody::Released { reason } => progress.say(&format!("given back to the queue: {reason}")),
+            EventBody::Prepared(prepared) => {
+                let (samples, unknowns) = (prepared.samples, prepared.parameters.len());
+                progress.say(&format!("{samples} samples, {unknowns} unknowns"));
+                for finding in &prepared.findings {
+                    progress.say(&format!("note: {}; {}", finding.message, finding.remedy));
+                }
+            }
+            EventBody::Iteration(iteration) => progress.iteration(iteration),
+            EventBody::CancelRequested => progress.say("asked to stop"),
+            EventBody::Succeeded { reason, .. } => {
+                progress.finish(reason);
+                ending = Some(Ok(()));
+            }
+            EventBody::Cancelled { has_result: true } => {
+                progress.finish("cancelled; the best iterate is kept");
+                ending = Some(Ok(()));
+            }
+            EventBody::Cancelled { has_result: false } => ending = Some(Err(Failure::new("the job was cancelled"))),
+            EventBody::Failed { faults } => ending = Some(Err(Failure::faults("the job failed", faults))),
+        })
+        .await?;
+    ending.unwrap_or_else(|| Err(Failure::new("the job's log ended without an ending")))?;
+    client.estimate(job).await
+}
