@@ -17,6 +17,7 @@
 //! `job → estimate`, `store → job`, `work → store`, `http → store, job, ingest`. `http` and `work` meet only
 //! at the store. From `flight` to `job` all is synchronous and deterministic.
 
+pub mod dashboard;
 pub mod estimate;
 pub mod flight;
 pub mod ingest;

@@ -4,7 +4,7 @@ use comfy_table::presets::UTF8_HORIZONTAL_ONLY;
 use comfy_table::{CellAlignment, Table};
 use indexmap::IndexMap;
 
-use crate::estimate::{Bound, Estimate, ParameterEstimate};
+use crate::estimate::{Estimate, ParameterEstimate, five_digits as number};
 
 /// The parameter table; beside the truth where that is known.
 pub fn parameters(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) -> String {
@@ -28,7 +28,7 @@ pub fn parameters(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) ->
                 None => row.extend([String::new(), String::new()]),
             }
         }
-        row.push(remark(parameter).to_string());
+        row.push(parameter.remark().to_string());
         row
     });
     let mut table = Table::new();
@@ -66,16 +66,6 @@ fn unit_of(parameter: &ParameterEstimate) -> String {
     if parameter.unit.is_empty() { "-".to_string() } else { parameter.unit.clone() }
 }
 
-fn remark(parameter: &ParameterEstimate) -> &'static str {
-    match (parameter.fixed, parameter.at_bound, parameter.standard_error) {
-        (true, ..) => "fixed",
-        (_, Some(Bound::Lower), _) => "at its lower bound",
-        (_, Some(Bound::Upper), _) => "at its upper bound",
-        (_, _, None) => "not determined by the data",
-        _ => "",
-    }
-}
-
 fn off_by(parameter: &ParameterEstimate, truth: f64) -> String {
     match parameter.standard_error {
         Some(error) if error > 0.0 => format!("{:.1} s.e.", (parameter.estimate - truth).abs() / error),
@@ -86,29 +76,4 @@ fn off_by(parameter: &ParameterEstimate, truth: f64) -> String {
 fn percent(error: f64, estimate: f64) -> String {
     let share = 100.0 * error / estimate.abs();
     if share.is_finite() && share < 1000.0 { format!("{share:.1}") } else { String::new() }
-}
-
-/// Five digits, as a decimal where that is readable.
-fn number(value: f64) -> String {
-    let size = value.abs();
-    if value == 0.0 {
-        "0".to_string()
-    } else if (1e-3..1e5).contains(&size) {
-        let digits = (4 - size.log10().floor() as i32).max(0) as usize;
-        format!("{value:.digits$}")
-    } else {
-        format!("{value:.4e}")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_have_five_digits() {
-        for (value, text) in [(-4.917_632, "-4.9176"), (0.020_015_48, "0.020015"), (130.0, "130.00"), (1.5e-9, "1.5000e-9"), (0.0, "0")] {
-            assert_eq!(number(value), text);
-        }
-    }
 }

@@ -25,6 +25,6 @@ pub use output_error::{Observer, output_error};
 pub use problem::Problem;
 pub use report::{
     Bound, CollinearSet, Estimate, Iteration, Outcome, OutputFit, OutputSeries, ParameterEstimate,
-    Series, TimeHistory,
+    Series, TimeHistory, five_digits,
 };
 pub use unknowns::{Unknown, Unknowns};

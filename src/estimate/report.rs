@@ -165,3 +165,48 @@ pub struct OutputSeries {
     /// measured - model
     pub residual: Vec<f64>,
 }
+
+impl ParameterEstimate {
+    /// What a reader of the table should know about this row, in words; mostly nothing.
+    pub fn remark(&self) -> &'static str {
+        match (self.fixed, self.at_bound, self.standard_error) {
+            (true, ..) => "fixed",
+            (_, Some(Bound::Lower), _) => "at its lower bound",
+            (_, Some(Bound::Upper), _) => "at its upper bound",
+            (_, _, None) => "not determined by the data",
+            _ => "",
+        }
+    }
+}
+
+/// A number for a table: five digits, as a decimal where that is readable.
+pub fn five_digits(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 {
+        "0".to_string()
+    } else if (1e-3..1e5).contains(&size) {
+        let digits = (4 - size.log10().floor() as i32).max(0) as usize;
+        format!("{value:.digits$}")
+    } else {
+        format!("{value:.4e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_five_digits() {
+        let cases = [
+            (-4.917_632, "-4.9176"),
+            (0.020_015_48, "0.020015"),
+            (130.0, "130.00"),
+            (1.5e-9, "1.5000e-9"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(five_digits(value), text);
+        }
+        assert_eq!(five_digits(0.0), "0");
+    }
+}

@@ -1,0 +1,201 @@
+//! Time histories as a picture: measured against model, and the residual below, for each output.
+
+use plotters::prelude::*;
+
+use super::style::{MEASURED, MODEL};
+use crate::estimate::{OutputSeries, TimeHistory};
+
+const WIDTH: u32 = 900;
+/// Height of one output's panel, residual included.
+const PANEL: u32 = 230;
+const RESIDUAL: u32 = 80;
+
+/// Points drawn of a series; of more, the least and the greatest of each bucket are kept.
+const MOST_POINTS: usize = 1_600;
+
+/// One segment as SVG; angles in degrees, as people expect them.
+///
+/// # Errors
+/// The drawing library's words; none is known for finite numbers.
+pub fn history_svg(history: &TimeHistory) -> Result<String, String> {
+    let mut svg = String::new();
+    {
+        let height = PANEL * history.outputs.len().max(1) as u32;
+        let area = SVGBackend::with_string(&mut svg, (WIDTH, height)).into_drawing_area();
+        area.fill(&WHITE).map_err(|error| error.to_string())?;
+        let panels = area.split_evenly((history.outputs.len().max(1), 1));
+        for (output, panel) in history.outputs.iter().zip(&panels) {
+            let (above, below) = panel.split_vertically(PANEL - RESIDUAL);
+            draw(&history.time, output, &above, &below)?;
+        }
+        area.present().map_err(|error| error.to_string())?;
+    }
+    Ok(svg)
+}
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
+
+fn draw(
+    time: &[f64],
+    output: &OutputSeries,
+    above: &Area<'_>,
+    below: &Area<'_>,
+) -> Result<(), String> {
+    let (scale, unit) = shown_in(&output.unit);
+    let measured = points(time, &output.measured, scale);
+    let model = points(time, &output.model, scale);
+    let residual = points(time, &output.residual, scale);
+    let label = format!("{} [{unit}]", output.name);
+
+    let range = range_of(measured.iter().chain(&model));
+    let mut chart = axes(above, time, range)?;
+    let mut mesh = chart.configure_mesh();
+    mesh.light_line_style(TRANSPARENT)
+        .bold_line_style(BLACK.mix(0.12))
+        .x_labels(0)
+        .y_labels(5);
+    mesh.y_desc(label)
+        .label_style(("sans-serif", 13))
+        .draw()
+        .map_err(|error| error.to_string())?;
+    chart
+        .draw_series(
+            measured
+                .iter()
+                .map(|&point| Circle::new(point, 1, MEASURED.filled())),
+        )
+        .map_err(|error| error.to_string())?
+        .label("measured")
+        .legend(|(x, y)| Circle::new((x + 8, y), 3, MEASURED.filled()));
+    chart
+        .draw_series(LineSeries::new(model, MODEL.stroke_width(2)))
+        .map_err(|error| error.to_string())?
+        .label("model")
+        .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], MODEL.stroke_width(2)));
+    let mut legend = chart.configure_series_labels();
+    legend
+        .position(SeriesLabelPosition::UpperRight)
+        .background_style(WHITE.mix(0.8))
+        .label_font(("sans-serif", 12));
+    legend.draw().map_err(|error| error.to_string())?;
+
+    let mut chart = axes(below, time, range_of(residual.iter()))?;
+    let mut mesh = chart.configure_mesh();
+    mesh.light_line_style(TRANSPARENT)
+        .bold_line_style(BLACK.mix(0.12))
+        .y_labels(3);
+    mesh.x_desc("t [s]")
+        .y_desc("residual")
+        .label_style(("sans-serif", 12))
+        .draw()
+        .map_err(|error| error.to_string())?;
+    chart
+        .draw_series(LineSeries::new(residual, MEASURED.stroke_width(1)))
+        .map_err(|error| error.to_string())?;
+    Ok(())
+}
+
+type Chart<'a, 'b> = ChartContext<
+    'a,
+    SVGBackend<'b>,
+    Cartesian2d<plotters::coord::types::RangedCoordf64, plotters::coord::types::RangedCoordf64>,
+>;
+
+fn axes<'a, 'b>(
+    area: &'a Area<'b>,
+    time: &[f64],
+    (low, high): (f64, f64),
+) -> Result<Chart<'a, 'b>, String> {
+    let (first, last) = (
+        time.first().copied().unwrap_or(0.0),
+        time.last().copied().unwrap_or(1.0),
+    );
+    ChartBuilder::on(area)
+        .margin(6)
+        .x_label_area_size(26)
+        .y_label_area_size(64)
+        .build_cartesian_2d(first..last.max(first + 1e-9), low..high)
+        .map_err(|error| error.to_string())
+}
+
+/// How a quantity is shown: degrees for radians.
+fn shown_in(unit: &str) -> (f64, String) {
+    if unit == "rad" || unit.starts_with("rad/") {
+        (1.0_f64.to_degrees(), unit.replacen("rad", "deg", 1))
+    } else {
+        (1.0, unit.to_string())
+    }
+}
+
+fn points(time: &[f64], values: &[f64], scale: f64) -> Vec<(f64, f64)> {
+    let all: Vec<(f64, f64)> = time
+        .iter()
+        .zip(values)
+        .filter(|(_, v)| v.is_finite())
+        .map(|(&t, &v)| (t, v * scale))
+        .collect();
+    if all.len() <= MOST_POINTS {
+        return all;
+    }
+    let bucket = all.len().div_ceil(MOST_POINTS / 2);
+    let extremes = |bucket: &[(f64, f64)]| {
+        let by_value = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
+        let mut both: Vec<(f64, f64)> = bucket
+            .iter()
+            .min_by(by_value)
+            .into_iter()
+            .chain(bucket.iter().max_by(by_value))
+            .copied()
+            .collect();
+        both.sort_by(|a, b| a.0.total_cmp(&b.0));
+        both
+    };
+    all.chunks(bucket).flat_map(extremes).collect()
+}
+
+/// From the least to the greatest value, with some room, never empty.
+fn range_of<'a>(points: impl Iterator<Item = &'a (f64, f64)>) -> (f64, f64) {
+    let (low, high) = points.fold(
+        (f64::INFINITY, f64::NEG_INFINITY),
+        |(low, high), &(_, v)| (low.min(v), high.max(v)),
+    );
+    if low > high {
+        return (-1.0, 1.0);
+    }
+    let room = (0.08 * (high - low)).max(1e-9 + 1e-6 * high.abs());
+    (low - room, high + room)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_series_keep_their_extremes() {
+        let time: Vec<f64> = (0..100_000).map(f64::from).collect();
+        let mut values = vec![0.0; time.len()];
+        values[54_321] = 7.0;
+        values[12_345] = -3.0;
+        let drawn = points(&time, &values, 1.0);
+        assert!(drawn.len() <= MOST_POINTS);
+        assert!(drawn.contains(&(54_321.0, 7.0)) && drawn.contains(&(12_345.0, -3.0)));
+    }
+
+    #[test]
+    fn angles_are_shown_in_degrees() {
+        let history = TimeHistory {
+            segment: "1".into(),
+            time: vec![0.0, 1.0],
+            inputs: vec![],
+            outputs: vec![OutputSeries {
+                name: "alpha".into(),
+                unit: "rad".into(),
+                measured: vec![0.1, 0.2],
+                model: vec![0.1, 0.1],
+                residual: vec![0.0, 0.1],
+            }],
+        };
+        let svg = history_svg(&history).unwrap();
+        assert!(svg.starts_with("<svg") && svg.contains("alpha [deg]"));
+    }
+}
