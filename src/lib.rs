@@ -23,3 +23,4 @@ pub mod ingest;
 pub mod job;
 pub mod model;
 pub mod simulate;
+pub mod store;
