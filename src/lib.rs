@@ -24,3 +24,4 @@ pub mod job;
 pub mod model;
 pub mod simulate;
 pub mod store;
+pub mod work;
