@@ -68,6 +68,7 @@ pub fn solve(
         }
         ControlFlow::Continue(())
     });
+    let result = result.map_err(Unanswered::Refused)?;
     let parts = ResultParts::encode(&result)?;
     let (outcome, reason) = (result.estimate.outcome, result.estimate.reason);
     Ok(Answer {
