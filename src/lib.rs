@@ -17,10 +17,14 @@
 //! `job → estimate`, `store → job`, `work → store`, `http → store, job, ingest`. `http` and `work` meet only
 //! at the store. From `flight` to `job` all is synchronous and deterministic.
 
+pub mod cli;
 pub mod dashboard;
 pub mod estimate;
 pub mod flight;
+pub mod http;
 pub mod ingest;
 pub mod job;
 pub mod model;
 pub mod simulate;
+pub mod store;
+pub mod work;

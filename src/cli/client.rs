@@ -33,16 +33,26 @@ const RECONNECT_AFTER: Duration = Duration::from_secs(1);
 
 impl Client {
     pub fn new(server: &str) -> Result<Self, Failure> {
-        let server: Url = server.parse().map_err(|error| Failure::new(format!("'{server}' is no URL: {error}")))?;
+        let server: Url = server
+            .parse()
+            .map_err(|error| Failure::new(format!("'{server}' is no URL: {error}")))?;
         let builder = reqwest::Client::builder();
         // without TLS no certificates are needed, and a small image may have none
-        let builder = if server.scheme() == "http" { builder.tls_certs_only([]) } else { builder };
-        let http = builder.build().map_err(|error| Failure::new(format!("no HTTP client: {error}")))?;
+        let builder = if server.scheme() == "http" {
+            builder.tls_certs_only([])
+        } else {
+            builder
+        };
+        let http = builder
+            .build()
+            .map_err(|error| Failure::new(format!("no HTTP client: {error}")))?;
         Ok(Self { http, server })
     }
 
     pub fn url(&self, path: &str) -> Result<Url, Failure> {
-        self.server.join(path).map_err(|error| Failure::new(format!("{path}: {error}")))
+        self.server
+            .join(path)
+            .map_err(|error| Failure::new(format!("{path}: {error}")))
     }
 
     /// Uploads a recording; the same one again is no harm.
@@ -53,12 +63,20 @@ impl Client {
         };
         let mut url = self.url("/v1/maneuvers")?;
         url.query_pairs_mut().append_pair("name", name);
-        let request = self.http.post(url).header("content-type", content_type).body(bytes);
+        let request = self
+            .http
+            .post(url)
+            .header("content-type", content_type)
+            .body(bytes);
         json(self.send(request).await?).await
     }
 
     pub async fn submit(&self, spec: &JobSpec) -> Result<Stored, Failure> {
-        json(self.send(self.http.post(self.url("/v1/jobs")?).json(spec)).await?).await
+        json(
+            self.send(self.http.post(self.url("/v1/jobs")?).json(spec))
+                .await?,
+        )
+        .await
     }
 
     pub async fn estimate(&self, job: &str) -> Result<Estimate, Failure> {
@@ -77,15 +95,24 @@ impl Client {
         let mut seen = 0;
         let mut failures = 0;
         loop {
-            let request = self.http.get(url.clone()).header("accept", "text/event-stream");
-            let request = if seen > 0 { request.header("last-event-id", seen.to_string()) } else { request };
+            let request = self
+                .http
+                .get(url.clone())
+                .header("accept", "text/event-stream");
+            let request = if seen > 0 {
+                request.header("last-event-id", seen.to_string())
+            } else {
+                request
+            };
             match request.send().await {
                 Ok(response) if response.status().is_server_error() => {}
                 Ok(response) => {
                     let mut stream = accepted(response).await?.bytes_stream().eventsource();
                     while let Some(Ok(message)) = stream.next().await {
-                        let event: Event = serde_json::from_str(&message.data)
-                            .map_err(|error| Failure::new(format!("an event cannot be read: {error}")))?;
+                        let event: Event =
+                            serde_json::from_str(&message.data).map_err(|error| {
+                                Failure::new(format!("an event cannot be read: {error}"))
+                            })?;
                         seen = event.seq;
                         failures = 0;
                         sink(&event);
@@ -94,7 +121,9 @@ impl Client {
                         }
                     }
                 }
-                Err(error) if failures == MOST_RECONNECTS => return Err(Failure::new(unreachable(&error))),
+                Err(error) if failures == MOST_RECONNECTS => {
+                    return Err(Failure::new(unreachable(&error)));
+                }
                 Err(_) => {}
             }
             failures += 1;
@@ -103,16 +132,23 @@ impl Client {
     }
 
     async fn send(&self, request: RequestBuilder) -> Result<Response, Failure> {
-        let response = request.send().await.map_err(|error| Failure::new(unreachable(&error)))?;
+        let response = request
+            .send()
+            .await
+            .map_err(|error| Failure::new(unreachable(&error)))?;
         accepted(response).await
     }
 }
 
 fn unreachable(error: &reqwest::Error) -> String {
     use std::error::Error;
-    let cause = std::iter::successors(error.source(), |cause| cause.source()).last();
-    let cause = cause.map_or(String::new(), |cause| format!(" ({cause})"));
-    format!("the server does not answer: {error}{cause}; start one with `trimtab serve`, or name it with --server")
+    let mut cause: &dyn Error = error;
+    while let Some(deeper) = cause.source() {
+        cause = deeper;
+    }
+    format!(
+        "the server does not answer: {error} ({cause}); start one with `trimtab serve`, or name it with --server"
+    )
 }
 
 /// The response, or what the server's problem document says.
@@ -131,10 +167,19 @@ async fn accepted(response: Response) -> Result<Response, Failure> {
             format!("{}: {}", text("pointer"), text("message"))
         })
         .collect();
-    let title = problem["detail"].as_str().or(problem["title"].as_str()).unwrap_or("no explanation");
-    Err(Failure::faults(&format!("the server answers {status}: {title}"), &faults))
+    let title = problem["detail"]
+        .as_str()
+        .or(problem["title"].as_str())
+        .unwrap_or("no explanation");
+    Err(Failure::faults(
+        &format!("the server answers {status}: {title}"),
+        &faults,
+    ))
 }
 
 async fn json<T: DeserializeOwned>(response: Response) -> Result<T, Failure> {
-    response.json().await.map_err(|error| Failure::new(format!("the server's answer cannot be read: {error}")))
+    response
+        .json()
+        .await
+        .map_err(|error| Failure::new(format!("the server's answer cannot be read: {error}")))
 }

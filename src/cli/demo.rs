@@ -7,6 +7,7 @@ use indexmap::IndexMap;
 use serde_json::json;
 
 use super::client::Client;
+use super::serve::Local;
 use super::watch::follow;
 use super::{Failure, table};
 use crate::job::JobSpec;
@@ -49,12 +50,14 @@ const RUDDER: Bundled = Bundled {
 };
 
 /// The jobs of the demonstration; maneuvers of one job are fitted together.
-const JOBS: [(&str, &[Bundled]); 2] =
-    [("short-period", &[ELEVATOR]), ("lateral-directional-4", &[AILERON, RUDDER])];
+const JOBS: [(&str, &[Bundled]); 2] = [
+    ("short-period", &[ELEVATOR]),
+    ("lateral-directional-4", &[AILERON, RUDDER]),
+];
 
 impl Demo {
     pub async fn run(&self) -> Result<(), Failure> {
-        let server = super::serve::start_local(&self.listen, self.database.as_deref()).await?;
+        let server = Local::start(&self.listen, self.database.as_deref()).await?;
         eprintln!("server on {}", server.url);
         let client = Client::new(&server.url)?;
         for (model, maneuvers) in JOBS {
@@ -75,18 +78,26 @@ async fn fit(client: &Client, model: &str, maneuvers: &[Bundled]) -> Result<Stri
     let mut truth: IndexMap<String, f64> = IndexMap::new();
     for maneuver in maneuvers {
         let file = format!("{}.csv", maneuver.name);
-        let id = client.upload(maneuver.name, Path::new(&file), maneuver.csv.into()).await?.id;
+        let id = client
+            .upload(maneuver.name, Path::new(&file), maneuver.csv.into())
+            .await?
+            .id;
         uses.push(json!({"id": id, "label": maneuver.name}));
-        let scenario: Scenario =
-            toml::from_str(maneuver.scenario).map_err(|error| Failure::new(format!("{}: {error}", maneuver.name)))?;
+        let scenario: Scenario = toml::from_str(maneuver.scenario)
+            .map_err(|error| Failure::new(format!("{}: {error}", maneuver.name)))?;
         truth.extend(scenario.truth);
     }
     let names: Vec<&str> = maneuvers.iter().map(|maneuver| maneuver.name).collect();
     let spec = json!({"name": format!("demo: {model}"), "model": model, "maneuvers": uses});
-    let spec: JobSpec = serde_json::from_value(spec).map_err(|error| Failure::new(error.to_string()))?;
+    let spec: JobSpec =
+        serde_json::from_value(spec).map_err(|error| Failure::new(error.to_string()))?;
     println!("\n{model} on {}", names.join(" and "));
     let job = client.submit(&spec).await?.id;
     let estimate = follow(client, &job).await?;
-    println!("{}\n\n{}", table::parameters(&estimate, Some(&truth)), table::outputs(&estimate));
+    println!(
+        "{}\n\n{}",
+        table::parameters(&estimate, Some(&truth)),
+        table::outputs(&estimate)
+    );
     Ok(job)
 }

@@ -23,3 +23,9 @@ impl fmt::Display for Failure {
         f.write_str(&self.0)
     }
 }
+
+impl<E: std::error::Error> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self(error.to_string())
+    }
+}

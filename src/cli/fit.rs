@@ -42,10 +42,15 @@ impl Fit {
         .map_err(|faults| Failure::faults("the job failed", &faults))?;
         progress.finish(&result.estimate.reason);
         if self.json {
-            let text = serde_json::to_string_pretty(&result).map_err(|error| Failure::new(error.to_string()))?;
+            let text = serde_json::to_string_pretty(&result)
+                .map_err(|error| Failure::new(error.to_string()))?;
             println!("{text}");
         } else {
-            println!("{}\n\n{}", table::parameters(&result.estimate, None), table::outputs(&result.estimate));
+            println!(
+                "{}\n\n{}",
+                table::parameters(&result.estimate, None),
+                table::outputs(&result.estimate)
+            );
         }
         Ok(())
     }

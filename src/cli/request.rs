@@ -49,10 +49,10 @@ impl Request {
         let path = Path::new(&self.model);
         let extension = path.extension().and_then(|extension| extension.to_str());
         let document: ModelDocument = match extension {
-            Some("toml") => toml::from_str(&read_text(path)?).map_err(|e| Failure::new(format!("{}: {e}", self.model)))?,
-            Some("json") => {
-                serde_json::from_str(&read_text(path)?).map_err(|e| Failure::new(format!("{}: {e}", self.model)))?
-            }
+            Some("toml") => toml::from_str(&read_text(path)?)
+                .map_err(|e| Failure::new(format!("{}: {e}", self.model)))?,
+            Some("json") => serde_json::from_str(&read_text(path)?)
+                .map_err(|e| Failure::new(format!("{}: {e}", self.model)))?,
             _ => return Ok(ModelSource::Reference(self.model.clone())),
         };
         Ok(ModelSource::Document(Box::new(document)))
@@ -63,8 +63,14 @@ impl Request {
         match self.model()? {
             ModelSource::Document(document) => Ok(*document),
             ModelSource::Reference(name) => catalog::find(&name).ok_or_else(|| {
-                let known: Vec<String> = catalog::all().into_iter().map(|document| document.name).collect();
-                Failure::new(format!("there is no catalog model '{name}'; known are {}, or give a .toml file", known.join(", ")))
+                let known: Vec<String> = catalog::all()
+                    .into_iter()
+                    .map(|document| document.name)
+                    .collect();
+                Failure::new(format!(
+                    "there is no catalog model '{name}'; known are {}, or give a .toml file",
+                    known.join(", ")
+                ))
             }),
         }
     }
@@ -74,7 +80,9 @@ impl Request {
         let mut parameters: IndexMap<String, ParameterOverride> = IndexMap::new();
         for text in &self.starts {
             let (name, value) = pair(text, "--start")?;
-            let start = value.parse().map_or_else(|_| Start::FromData(value.to_string()), Start::Value);
+            let start = value
+                .parse()
+                .map_or_else(|_| Start::FromData(value.to_string()), Start::Value);
             parameters.entry(name.to_string()).or_default().start = Some(start);
         }
         for (names, fixed) in [(&self.fix, true), (&self.free, false)] {
@@ -86,9 +94,17 @@ impl Request {
             let (name, formula) = pair(text, "--channel")?;
             Ok((name.to_string(), formula.to_string()))
         });
-        let labels = self.files.iter().map(|file| file.file_stem().map(|stem| stem.to_string_lossy().into_owned()));
+        let labels = self.files.iter().map(|file| {
+            file.file_stem()
+                .map(|stem| stem.to_string_lossy().into_owned())
+        });
         let gaps = if self.join { Gaps::Join } else { Gaps::Split };
-        let usage = |(id, label): (&String, Option<String>)| ManeuverUse { id: id.clone(), label, rows: None, gaps };
+        let usage = |(id, label): (&String, Option<String>)| ManeuverUse {
+            id: id.clone(),
+            label,
+            rows: None,
+            gaps,
+        };
         Ok(JobSpec {
             kind: JobKind::Estimate,
             name: String::new(),
@@ -99,7 +115,11 @@ impl Request {
             channels: channels.collect::<Result<_, Failure>>()?,
             parameters,
             options: Options {
-                method: if self.gauss_newton { Method::GaussNewton } else { Method::LevenbergMarquardt },
+                method: if self.gauss_newton {
+                    Method::GaussNewton
+                } else {
+                    Method::LevenbergMarquardt
+                },
                 tolerance: self.tolerance,
                 max_iterations: self.max_iterations,
                 ..Options::default()
@@ -110,7 +130,14 @@ impl Request {
 
 /// The format of a recording, by the end of its name.
 pub fn format_of(file: &Path) -> Format {
-    if file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) { Format::Json } else { Format::Csv }
+    if file
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+    {
+        Format::Json
+    } else {
+        Format::Csv
+    }
 }
 
 pub fn read_bytes(file: &Path) -> Result<Vec<u8>, Failure> {
@@ -118,12 +145,15 @@ pub fn read_bytes(file: &Path) -> Result<Vec<u8>, Failure> {
 }
 
 fn read_text(file: &Path) -> Result<String, Failure> {
-    std::fs::read_to_string(file).map_err(|error| Failure::new(format!("{}: {error}", file.display())))
+    std::fs::read_to_string(file)
+        .map_err(|error| Failure::new(format!("{}: {error}", file.display())))
 }
 
 fn pair<'a>(text: &'a str, option: &str) -> Result<(&'a str, &'a str), Failure> {
     match text.split_once('=') {
         Some((name, value)) if !name.trim().is_empty() => Ok((name.trim(), value.trim())),
-        _ => Err(Failure::new(format!("{option} '{text}' should read NAME=VALUE"))),
+        _ => Err(Failure::new(format!(
+            "{option} '{text}' should read NAME=VALUE"
+        ))),
     }
 }

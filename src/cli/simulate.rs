@@ -21,16 +21,28 @@ pub struct Simulate {
 impl Simulate {
     pub fn run(&self) -> Result<(), Failure> {
         let path = self.scenario.display();
-        let text = std::fs::read_to_string(&self.scenario).map_err(|e| Failure::new(format!("{path}: {e}")))?;
-        let scenario: Scenario = toml::from_str(&text).map_err(|e| Failure::new(format!("{path}: {e}")))?;
-        let document = catalog::find(&scenario.model)
-            .ok_or_else(|| Failure::new(format!("{path}: there is no catalog model '{}'", scenario.model)))?;
-        let model = Model::compile(&document).map_err(|faults| Failure::faults(&document.name, &faults))?;
-        let maneuver = scenario.fly(&model).map_err(|e| Failure::new(format!("{path}: {e}")))?;
+        let text = std::fs::read_to_string(&self.scenario)
+            .map_err(|e| Failure::new(format!("{path}: {e}")))?;
+        let scenario: Scenario =
+            toml::from_str(&text).map_err(|e| Failure::new(format!("{path}: {e}")))?;
+        let document = catalog::find(&scenario.model).ok_or_else(|| {
+            Failure::new(format!(
+                "{path}: there is no catalog model '{}'",
+                scenario.model
+            ))
+        })?;
+        let model =
+            Model::compile(&document).map_err(|faults| Failure::faults(&document.name, &faults))?;
+        let maneuver = scenario
+            .fly(&model)
+            .map_err(|e| Failure::new(format!("{path}: {e}")))?;
         let csv = ingest::to_csv_as_recorded(&maneuver);
         match &self.output {
-            Some(file) => std::fs::write(file, csv).map_err(|e| Failure::new(format!("{}: {e}", file.display()))),
-            None => std::io::stdout().write_all(csv.as_bytes()).map_err(|e| Failure::new(e.to_string())),
+            Some(file) => std::fs::write(file, csv)
+                .map_err(|e| Failure::new(format!("{}: {e}", file.display()))),
+            None => std::io::stdout()
+                .write_all(csv.as_bytes())
+                .map_err(|e| Failure::new(e.to_string())),
         }
     }
 }

@@ -22,14 +22,20 @@ impl Submit {
         let client = Client::new(&self.server)?;
         let mut ids = Vec::new();
         for file in &self.request.files {
-            let name = file.file_stem().map_or("recording".into(), |stem| stem.to_string_lossy());
+            let name = file
+                .file_stem()
+                .map_or("recording".into(), |stem| stem.to_string_lossy());
             ids.push(client.upload(&name, file, read_bytes(file)?).await?.id);
         }
         let job = client.submit(&self.request.spec(&ids)?).await?;
         println!("{}", job.id);
         if self.watch {
             let estimate = follow(&client, &job.id).await?;
-            println!("{}\n\n{}", table::parameters(&estimate, None), table::outputs(&estimate));
+            println!(
+                "{}\n\n{}",
+                table::parameters(&estimate, None),
+                table::outputs(&estimate)
+            );
         }
         Ok(())
     }

@@ -14,7 +14,11 @@ pub fn parameters(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) ->
     }
     header.push("");
     let rows = estimate.parameters.iter().map(|parameter| {
-        let mut row = vec![label(parameter), unit_of(parameter), number(parameter.estimate)];
+        let mut row = vec![
+            label(parameter),
+            unit_of(parameter),
+            number(parameter.estimate),
+        ];
         match parameter.standard_error {
             Some(error) => {
                 row.push(number(error));
@@ -32,7 +36,10 @@ pub fn parameters(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) ->
         row
     });
     let mut table = Table::new();
-    table.load_preset(UTF8_HORIZONTAL_ONLY).set_header(header).add_rows(rows);
+    table
+        .load_style(UTF8_HORIZONTAL_ONLY)
+        .set_header(header)
+        .add_rows(rows);
     let last = table.column_count() - 1;
     for column in table.column_iter_mut().take(last).skip(2) {
         column.set_cell_alignment(CellAlignment::Right);
@@ -44,11 +51,19 @@ pub fn parameters(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) ->
 pub fn outputs(estimate: &Estimate) -> String {
     let rows = estimate.outputs.iter().map(|output| {
         let share = format!("{:.4}", output.r_squared);
-        vec![output.name.clone(), output.unit.clone(), number(output.rms), number(output.bias), share]
+        vec![
+            output.name.clone(),
+            output.unit.clone(),
+            number(output.rms),
+            number(output.bias),
+            share,
+        ]
     });
     let mut table = Table::new();
-    table.load_preset(UTF8_HORIZONTAL_ONLY);
-    table.set_header(["output", "unit", "rms residual", "mean residual", "R²"]).add_rows(rows);
+    table.load_style(UTF8_HORIZONTAL_ONLY);
+    table
+        .set_header(["output", "unit", "rms residual", "mean residual", "R²"])
+        .add_rows(rows);
     for column in table.column_iter_mut().skip(2) {
         column.set_cell_alignment(CellAlignment::Right);
     }
@@ -63,17 +78,27 @@ fn label(parameter: &ParameterEstimate) -> String {
 }
 
 fn unit_of(parameter: &ParameterEstimate) -> String {
-    if parameter.unit.is_empty() { "-".to_string() } else { parameter.unit.clone() }
+    if parameter.unit.is_empty() {
+        "-".to_string()
+    } else {
+        parameter.unit.clone()
+    }
 }
 
 fn off_by(parameter: &ParameterEstimate, truth: f64) -> String {
     match parameter.standard_error {
-        Some(error) if error > 0.0 => format!("{:.1} s.e.", (parameter.estimate - truth).abs() / error),
+        Some(error) if error > 0.0 => {
+            format!("{:.1} s.e.", (parameter.estimate - truth).abs() / error)
+        }
         _ => String::new(),
     }
 }
 
 fn percent(error: f64, estimate: f64) -> String {
     let share = 100.0 * error / estimate.abs();
-    if share.is_finite() && share < 1000.0 { format!("{share:.1}") } else { String::new() }
+    if share.is_finite() && share < 1000.0 {
+        format!("{share:.1}")
+    } else {
+        String::new()
+    }
 }

@@ -19,7 +19,11 @@ impl Watch {
     pub async fn run(&self) -> Result<(), Failure> {
         let client = Client::new(&self.server)?;
         let estimate = follow(&client, &self.job).await?;
-        println!("{}\n\n{}", table::parameters(&estimate, None), table::outputs(&estimate));
+        println!(
+            "{}\n\n{}",
+            table::parameters(&estimate, None),
+            table::outputs(&estimate)
+        );
         Ok(())
     }
 }
@@ -32,11 +36,15 @@ pub async fn follow(client: &Client, job: &str) -> Result<Estimate, Failure> {
     client
         .follow(job, |event| match &event.body {
             EventBody::Queued => progress.say("queued"),
-            EventBody::Claimed { worker, attempt: 1 } => progress.say(&format!("claimed by worker {worker}")),
+            EventBody::Claimed { worker, attempt: 1 } => {
+                progress.say(&format!("claimed by worker {worker}"))
+            }
             EventBody::Claimed { worker, attempt } => {
                 progress.say(&format!("claimed by worker {worker}, attempt {attempt}"));
             }
-            EventBody::Released { reason } => progress.say(&format!("given back to the queue: {reason}")),
+            EventBody::Released { reason } => {
+                progress.say(&format!("given back to the queue: {reason}"))
+            }
             EventBody::Prepared(prepared) => {
                 let (samples, unknowns) = (prepared.samples, prepared.parameters.len());
                 progress.say(&format!("{samples} samples, {unknowns} unknowns"));
@@ -54,8 +62,12 @@ pub async fn follow(client: &Client, job: &str) -> Result<Estimate, Failure> {
                 progress.finish("cancelled; the best iterate is kept");
                 ending = Some(Ok(()));
             }
-            EventBody::Cancelled { has_result: false } => ending = Some(Err(Failure::new("the job was cancelled"))),
-            EventBody::Failed { faults } => ending = Some(Err(Failure::faults("the job failed", faults))),
+            EventBody::Cancelled { has_result: false } => {
+                ending = Some(Err(Failure::new("the job was cancelled")))
+            }
+            EventBody::Failed { faults } => {
+                ending = Some(Err(Failure::faults("the job failed", faults)))
+            }
         })
         .await?;
     ending.unwrap_or_else(|| Err(Failure::new("the job's log ended without an ending")))?;

@@ -38,6 +38,12 @@ impl Fault {
     }
 }
 
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.pointer, self.message)
+    }
+}
+
 /// Why a recording was refused: one fault or more.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct IngestError {

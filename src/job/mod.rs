@@ -10,6 +10,6 @@ mod status;
 
 pub use event::{Event, EventBody, Prepared};
 pub use fault::Fault;
-pub use run::{JobResult, Plan, prepare, run};
+pub use run::{JobResult, MOST_MANEUVERS, Plan, prepare, run};
 pub use spec::{Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride};
 pub use status::Status;

@@ -1,7 +1,11 @@
 //! What a client asks for.
 
+use std::fmt;
+
 use indexmap::IndexMap;
-use serde::{Deserialize, Serialize};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{self, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
 use utoipa::ToSchema;
 
 use crate::estimate::Options;
@@ -47,12 +51,49 @@ pub enum JobKind {
 }
 
 /// A model by name or id, or written out.
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, PartialEq, Debug, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum ModelSource {
     /// A catalog name such as `short-period`, or the id of a stored model.
     Reference(String),
     Document(Box<ModelDocument>),
+}
+
+impl<'de> Deserialize<'de> for ModelSource {
+    /// By hand: serde's own way with untagged enums would answer a fault anywhere in a document with
+    /// "did not match any variant", without its place.
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NameOrDocument;
+
+        impl<'de> Visitor<'de> for NameOrDocument {
+            type Value = ModelSource;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "the name or id of a model, or a model document")
+            }
+
+            fn visit_str<E: de::Error>(self, name: &str) -> Result<ModelSource, E> {
+                Ok(ModelSource::Reference(name.to_string()))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<ModelSource, A::Error> {
+                let document = ModelDocument::deserialize(MapAccessDeserializer::new(map))?;
+                Ok(ModelSource::Document(Box::new(document)))
+            }
+        }
+
+        deserializer.deserialize_any(NameOrDocument)
+    }
+}
+
+impl ModelSource {
+    /// The name by which it goes.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Reference(name) => name,
+            Self::Document(document) => &document.name,
+        }
+    }
 }
 
 /// One recording and the part of it to use.

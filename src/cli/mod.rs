@@ -1,0 +1,82 @@
+//! The program's commands. Each is one clap struct, which is all the configuration it has: a setting
+//! has a flag, an environment variable, a default and a line of help.
+
+mod client;
+mod demo;
+mod failure;
+mod fit;
+mod progress;
+mod request;
+mod serve;
+mod simulate;
+mod submit;
+mod table;
+mod watch;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use failure::Failure;
+
+#[derive(Parser)]
+#[command(
+    name = "trimtab",
+    version,
+    about = "Estimates aircraft parameters from flight-test maneuvers"
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run the service: API, documentation and workers on one database file.
+    Serve(serve::Serve),
+    Demo(demo::Demo),
+    Fit(fit::Fit),
+    Submit(submit::Submit),
+    Watch(watch::Watch),
+    Simulate(simulate::Simulate),
+    /// Print the OpenAPI document of the API.
+    Openapi,
+}
+
+/// Where `submit` and `watch` look for a server: where `serve` listens.
+const DEFAULT_SERVER: &str = "http://127.0.0.1:8300";
+
+/// Runs what the command line says.
+pub fn main() -> ExitCode {
+    let done = match Cli::parse().command {
+        Command::Serve(serve) => serve.run(),
+        Command::Demo(demo) => block_on(demo.run()),
+        Command::Fit(fit) => fit.run(),
+        Command::Submit(submit) => block_on(submit.run()),
+        Command::Watch(watch) => block_on(watch.run()),
+        Command::Simulate(simulate) => simulate.run(),
+        Command::Openapi => openapi(),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("trimtab: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn block_on(command: impl Future<Output = Result<(), Failure>>) -> Result<(), Failure> {
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .enable_all()
+        .build()?;
+    runtime.block_on(command)
+}
+
+fn openapi() -> Result<(), Failure> {
+    use std::io::Write;
+    let document = crate::http::document().to_pretty_json()?;
+    // a reader that has seen enough (`| head`) is no failure
+    let _ = writeln!(std::io::stdout(), "{document}");
+    Ok(())
+}

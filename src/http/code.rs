@@ -1,0 +1,118 @@
+//! The one table of codes: what can be wrong with a request as a whole. What is wrong *inside* a
+//! recording, a model or a job is said by the faults of those rooms, under `errors`.
+
+use axum::http::StatusCode;
+
+macro_rules! codes {
+    ($($(#[doc = $meaning:literal])+ $variant:ident $name:literal $status:ident $title:literal;)+) => {
+        /// A stable word for what is wrong with a request.
+        #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+        pub enum Code {
+            $($(#[doc = $meaning])+ $variant,)+
+        }
+
+        impl Code {
+            pub const ALL: &'static [Self] = &[$(Self::$variant,)+];
+
+            /// As it stands in `code`. It never changes its meaning.
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name,)+ }
+            }
+
+            pub fn status(self) -> StatusCode {
+                match self { $(Self::$variant => StatusCode::$status,)+ }
+            }
+
+            pub fn title(self) -> &'static str {
+                match self { $(Self::$variant => $title,)+ }
+            }
+
+            /// What it means and what to do, for the documentation.
+            pub fn meaning(self) -> &'static str {
+                match self { $(Self::$variant => concat!($($meaning),+).trim_ascii(),)+ }
+            }
+        }
+    };
+}
+
+codes! {
+    /// The body is not JSON. `detail` names line and column.
+    InvalidJson "invalid_json" BAD_REQUEST "The body is not JSON";
+    /// The body is not TOML. `detail` names line and column.
+    InvalidToml "invalid_toml" BAD_REQUEST "The body is not TOML";
+    /// The body can be read, but is not what is expected here. Each entry of `errors` points to a place.
+    WrongShape "wrong_shape" UNPROCESSABLE_ENTITY "The body has another shape";
+    /// A query parameter is unknown, or has a value that cannot be read.
+    InvalidQuery "invalid_query" BAD_REQUEST "The query cannot be read";
+    /// A request header has a value that cannot be read.
+    InvalidHeader "invalid_header" BAD_REQUEST "A header cannot be read";
+    /// The cursor is none that this list has answered with. Begin the list anew without one.
+    InvalidCursor "invalid_cursor" BAD_REQUEST "The cursor cannot be read";
+    /// The path cannot be decoded as UTF-8.
+    InvalidPath "invalid_path" BAD_REQUEST "The path cannot be read";
+    /// The body ended before its announced length.
+    IncompleteBody "incomplete_body" BAD_REQUEST "The body is incomplete";
+    /// A browser sent the request on behalf of a page of another origin.
+    CrossOrigin "cross_origin" FORBIDDEN "Not for pages of other origins";
+    /// There is nothing at this path.
+    UnknownRoute "unknown_route" NOT_FOUND "There is no such route";
+    /// There is no maneuver of this id.
+    UnknownManeuver "unknown_maneuver" NOT_FOUND "There is no such maneuver";
+    /// There is no model of this id or catalog name.
+    UnknownModel "unknown_model" NOT_FOUND "There is no such model";
+    /// There is no job of this id.
+    UnknownJob "unknown_job" NOT_FOUND "There is no such job";
+    /// There is no problem of this code.
+    UnknownCode "unknown_code" NOT_FOUND "There is no such code";
+    /// The job ended without a result: `detail` says how it ended.
+    NoResult "no_result" NOT_FOUND "The job has no result";
+    /// The path is right, the method is not. The header `Allow` lists those that are.
+    MethodNotAllowed "method_not_allowed" METHOD_NOT_ALLOWED "The method is not allowed here";
+    /// None of the media types in `Accept` is offered here.
+    NotAcceptable "not_acceptable" NOT_ACCEPTABLE "Not available as this media type";
+    /// The body stopped coming in.
+    BodyTimeout "body_timeout" REQUEST_TIMEOUT "The body came in too slowly";
+    /// The job is not over yet. Follow its events, and ask again when it is.
+    NotFinished "not_finished" CONFLICT "The job is not finished";
+    /// The job is over: there is nothing to cancel.
+    AlreadyOver "already_over" CONFLICT "The job is already over";
+    /// The body is longer than the limit that `detail` names.
+    BodyTooLarge "body_too_large" PAYLOAD_TOO_LARGE "The body is too large";
+    /// The `Content-Type` is none of those that `detail` lists.
+    UnsupportedMediaType "unsupported_media_type" UNSUPPORTED_MEDIA_TYPE "The media type is not supported";
+    /// The recording cannot be a maneuver. `errors` lists all faults, each with its place.
+    InvalidManeuver "invalid_maneuver" UNPROCESSABLE_ENTITY "The recording has faults";
+    /// The model document has faults. `errors` lists all of them, each with its place.
+    InvalidModel "invalid_model" UNPROCESSABLE_ENTITY "The model has faults";
+    /// The job cannot be started. `errors` lists all faults, each with its place in the spec.
+    InvalidJob "invalid_job" UNPROCESSABLE_ENTITY "The job has faults";
+    /// The service failed: a defect of ours. Report it with the `request_id`.
+    Internal "internal" INTERNAL_SERVER_ERROR "The service failed";
+    /// The database does not answer in time. Nothing was lost that was accepted; try again.
+    StoreUnavailable "store_unavailable" SERVICE_UNAVAILABLE "The store does not answer";
+}
+
+impl Code {
+    pub fn find(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|code| code.name() == name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_distinct_and_say_what_they_mean() {
+        for (number, code) in Code::ALL.iter().enumerate() {
+            assert_eq!(Code::find(code.name()), Some(*code));
+            assert!(
+                Code::ALL[..number]
+                    .iter()
+                    .all(|other| other.name() != code.name())
+            );
+            assert!(code.status().is_client_error() || code.status().is_server_error());
+            assert!(code.meaning().ends_with('.'), "{}", code.meaning());
+        }
+    }
+}

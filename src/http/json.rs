@@ -1,0 +1,79 @@
+//! JSON bodies: what is wrong with one is said with its place.
+
+use axum::extract::{FromRequest, Request};
+use serde::de::DeserializeOwned;
+use serde_path_to_error::{Path, Segment};
+
+use super::code::Code;
+use super::problem::Problem;
+use super::{Service, body};
+use crate::job::Fault;
+
+/// A JSON body, within [`super::Config::max_json_body`].
+pub struct JsonBody<T> {
+    pub value: T,
+    /// As it was sent.
+    pub text: String,
+}
+
+impl<T: DeserializeOwned> FromRequest<Service> for JsonBody<T> {
+    type Rejection = Problem;
+
+    async fn from_request(request: Request, service: &Service) -> Result<Self, Problem> {
+        let (parts, body) = request.into_parts();
+        let media_type = body::media_type(&parts.headers);
+        if media_type != "application/json" {
+            return Err(body::unsupported(&media_type, &["application/json"]));
+        }
+        let limit = service.config.max_json_body;
+        let bytes = body::read(&parts.headers, body, limit, "--max-json-body").await?;
+        let text = text(bytes)?;
+        Ok(Self {
+            value: parse(&text)?,
+            text,
+        })
+    }
+}
+
+/// Bytes as text.
+pub fn text(bytes: Vec<u8>) -> Result<String, Problem> {
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to() + 1;
+        Problem::new(Code::InvalidJson, format!("byte {at} is not UTF-8"))
+    })
+}
+
+/// Reads JSON; a fault of shape comes with its JSON pointer.
+pub fn parse<T: DeserializeOwned>(text: &str) -> Result<T, Problem> {
+    let mut deserializer = serde_json::Deserializer::from_str(text);
+    let value = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
+        let pointer = pointer(error.path());
+        let error = error.into_inner();
+        if error.is_data() {
+            let fault = Fault::new(pointer, Code::WrongShape.name(), error.to_string());
+            Problem::of_faults(Code::WrongShape, vec![fault])
+        } else {
+            Problem::new(Code::InvalidJson, error.to_string())
+        }
+    })?;
+    deserializer
+        .end()
+        .map_err(|error| Problem::new(Code::InvalidJson, error.to_string()))?;
+    Ok(value)
+}
+
+/// The JSON pointer (RFC 6901) of a path.
+fn pointer(path: &Path) -> String {
+    let mut pointer = String::new();
+    for segment in path {
+        let segment = match segment {
+            Segment::Seq { index } => index.to_string(),
+            Segment::Map { key } => key.replace('~', "~0").replace('/', "~1"),
+            // what an enum's variant is called is no place in the document
+            Segment::Enum { .. } | Segment::Unknown => continue,
+        };
+        pointer.push('/');
+        pointer.push_str(&segment);
+    }
+    pointer
+}

@@ -1,0 +1,75 @@
+//! The API: JSON and CSV over HTTP, one file for each resource.
+//!
+//! A handler reads its request, asks the store or the core, and answers. It never waits for a job
+//! and never runs long itself: reading recordings and checking models happens on blocking threads, as
+//! many at a time as there are cores. What goes wrong is a [`problem::Problem`] with a [`code::Code`].
+
+mod body;
+pub mod code;
+mod compute;
+mod csv;
+mod decimate;
+mod events;
+mod format;
+mod health;
+mod histories;
+mod jobs;
+mod json;
+mod maneuvers;
+mod models;
+mod openapi;
+mod pages;
+pub mod problem;
+mod problems;
+mod query;
+mod results;
+mod routes;
+mod serve;
+mod submit;
+
+use std::sync::Arc;
+
+use tokio_util::sync::CancellationToken;
+
+use crate::ingest;
+use crate::store::Store;
+
+pub use openapi::document;
+pub use serve::{BindError, bind, run};
+
+/// The bounds of the API.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Config {
+    /// Bytes of an uploaded recording.
+    pub max_maneuver_body: usize,
+    /// Bytes of a job or a model.
+    pub max_json_body: usize,
+    /// What a recording may hold.
+    pub recording: ingest::Limits,
+    /// Values (samples times channels, time included) that the maneuvers of one job may hold.
+    pub max_job_values: usize,
+    /// Connections at a time; those beyond wait.
+    pub max_connections: usize,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            max_maneuver_body: 100_000_000,
+            max_json_body: 2_000_000,
+            recording: ingest::Limits::default(),
+            max_job_values: 100_000_000,
+            max_connections: 1024,
+        }
+    }
+}
+
+/// What every handler has.
+#[derive(Clone)]
+pub struct Service {
+    store: Store,
+    config: Arc<Config>,
+    compute: compute::Compute,
+    /// Ends what would not end by itself.
+    shutdown: CancellationToken,
+}

@@ -1,0 +1,53 @@
+//! `/jobs/{id}`: the page of a job, for people.
+
+use axum::Router;
+use axum::extract::State;
+use axum::response::Html;
+use axum::routing::get;
+
+use super::Service;
+use super::jobs;
+use super::problem::Problem;
+use super::query::JobId;
+use crate::dashboard::{JobView, job_page};
+use crate::job::{EventBody, JobSpec};
+use crate::store::Part;
+
+pub fn router() -> Router<Service> {
+    Router::new().route("/jobs/{id}", get(get_job_page))
+}
+
+async fn get_job_page(
+    State(service): State<Service>,
+    JobId(id): JobId,
+) -> Result<Html<String>, Problem> {
+    let job = jobs::find(&service, id).await?;
+    let estimate = match service.store.result_part(id, Part::Estimate).await? {
+        Some(json) => Some(serde_json::from_str(&json)?),
+        None => None,
+    };
+    let histories = service.store.histories(id).await?.unwrap_or_default();
+    let model = match service.store.job_spec(id).await? {
+        Some(spec) => serde_json::from_str::<JobSpec>(&spec)?
+            .model
+            .name()
+            .to_string(),
+        None => String::new(),
+    };
+    let render = move || {
+        let faults = match &job.ending {
+            Some(EventBody::Failed { faults }) => faults.as_slice(),
+            _ => &[],
+        };
+        job_page(&JobView {
+            id: &id.to_string(),
+            name: &job.name,
+            model: &model,
+            status: job.status,
+            faults,
+            estimate: estimate.as_ref(),
+            histories: &histories,
+        })
+    };
+    Ok(Html(service.compute.run(render).await?))
+}

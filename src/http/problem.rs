@@ -1,0 +1,208 @@
+//! Problems (RFC 9457), and the one place where errors of the rooms become problems.
+
+use std::any::Any;
+
+use axum::body::Body;
+use axum::extract::Request;
+use axum::http::{HeaderName, HeaderValue, StatusCode, header};
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+use serde::{Deserialize, Serialize};
+use tower_http::request_id::RequestId;
+use utoipa::ToSchema;
+
+use super::code::Code;
+use crate::ingest::IngestError;
+use crate::job::Fault;
+use crate::store::StoreError;
+
+pub const MEDIA_TYPE: &str = "application/problem+json";
+
+/// What is wrong with a request, as the client gets it: `application/problem+json`.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[schema(as = Problem)]
+pub struct ProblemDocument {
+    /// Where the code is explained.
+    #[serde(rename = "type")]
+    #[schema(example = "/v1/problems/invalid_job")]
+    pub kind: String,
+    /// The code in words.
+    #[schema(example = "The job has faults")]
+    pub title: String,
+    /// The HTTP status.
+    #[schema(example = 422)]
+    pub status: u16,
+    /// A stable word: see `/v1/problems` for all of them.
+    #[schema(example = "invalid_job")]
+    pub code: String,
+    /// What is wrong with this request, and what would put it right.
+    #[schema(
+        example = "1 fault prevents the job from starting: /maneuvers/0/id: there is no maneuver of this id; upload it first"
+    )]
+    pub detail: String,
+    /// Every place that is wrong.
+    pub errors: Vec<Fault>,
+    /// The header `x-request-id`; the service's log has it too.
+    #[schema(example = "0193518e-6b6f-7d3c-9c53-b1cbb2b7a1f4")]
+    pub request_id: String,
+}
+
+/// A problem on its way out; [`render`] makes a [`ProblemDocument`] of it.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    code: Code,
+    detail: String,
+    errors: Vec<Fault>,
+    headers: Vec<(HeaderName, HeaderValue)>,
+}
+
+impl Problem {
+    pub fn new(code: Code, detail: impl Into<String>) -> Self {
+        Self {
+            code,
+            detail: detail.into(),
+            errors: Vec::new(),
+            headers: Vec::new(),
+        }
+    }
+
+    /// A problem that consists of faults, of which there is at least one.
+    pub fn of_faults(code: Code, errors: Vec<Fault>) -> Self {
+        let first = errors.first().map(|fault| match fault.pointer.as_str() {
+            "" => fault.message.clone(),
+            pointer => format!("{pointer}: {}", fault.message),
+        });
+        let first = first.unwrap_or_default();
+        let detail = match errors.len() {
+            0 | 1 => first,
+            count => format!("{count} faults, the first: {first}"),
+        };
+        Self {
+            code,
+            detail,
+            errors,
+            headers: Vec::new(),
+        }
+    }
+
+    #[must_use]
+    pub fn with_header(mut self, name: HeaderName, value: HeaderValue) -> Self {
+        self.headers.push((name, value));
+        self
+    }
+
+    /// The fault of a single place.
+    pub fn at(code: Code, pointer: &str, message: impl Into<String>) -> Self {
+        Self::of_faults(code, vec![Fault::new(pointer, code.name(), message)])
+    }
+
+    fn document(self, request_id: String) -> ProblemDocument {
+        ProblemDocument {
+            kind: format!("/v1/problems/{}", self.code.name()),
+            title: self.code.title().to_string(),
+            status: self.code.status().as_u16(),
+            code: self.code.name().to_string(),
+            detail: self.detail,
+            errors: self.errors,
+            request_id,
+        }
+    }
+}
+
+impl From<IngestError> for Problem {
+    fn from(error: IngestError) -> Self {
+        let faults = error.into_faults().into_iter();
+        let faults = faults.map(|fault| Fault::new(fault.pointer, fault.code, fault.message));
+        Self::of_faults(Code::InvalidManeuver, faults.collect())
+    }
+}
+
+impl From<StoreError> for Problem {
+    fn from(error: StoreError) -> Self {
+        tracing::error!(%error, "store");
+        match error {
+            // the text of the others may name files and tables: that is for the log
+            StoreError::Database(sqlx::Error::PoolTimedOut | sqlx::Error::PoolClosed) => {
+                let detail = "the database is busy; try again in a few seconds";
+                let seconds = HeaderValue::from_static("5");
+                Self::new(Code::StoreUnavailable, detail).with_header(header::RETRY_AFTER, seconds)
+            }
+            _ => Self::internal(),
+        }
+    }
+}
+
+impl Problem {
+    pub fn internal() -> Self {
+        let detail =
+            "a defect of the service, not of the request; its log tells more under the request_id";
+        Self::new(Code::Internal, detail)
+    }
+
+    /// What a panic in a handler becomes. The panic itself is in the log.
+    pub fn of_panic(_: Box<dyn Any + Send>) -> Response {
+        Self::internal().into_response()
+    }
+}
+
+impl IntoResponse for Problem {
+    fn into_response(self) -> Response {
+        let mut response = self.code.status().into_response();
+        for (name, value) in &self.headers {
+            response.headers_mut().insert(name, value.clone());
+        }
+        response.extensions_mut().insert(self);
+        response
+    }
+}
+
+/// Gives every failed response its document: those that a handler answered with, and those that
+/// come from the libraries below without one.
+pub async fn render(request: Request, next: Next) -> Response {
+    let id = request.extensions().get::<RequestId>();
+    let id = id
+        .and_then(|id| id.header_value().to_str().ok())
+        .unwrap_or_default()
+        .to_string();
+    let mut response = next.run(request).await;
+    let problem = match response.extensions_mut().remove::<Problem>() {
+        Some(problem) => problem,
+        None if is_bare_failure(&response) => of_status(response.status()),
+        None => return response,
+    };
+    let document = problem.document(id);
+    let body = serde_json::to_vec(&document).unwrap_or_default();
+    let headers = response.headers_mut();
+    headers.remove(header::CONTENT_LENGTH);
+    headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(MEDIA_TYPE));
+    headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
+    *response.body_mut() = Body::from(body);
+    response
+}
+
+fn is_bare_failure(response: &Response) -> bool {
+    let status = response.status();
+    status.is_client_error() || status.is_server_error()
+}
+
+pub fn unknown_route() -> Problem {
+    Problem::new(
+        Code::UnknownRoute,
+        "there is nothing here; /docs shows what there is",
+    )
+}
+
+pub fn method_not_allowed() -> Problem {
+    Problem::new(
+        Code::MethodNotAllowed,
+        "the header Allow lists the methods of this path",
+    )
+}
+
+fn of_status(status: StatusCode) -> Problem {
+    match status {
+        StatusCode::NOT_FOUND => unknown_route(),
+        StatusCode::METHOD_NOT_ALLOWED => method_not_allowed(),
+        _ => Problem::internal(),
+    }
+}

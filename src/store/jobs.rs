@@ -1,0 +1,249 @@
+//! Jobs: accepting, listing, asking to stop. What a worker does to a job is in `lease`.
+
+use sqlx::any::AnyRow;
+use sqlx::{AssertSqlSafe, Row};
+use uuid::Uuid;
+
+use super::log::{Head, append, read_status};
+use super::page::one_more;
+use super::{BadCursor, Page, Signal, Store, StoreError};
+use crate::job::{EventBody, Status};
+
+/// What is kept of a job that was checked.
+#[derive(Clone, PartialEq, Debug)]
+pub struct NewJob {
+    pub kind: String,
+    pub name: String,
+    pub tags: Vec<String>,
+    /// JSON of the spec, as submitted.
+    pub spec: String,
+    /// JSON of the model document that the spec names or holds: what it means today it means forever.
+    pub model: String,
+}
+
+/// A job without its spec, log and result.
+#[derive(Clone, PartialEq, Debug)]
+pub struct JobRecord {
+    pub id: Uuid,
+    pub kind: String,
+    pub name: String,
+    pub tags: Vec<String>,
+    pub status: Status,
+    pub created: String,
+    pub started: Option<String>,
+    pub finished: Option<String>,
+    pub attempt: u32,
+    /// The last event of a job that is over.
+    pub ending: Option<EventBody>,
+}
+
+/// Which jobs a list shows; `None` shows all.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct JobFilter {
+    pub status: Option<Status>,
+    pub kind: Option<String>,
+    pub tag: Option<String>,
+}
+
+/// What became of the wish to stop a job.
+#[derive(Clone, PartialEq, Debug)]
+pub enum CancelReply {
+    /// It is in the log; a job that nobody works on is over at once.
+    Asked(JobRecord),
+    AlreadyOver(JobRecord),
+    Unknown,
+}
+
+const COLUMNS: &str = "j.id, j.kind, j.name, j.tags, j.status, j.created, j.started, j.finished, j.attempt, e.body AS ending \
+     FROM jobs j LEFT JOIN events e ON e.job = j.id AND e.seq = j.last_seq";
+
+fn read_job(row: &AnyRow) -> Result<JobRecord, StoreError> {
+    let id = read_id(row, "id")?;
+    let corrupt = |error| StoreError::corrupt(format!("job {id}"), error);
+    let status = read_status(row.try_get("status")?)?;
+    let ending = match row.try_get::<Option<String>, _>("ending")? {
+        Some(body) if status.is_over() => Some(serde_json::from_str(&body).map_err(corrupt)?),
+        _ => None,
+    };
+    Ok(JobRecord {
+        id,
+        kind: row.try_get("kind")?,
+        name: row.try_get("name")?,
+        tags: serde_json::from_str(row.try_get("tags")?).map_err(corrupt)?,
+        status,
+        created: row.try_get("created")?,
+        started: row.try_get("started")?,
+        finished: row.try_get("finished")?,
+        attempt: u32::try_from(row.try_get::<i64, _>("attempt")?).unwrap_or(u32::MAX),
+        ending,
+    })
+}
+
+pub(super) fn read_id(row: &AnyRow, column: &str) -> Result<Uuid, StoreError> {
+    let text: &str = row.try_get(column)?;
+    Uuid::parse_str(text).map_err(|error| StoreError::corrupt(format!("id '{text}'"), error))
+}
+
+impl Store {
+    /// Accepts a job: when this returns, it is on the disk and a worker will take it.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub async fn submit(&self, job: &NewJob) -> Result<JobRecord, StoreError> {
+        let (id, now) = (self.clock.new_id(), self.clock.now_text());
+        let tags = serde_json::Value::from(job.tags.clone()).to_string();
+        let mut tx = self.begin().await?;
+        sqlx::query(
+            "INSERT INTO jobs (id, kind, name, tags, status, created, last_seq, attempt, lost, spec, model) \
+             VALUES ($1, $2, $3, $4, $5, $6, 0, 0, 0, $7, $8)",
+        )
+        .bind(id.to_string())
+        .bind(&job.kind)
+        .bind(&job.name)
+        .bind(tags)
+        .bind(Status::Queued.name())
+        .bind(&now)
+        .bind(&job.spec)
+        .bind(&job.model)
+        .execute(&mut *tx)
+        .await?;
+        for tag in &job.tags {
+            sqlx::query("INSERT INTO job_tags (tag, job) VALUES ($1, $2) ON CONFLICT DO NOTHING")
+                .bind(tag)
+                .bind(id.to_string())
+                .execute(&mut *tx)
+                .await?;
+        }
+        let mut head = Head {
+            status: None,
+            last_seq: 0,
+        };
+        append(&mut tx, id, &mut head, &now, &[EventBody::Queued]).await?;
+        tx.commit().await?;
+        self.signals.send(Signal::Work);
+        Ok(JobRecord {
+            id,
+            kind: job.kind.clone(),
+            name: job.name.clone(),
+            tags: job.tags.clone(),
+            status: Status::Queued,
+            created: now,
+            started: None,
+            finished: None,
+            attempt: 0,
+            ending: None,
+        })
+    }
+
+    /// # Errors
+    /// The database does not answer.
+    pub async fn job(&self, id: Uuid) -> Result<Option<JobRecord>, StoreError> {
+        let row = sqlx::query(AssertSqlSafe(format!("SELECT {COLUMNS} WHERE j.id = $1")))
+            .bind(id.to_string())
+            .fetch_optional(&self.readers)
+            .await?;
+        row.as_ref().map(read_job).transpose()
+    }
+
+    /// JSON of the spec, as it was submitted.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn job_spec(&self, id: Uuid) -> Result<Option<String>, StoreError> {
+        let row = sqlx::query("SELECT spec FROM jobs WHERE id = $1")
+            .bind(id.to_string())
+            .fetch_optional(&self.readers)
+            .await?;
+        Ok(row.map(|row| row.try_get("spec")).transpose()?)
+    }
+
+    /// Jobs that pass the filter, newest first.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn jobs(
+        &self,
+        filter: &JobFilter,
+        cursor: Option<&str>,
+        limit: usize,
+    ) -> Result<Result<Page<JobRecord>, BadCursor>, StoreError> {
+        let before = match cursor.map(Uuid::parse_str) {
+            None => None,
+            Some(Ok(id)) => Some(id.to_string()),
+            Some(Err(_)) => return Ok(Err(BadCursor)),
+        };
+        let mut conditions = Vec::new();
+        let mut values = Vec::new();
+        let mut wanted = |condition: &str, value: Option<String>| {
+            if let Some(value) = value {
+                values.push(value);
+                conditions.push(condition.replace('?', &format!("${}", values.len())));
+            }
+        };
+        wanted("j.id < ?", before);
+        wanted(
+            "j.status = ?",
+            filter.status.map(|status| status.name().to_string()),
+        );
+        wanted("j.kind = ?", filter.kind.clone());
+        wanted(
+            "j.id IN (SELECT job FROM job_tags WHERE tag = ?)",
+            filter.tag.clone(),
+        );
+        let conditions = match conditions.len() {
+            0 => String::new(),
+            _ => format!("WHERE {}", conditions.join(" AND ")),
+        };
+        let limit_at = values.len() + 1;
+        let sql = format!("SELECT {COLUMNS} {conditions} ORDER BY j.id DESC LIMIT ${limit_at}");
+        // safe: put together from the constants above; what users wrote is bound
+        let mut query = sqlx::query(AssertSqlSafe(sql));
+        for value in values {
+            query = query.bind(value);
+        }
+        let rows = query.bind(one_more(limit)).fetch_all(&self.readers).await?;
+        let jobs = rows.iter().map(read_job).collect::<Result<_, _>>()?;
+        Ok(Ok(Page::new(jobs, limit, |job| job.id.to_string())))
+    }
+
+    /// Asks to stop a job. Asking twice is asking once.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub async fn cancel(&self, id: Uuid) -> Result<CancelReply, StoreError> {
+        let mut tx = self.begin().await?;
+        let row = sqlx::query("SELECT status, last_seq FROM jobs WHERE id = $1")
+            .bind(id.to_string())
+            .fetch_optional(&mut *tx)
+            .await?;
+        let Some(row) = row else {
+            return Ok(CancelReply::Unknown);
+        };
+        let status = read_status(row.try_get("status")?)?;
+        let mut head = Head {
+            status: Some(status),
+            last_seq: row.try_get("last_seq")?,
+        };
+        let events: &[EventBody] = match status {
+            Status::Queued => &[
+                EventBody::CancelRequested,
+                EventBody::Cancelled { has_result: false },
+            ],
+            Status::Running => &[EventBody::CancelRequested],
+            Status::Cancelling | Status::Succeeded | Status::Failed | Status::Cancelled => &[],
+        };
+        if !events.is_empty() {
+            append(&mut tx, id, &mut head, &self.clock.now_text(), events).await?;
+        }
+        tx.commit().await?;
+        if !events.is_empty() {
+            self.signals.send(Signal::Log(id));
+            self.signals.send(Signal::Cancel(id));
+        }
+        Ok(match self.job(id).await? {
+            None => CancelReply::Unknown,
+            Some(job) if status.is_over() => CancelReply::AlreadyOver(job),
+            Some(job) => CancelReply::Asked(job),
+        })
+    }
+}

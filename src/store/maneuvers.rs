@@ -1,0 +1,224 @@
+//! Maneuvers, identified by what is in them.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+use sqlx::Row;
+use sqlx::any::AnyRow;
+
+use super::page::one_more;
+use super::{BadCursor, Page, Store, StoreError, columns, off_reactor};
+use crate::flight::{Channel, Maneuver, Unit};
+
+/// A maneuver without its data.
+#[derive(Clone, PartialEq, Debug)]
+pub struct ManeuverRecord {
+    /// [`Maneuver::digest`].
+    pub id: String,
+    pub name: String,
+    pub created: String,
+    /// JSON, as it was given.
+    pub summary: String,
+}
+
+/// What an upload amounted to.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Uploaded {
+    New(ManeuverRecord),
+    /// The same content was here before, under the name it had then.
+    Known(ManeuverRecord),
+}
+
+/// What stands beside the numbers of a maneuver. The numbers are SI; `unit` tells what they measure.
+#[derive(Serialize, Deserialize)]
+struct Header {
+    channels: Vec<ChannelHeader>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct ChannelHeader {
+    name: String,
+    recorded_unit: String,
+}
+
+fn encode(maneuver: &Maneuver) -> serde_json::Result<Vec<u8>> {
+    let channels = maneuver
+        .channels()
+        .iter()
+        .map(|(name, channel)| ChannelHeader {
+            name: name.clone(),
+            recorded_unit: channel.recorded_unit.clone(),
+        });
+    let header = Header {
+        channels: channels.collect(),
+    };
+    let values = maneuver
+        .channels()
+        .values()
+        .map(|channel| channel.values.as_slice());
+    let columns: Vec<&[f64]> = std::iter::once(maneuver.time()).chain(values).collect();
+    columns::encode(&header, &columns)
+}
+
+fn decode(id: &str, bytes: &[u8]) -> Result<Maneuver, StoreError> {
+    let corrupt = |why: String| StoreError::corrupt(format!("maneuver {id}"), why);
+    let (header, columns): (Header, _) =
+        columns::decode(bytes).map_err(|error| corrupt(error.to_string()))?;
+    if columns.len() != 1 + header.channels.len() {
+        return Err(corrupt(
+            "it has another number of columns than its header says".into(),
+        ));
+    }
+    let mut columns = columns.into_iter();
+    let time = columns.next().unwrap_or_default();
+    let channels = header
+        .channels
+        .into_iter()
+        .zip(columns)
+        .map(|(header, values)| {
+            let unit =
+                Unit::parse(&header.recorded_unit).map_err(|error| corrupt(error.to_string()))?;
+            Ok((
+                header.name,
+                Channel {
+                    recorded_unit: header.recorded_unit,
+                    unit,
+                    values,
+                },
+            ))
+        });
+    let channels = channels.collect::<Result<_, StoreError>>()?;
+    Maneuver::new(time, channels).map_err(|error| corrupt(error.to_string()))
+}
+
+fn read_record(row: &AnyRow) -> Result<ManeuverRecord, StoreError> {
+    Ok(ManeuverRecord {
+        id: row.try_get("id")?,
+        name: row.try_get("name")?,
+        created: row.try_get("created")?,
+        summary: row.try_get("summary")?,
+    })
+}
+
+impl Store {
+    /// Keeps a maneuver, if it is not here already. `summary` is JSON for lists.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub async fn add_maneuver(
+        &self,
+        name: &str,
+        maneuver: Arc<Maneuver>,
+        summary: String,
+    ) -> Result<Uploaded, StoreError> {
+        let (id, content) = off_reactor("a maneuver", move || {
+            let content = encode(&maneuver).map_err(|error| StoreError::Unwritable {
+                what: "the maneuver".into(),
+                why: error.to_string(),
+            })?;
+            Ok((maneuver.digest(), content))
+        })
+        .await?;
+        let record = ManeuverRecord {
+            id,
+            name: name.to_string(),
+            created: self.clock.now_text(),
+            summary,
+        };
+        let sql = "INSERT INTO maneuvers (id, name, created, summary, content) VALUES ($1, $2, $3, $4, $5) \
+                   ON CONFLICT (id) DO NOTHING";
+        let inserted = sqlx::query(sql)
+            .bind(&record.id)
+            .bind(&record.name)
+            .bind(&record.created)
+            .bind(&record.summary)
+            .bind(content)
+            .execute(&self.writer)
+            .await?;
+        if inserted.rows_affected() > 0 {
+            return Ok(Uploaded::New(record));
+        }
+        let known = self.maneuver(&record.id).await?;
+        known
+            .map(Uploaded::Known)
+            .ok_or_else(|| StoreError::corrupt("a maneuver", "it vanished"))
+    }
+
+    /// # Errors
+    /// The database does not answer.
+    pub async fn maneuver(&self, id: &str) -> Result<Option<ManeuverRecord>, StoreError> {
+        let row = sqlx::query("SELECT id, name, created, summary FROM maneuvers WHERE id = $1")
+            .bind(id)
+            .fetch_optional(&self.readers)
+            .await?;
+        row.as_ref().map(read_record).transpose()
+    }
+
+    /// The recording itself.
+    ///
+    /// # Errors
+    /// The database does not answer, or what it keeps was damaged.
+    pub async fn maneuver_data(&self, id: &str) -> Result<Option<Maneuver>, StoreError> {
+        let row = sqlx::query("SELECT content FROM maneuvers WHERE id = $1")
+            .bind(id)
+            .fetch_optional(&self.readers)
+            .await?;
+        let Some(row) = row else { return Ok(None) };
+        let id = id.to_string();
+        let decode = move || decode(&id, row.try_get("content")?);
+        off_reactor("a maneuver", decode).await.map(Some)
+    }
+
+    /// Maneuvers, newest first.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn maneuvers(
+        &self,
+        cursor: Option<&str>,
+        limit: usize,
+    ) -> Result<Result<Page<ManeuverRecord>, BadCursor>, StoreError> {
+        const LATEST: &str = "9999-12-31T23:59:59.999Z";
+        let (created, id) = match cursor.map(|cursor| cursor.split_once('~')) {
+            None => (LATEST, ""),
+            Some(Some(position)) => position,
+            Some(None) => return Ok(Err(BadCursor)),
+        };
+        let sql = "SELECT id, name, created, summary FROM maneuvers \
+                   WHERE created < $1 OR (created = $1 AND id < $2) ORDER BY created DESC, id DESC LIMIT $3";
+        let rows = sqlx::query(sql)
+            .bind(created)
+            .bind(id)
+            .bind(one_more(limit))
+            .fetch_all(&self.readers)
+            .await?;
+        let records = rows.iter().map(read_record).collect::<Result<_, _>>()?;
+        Ok(Ok(Page::new(records, limit, |record| {
+            format!("{}~{}", record.created, record.id)
+        })))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_maneuver_keeps_its_digest() {
+        let deg = Unit::parse("deg").unwrap();
+        let channels = [
+            (
+                "q".to_string(),
+                Channel::from_recorded("deg", deg, vec![1.0, f64::NAN, 3.0]),
+            ),
+            (
+                "alpha".to_string(),
+                Channel::from_recorded("deg", deg, vec![0.1, -0.0, 1e-300]),
+            ),
+        ];
+        let maneuver = Maneuver::new(vec![0.0, 0.1, 0.2], channels.into()).unwrap();
+        let decoded = decode("x", &encode(&maneuver).unwrap()).unwrap();
+        assert_eq!(decoded.digest(), maneuver.digest());
+        assert!(decoded.channels().keys().eq(["q", "alpha"]));
+    }
+}

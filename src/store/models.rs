@@ -1,0 +1,88 @@
+//! Models that users have stored.
+
+use sqlx::Row;
+use sqlx::any::AnyRow;
+use uuid::Uuid;
+
+use super::jobs::read_id;
+use super::page::one_more;
+use super::{Page, Store, StoreError};
+use crate::model::ModelDocument;
+
+#[derive(Clone, PartialEq, Debug)]
+pub struct ModelRecord {
+    pub id: Uuid,
+    pub created: String,
+    pub document: ModelDocument,
+}
+
+fn read_model(row: &AnyRow) -> Result<ModelRecord, StoreError> {
+    let id = read_id(row, "id")?;
+    let document = serde_json::from_str(row.try_get("document")?)
+        .map_err(|error| StoreError::corrupt(format!("model {id}"), error))?;
+    Ok(ModelRecord {
+        id,
+        created: row.try_get("created")?,
+        document,
+    })
+}
+
+impl Store {
+    /// Keeps a model that was checked.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub async fn add_model(&self, document: ModelDocument) -> Result<ModelRecord, StoreError> {
+        let json = serde_json::to_string(&document).map_err(|error| StoreError::Unwritable {
+            what: "the model".into(),
+            why: error.to_string(),
+        })?;
+        let (id, created) = (self.clock.new_id(), self.clock.now_text());
+        let sql =
+            "INSERT INTO models (id, name, title, created, document) VALUES ($1, $2, $3, $4, $5)";
+        sqlx::query(sql)
+            .bind(id.to_string())
+            .bind(&document.name)
+            .bind(&document.title)
+            .bind(&created)
+            .bind(json)
+            .execute(&self.writer)
+            .await?;
+        Ok(ModelRecord {
+            id,
+            created,
+            document,
+        })
+    }
+
+    /// # Errors
+    /// The database does not answer.
+    pub async fn model(&self, id: Uuid) -> Result<Option<ModelRecord>, StoreError> {
+        let row = sqlx::query("SELECT id, created, document FROM models WHERE id = $1")
+            .bind(id.to_string())
+            .fetch_optional(&self.readers)
+            .await?;
+        row.as_ref().map(read_model).transpose()
+    }
+
+    /// Models, newest first; `before` is the last one of the page before.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn models(
+        &self,
+        before: Option<Uuid>,
+        limit: usize,
+    ) -> Result<Page<ModelRecord>, StoreError> {
+        let before = before.unwrap_or(Uuid::max()).to_string();
+        let sql =
+            "SELECT id, created, document FROM models WHERE id < $1 ORDER BY id DESC LIMIT $2";
+        let rows = sqlx::query(sql)
+            .bind(before)
+            .bind(one_more(limit))
+            .fetch_all(&self.readers)
+            .await?;
+        let models = rows.iter().map(read_model).collect::<Result<_, _>>()?;
+        Ok(Page::new(models, limit, |model| model.id.to_string()))
+    }
+}

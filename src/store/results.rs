@@ -1,0 +1,242 @@
+//! Results, kept in parts so that a reader loads only what it is asked for.
+
+use serde::{Deserialize, Serialize};
+use sqlx::{Any, Row, Transaction};
+use uuid::Uuid;
+
+use super::{Store, StoreError, columns, off_reactor};
+use crate::estimate::{OutputSeries, Series, TimeHistory};
+use crate::job::JobResult;
+
+/// A part that is kept as JSON.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Part {
+    /// [`crate::estimate::Estimate`].
+    Estimate,
+    /// [`crate::model::ModelDocument`], as estimated.
+    Model,
+}
+
+impl Part {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Estimate => "estimate",
+            Self::Model => "model",
+        }
+    }
+}
+
+/// A result, ready to be written.
+pub struct ResultParts(Vec<(String, Vec<u8>)>);
+
+impl ResultParts {
+    /// Takes as long as the histories are: not for the reactor's threads.
+    ///
+    /// # Errors
+    /// A part has no encoding.
+    pub fn encode(result: &JobResult) -> Result<Self, StoreError> {
+        let unwritable = |error: serde_json::Error| StoreError::Unwritable {
+            what: "the result".into(),
+            why: error.to_string(),
+        };
+        let mut parts = vec![
+            (
+                Part::Estimate.name().to_string(),
+                serde_json::to_vec(&result.estimate),
+            ),
+            (
+                Part::Model.name().to_string(),
+                serde_json::to_vec(&result.model),
+            ),
+        ];
+        for (number, history) in result.histories.iter().enumerate() {
+            parts.push((history_part(number), encode_history(history)));
+        }
+        let encoded = parts
+            .into_iter()
+            .map(|(name, bytes)| bytes.map(|bytes| (name, bytes)));
+        Ok(Self(encoded.collect::<Result<_, _>>().map_err(unwritable)?))
+    }
+}
+
+fn history_part(number: usize) -> String {
+    format!("history/{number:06}")
+}
+
+/// What stands beside the numbers of a [`TimeHistory`].
+#[derive(Serialize, Deserialize)]
+struct HistoryHeader {
+    segment: String,
+    inputs: Vec<SeriesHeader>,
+    outputs: Vec<SeriesHeader>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct SeriesHeader {
+    name: String,
+    unit: String,
+}
+
+impl SeriesHeader {
+    fn of(name: &str, unit: &str) -> Self {
+        Self {
+            name: name.to_string(),
+            unit: unit.to_string(),
+        }
+    }
+}
+
+/// Columns: time; each input; of each output measured, model, residual.
+fn encode_history(history: &TimeHistory) -> serde_json::Result<Vec<u8>> {
+    let header = HistoryHeader {
+        segment: history.segment.clone(),
+        inputs: history
+            .inputs
+            .iter()
+            .map(|s| SeriesHeader::of(&s.name, &s.unit))
+            .collect(),
+        outputs: history
+            .outputs
+            .iter()
+            .map(|s| SeriesHeader::of(&s.name, &s.unit))
+            .collect(),
+    };
+    let inputs = history.inputs.iter().map(|series| series.values.as_slice());
+    let outputs = history.outputs.iter().flat_map(|series| {
+        [
+            series.measured.as_slice(),
+            series.model.as_slice(),
+            series.residual.as_slice(),
+        ]
+    });
+    let all: Vec<&[f64]> = std::iter::once(history.time.as_slice())
+        .chain(inputs)
+        .chain(outputs)
+        .collect();
+    columns::encode(&header, &all)
+}
+
+fn decode_history(bytes: &[u8]) -> Result<TimeHistory, StoreError> {
+    let corrupt = |why: String| StoreError::corrupt("a time history", why);
+    let (header, columns): (HistoryHeader, _) =
+        columns::decode(bytes).map_err(|error| corrupt(error.to_string()))?;
+    if columns.len() != 1 + header.inputs.len() + 3 * header.outputs.len() {
+        return Err(corrupt(
+            "it has another number of columns than its header says".into(),
+        ));
+    }
+    let mut columns = columns.into_iter();
+    // as many as were counted
+    let mut next = || columns.next().unwrap_or_default();
+    let time = next();
+    let inputs = header.inputs.into_iter();
+    let inputs = inputs
+        .map(|s| Series {
+            name: s.name,
+            unit: s.unit,
+            values: next(),
+        })
+        .collect();
+    let outputs = header.outputs.into_iter().map(|s| OutputSeries {
+        name: s.name,
+        unit: s.unit,
+        measured: next(),
+        model: next(),
+        residual: next(),
+    });
+    let outputs = outputs.collect();
+    Ok(TimeHistory {
+        segment: header.segment,
+        time,
+        inputs,
+        outputs,
+    })
+}
+
+pub(super) async fn insert(
+    tx: &mut Transaction<'static, Any>,
+    job: Uuid,
+    result: &ResultParts,
+) -> Result<(), StoreError> {
+    for (part, body) in &result.0 {
+        sqlx::query("INSERT INTO results (job, part, body) VALUES ($1, $2, $3)")
+            .bind(job.to_string())
+            .bind(part)
+            .bind(body.as_slice())
+            .execute(&mut **tx)
+            .await?;
+    }
+    Ok(())
+}
+
+impl Store {
+    /// JSON of a part of a result; `None` where there is no result.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn result_part(&self, job: Uuid, part: Part) -> Result<Option<String>, StoreError> {
+        let row = sqlx::query("SELECT body FROM results WHERE job = $1 AND part = $2")
+            .bind(job.to_string())
+            .bind(part.name())
+            .fetch_optional(&self.readers)
+            .await?;
+        let Some(row) = row else { return Ok(None) };
+        let json = String::from_utf8(row.try_get("body")?).map_err(|error| {
+            StoreError::corrupt(format!("the {} of job {job}", part.name()), error)
+        })?;
+        Ok(Some(json))
+    }
+
+    /// The time histories of a result, segment by segment; `None` where there is no result.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn histories(&self, job: Uuid) -> Result<Option<Vec<TimeHistory>>, StoreError> {
+        let rows = sqlx::query("SELECT part, body FROM results WHERE job = $1 ORDER BY part")
+            .bind(job.to_string())
+            .fetch_all(&self.readers)
+            .await?;
+        if rows.is_empty() {
+            return Ok(None);
+        }
+        let decode = move || {
+            let mut histories = Vec::new();
+            for row in rows {
+                if row.try_get::<&str, _>("part")?.starts_with("history/") {
+                    histories.push(decode_history(row.try_get("body")?)?);
+                }
+            }
+            Ok(Some(histories))
+        };
+        off_reactor("a time history", decode).await
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_history_comes_back_as_it_was() {
+        let series = |name: &str| OutputSeries {
+            name: name.into(),
+            unit: "rad".into(),
+            measured: vec![1.0, 2.0],
+            model: vec![1.5, 2.5],
+            residual: vec![-0.5, -0.5],
+        };
+        let history = TimeHistory {
+            segment: "a".into(),
+            time: vec![0.0, 0.1],
+            inputs: vec![Series {
+                name: "de".into(),
+                unit: "rad".into(),
+                values: vec![0.0, 1.0],
+            }],
+            outputs: vec![series("q"), series("alpha")],
+        };
+        let bytes = encode_history(&history).unwrap();
+        assert_eq!(decode_history(&bytes).unwrap(), history);
+        assert!(decode_history(&bytes[..bytes.len() - 8]).is_err());
+    }
+}

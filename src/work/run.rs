@@ -1,0 +1,235 @@
+//! One claimed job, from its data to one of its ends.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::sync::mpsc;
+use tokio::time::{MissedTickBehavior, interval, sleep};
+use tokio_util::sync::CancellationToken;
+
+use super::persist::persist;
+use super::solve::{Answer, Unanswered, solve};
+use super::stop::{Reason, Stop};
+use crate::estimate::Outcome;
+use crate::flight::Maneuver;
+use crate::job::{EventBody, Fault, Status};
+use crate::store::{Claim, LEASE, ResultParts, Signal, Store, StoreError};
+
+/// How long a solver may take to notice that the process ends; the job is released in any case.
+const SHUTDOWN_GRACE: Duration = Duration::from_secs(2);
+
+/// How many events may wait to be written before the solver waits for them.
+const LOG_CAPACITY: usize = 256;
+
+/// Runs a job. However this ends, the job is over, back in the queue, or another worker's.
+pub(super) async fn run_job(store: &Store, claim: Claim, shutdown: &CancellationToken) {
+    let claim = Arc::new(claim);
+    let written = match work_on(store, &claim, shutdown).await {
+        Settled::Ended(ending) => end(store, &claim, ending).await,
+        Settled::Released => {
+            let release = || store.release(&claim, "the server is shutting down");
+            persist("release", release).await
+        }
+        Settled::Abandoned => Err(StoreError::LeaseLost),
+    };
+    match written {
+        Ok(()) => {}
+        Err(StoreError::LeaseLost) => {
+            tracing::warn!(job = %claim.job, "the job was taken over by another worker");
+        }
+        // the lease runs out, and the next worker starts the job anew
+        Err(error) => tracing::error!(job = %claim.job, %error, "the job's end was not written"),
+    }
+}
+
+enum Settled {
+    Ended(Ending),
+    Released,
+    Abandoned,
+}
+
+struct Ending {
+    event: EventBody,
+    result: Option<ResultParts>,
+}
+
+impl Ending {
+    fn without_result(event: EventBody) -> Self {
+        Self {
+            event,
+            result: None,
+        }
+    }
+}
+
+async fn work_on(store: &Store, claim: &Arc<Claim>, shutdown: &CancellationToken) -> Settled {
+    if claim.cancelling {
+        let event = EventBody::Cancelled { has_result: false };
+        return Settled::Ended(Ending::without_result(event));
+    }
+    let stop = Stop::default();
+    let run = async {
+        let maneuvers = load(store, claim).await?;
+        let (log, events) = mpsc::channel(LOG_CAPACITY);
+        let solver = tokio::task::spawn_blocking({
+            let (claim, stop) = (claim.clone(), stop.clone());
+            move || solve(&claim.spec, &claim.model, &maneuvers, &stop, &log)
+        });
+        record(store, claim, events, &stop).await;
+        solver.await?
+    };
+    tokio::select! {
+        answered = run => settle(answered, stop.asked()),
+        settled = watch_over(store, claim, &stop, shutdown) => settled,
+    }
+}
+
+/// The maneuvers of the spec, in its order.
+async fn load(store: &Store, claim: &Claim) -> Result<Vec<Arc<Maneuver>>, Unanswered> {
+    let mut maneuvers: Vec<Arc<Maneuver>> = Vec::new();
+    let uses = &claim.spec.maneuvers;
+    for (number, used) in uses.iter().enumerate() {
+        // parts of one recording are often used side by side
+        if let Some(same) = uses[..number]
+            .iter()
+            .position(|earlier| earlier.id == used.id)
+        {
+            maneuvers.push(maneuvers[same].clone());
+            continue;
+        }
+        let loaded = persist("load", || store.maneuver_data(&used.id)).await?;
+        let Some(maneuver) = loaded else {
+            let message = "there is no maneuver of this id any more; upload it again";
+            let fault = Fault::new(
+                format!("/maneuvers/{number}/id"),
+                "unknown_maneuver",
+                message,
+            );
+            return Err(Unanswered::Refused(vec![fault]));
+        };
+        maneuvers.push(Arc::new(maneuver));
+    }
+    Ok(maneuvers)
+}
+
+/// Writes what the solver tells, all that has come in the meantime in one transaction.
+async fn record(store: &Store, claim: &Claim, mut events: mpsc::Receiver<EventBody>, stop: &Stop) {
+    let mut batch = Vec::new();
+    while events.recv_many(&mut batch, LOG_CAPACITY).await > 0 {
+        if let Err(error) = persist("record", || store.record(claim, &batch)).await {
+            tracing::warn!(job = %claim.job, %error, "the job is given up: its events cannot be written");
+            stop.ask(Reason::LeaseLost);
+            return;
+        }
+        batch.clear();
+    }
+}
+
+/// Keeps the lease, passes on the wish to stop. Returns only when the solver is not to be waited for.
+async fn watch_over(
+    store: &Store,
+    claim: &Claim,
+    stop: &Stop,
+    shutdown: &CancellationToken,
+) -> Settled {
+    let mut beat = interval(LEASE / 3);
+    beat.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    // before the first heartbeat reads the status
+    let mut signals = store.listen();
+    loop {
+        tokio::select! {
+            _ = beat.tick() => match store.heartbeat(claim).await {
+                Ok(Status::Cancelling) => stop.ask(Reason::Cancel),
+                Ok(_) => {}
+                Err(StoreError::LeaseLost) => {
+                    stop.ask(Reason::LeaseLost);
+                    return Settled::Abandoned;
+                }
+                Err(error) => tracing::warn!(job = %claim.job, %error, "heartbeat"),
+            },
+            () = signals.wait_for(Signal::Cancel(claim.job), LEASE) => beat.reset_immediately(),
+            () = shutdown.cancelled() => {
+                stop.ask(Reason::Shutdown);
+                sleep(SHUTDOWN_GRACE).await;
+                return Settled::Released;
+            }
+        }
+    }
+}
+
+/// What the run's end means for the job.
+fn settle(answered: Result<Answer, Unanswered>, asked: Option<Reason>) -> Settled {
+    if asked == Some(Reason::LeaseLost) {
+        return Settled::Abandoned;
+    }
+    let stopped = |answer: &Answer| answer.outcome == Outcome::Cancelled;
+    let ending = match answered {
+        Ok(answer) if stopped(&answer) && asked == Some(Reason::Shutdown) => {
+            return Settled::Released;
+        }
+        Ok(answer) if stopped(&answer) => Ending {
+            event: EventBody::Cancelled { has_result: true },
+            result: Some(answer.parts),
+        },
+        // asked to stop or not: it finished before it noticed, and finished is finished
+        Ok(Answer {
+            outcome,
+            reason,
+            parts,
+        }) => Ending {
+            event: EventBody::Succeeded { outcome, reason },
+            result: Some(parts),
+        },
+        Err(Unanswered::Refused(faults)) => Ending::without_result(EventBody::Failed { faults }),
+        Err(Unanswered::Store(error)) => failed("store", &error),
+        Err(Unanswered::Panicked(text)) => failed("solver", &text),
+        Err(Unanswered::Dropped) => return Settled::Released,
+    };
+    Settled::Ended(ending)
+}
+
+fn failed(where_: &str, error: &dyn std::fmt::Display) -> Ending {
+    tracing::error!(%error, "the {where_} failed");
+    let message = format!(
+        "the {where_} failed, which is a defect of the service and not of the job: {error}"
+    );
+    let faults = vec![Fault::new("", "internal", message)];
+    Ending::without_result(EventBody::Failed { faults })
+}
+
+/// Writes the end of a job. A result that cannot be kept fails the job rather than being computed
+/// again and again.
+async fn end(store: &Store, claim: &Claim, ending: Ending) -> Result<(), StoreError> {
+    let Ending { event, result } = ending;
+    let finish = || store.finish(claim, event.clone(), result.as_ref());
+    match persist("finish", finish).await {
+        Err(error) if result.is_some() && !matches!(error, StoreError::LeaseLost) => {
+            let event = failed("store of the result", &error).event;
+            store.finish(claim, event, None).await
+        }
+        written => written,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn a_panic_of_the_solver_is_an_end_of_the_job() {
+        let solver = tokio::task::spawn_blocking(|| panic!("matrix of {} rows", 3));
+        let answered = solver.await.map_err(Unanswered::from);
+        let Settled::Ended(ending) = settle(answered, None) else {
+            panic!("the job must be over");
+        };
+        let EventBody::Failed { faults } = ending.event else {
+            panic!("{:?}", ending.event)
+        };
+        assert_eq!(faults[0].code, "internal");
+        assert!(
+            faults[0].message.contains("matrix of 3 rows"),
+            "{}",
+            faults[0].message
+        );
+    }
+}
