@@ -21,9 +21,9 @@ pub struct Demo {
     database: Option<String>,
     #[arg(long, default_value = "127.0.0.1:0")]
     listen: String,
-    /// End when the estimates are printed, rather than leave the server running to be looked at.
+    /// Leave the server running to be looked at, even where no terminal is attached.
     #[arg(long)]
-    once: bool,
+    stay: bool,
 }
 
 /// A maneuver that comes with Trimtab, and the scenario that made it.
@@ -59,12 +59,16 @@ impl Demo {
     pub async fn run(&self) -> Result<(), Failure> {
         let server = Local::start(&self.listen, self.database.as_deref()).await?;
         eprintln!("server on {}", server.url);
+        // nobody looks where nobody is: a script is not kept waiting, unless it asks for that
+        let stays = self.stay || std::io::stdin().is_terminal();
         let client = Client::new(&server.url)?;
         for (model, maneuvers) in JOBS {
             let job = fit(&client, model, maneuvers).await?;
-            println!("look at it: {}", client.url(&format!("/jobs/{job}"))?);
+            if stays {
+                println!("look at it: {}", client.url(&format!("/jobs/{job}"))?);
+            }
         }
-        if !self.once && std::io::stdin().is_terminal() {
+        if stays {
             println!("\nthe server stays up until you press Ctrl-C");
             let _ = tokio::signal::ctrl_c().await;
         }

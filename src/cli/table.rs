@@ -1,6 +1,6 @@
 //! Results as tables for the terminal.
 
-use comfy_table::presets::UTF8_HORIZONTAL_ONLY;
+use comfy_table::presets::UTF8_BORDERS_ONLY;
 use comfy_table::{CellAlignment, Table};
 use indexmap::IndexMap;
 
@@ -37,7 +37,7 @@ pub fn parameters(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) ->
     });
     let mut table = Table::new();
     table
-        .load_style(UTF8_HORIZONTAL_ONLY)
+        .load_style(UTF8_BORDERS_ONLY)
         .set_header(header)
         .add_rows(rows);
     let last = table.column_count() - 1;
@@ -60,7 +60,7 @@ pub fn outputs(estimate: &Estimate) -> String {
         ]
     });
     let mut table = Table::new();
-    table.load_style(UTF8_HORIZONTAL_ONLY);
+    table.load_style(UTF8_BORDERS_ONLY);
     table
         .set_header(["output", "unit", "rms residual", "mean residual", "R²"])
         .add_rows(rows);
