@@ -5,6 +5,7 @@ mod client;
 mod demo;
 mod failure;
 mod fit;
+mod model;
 mod progress;
 mod request;
 mod serve;
@@ -39,6 +40,7 @@ enum Command {
     Submit(submit::Submit),
     Watch(watch::Watch),
     Simulate(simulate::Simulate),
+    Model(model::ShowModel),
     /// Print the OpenAPI document of the API.
     Openapi,
 }
@@ -55,6 +57,7 @@ pub fn main() -> ExitCode {
         Command::Submit(submit) => block_on(submit.run()),
         Command::Watch(watch) => block_on(watch.run()),
         Command::Simulate(simulate) => simulate.run(),
+        Command::Model(model) => model.run(),
         Command::Openapi => openapi(),
     };
     match done {

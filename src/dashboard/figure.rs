@@ -112,6 +112,7 @@ fn axes<'a, 'b>(
     );
     ChartBuilder::on(area)
         .margin(6)
+        .margin_right(24)
         .x_label_area_size(26)
         .y_label_area_size(64)
         .build_cartesian_2d(first..last.max(first + 1e-9), low..high)

@@ -1,0 +1,86 @@
+//! The bundled maneuvers are what their scenarios make, and the truth can be found in them.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde_json::json;
+use trimtab::ingest::{self, Format, Limits};
+use trimtab::job::{self, JobSpec};
+use trimtab::model::{Model, catalog};
+use trimtab::simulate::Scenario;
+
+fn file(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("data")
+        .join(name)
+}
+
+fn scenario(name: &str) -> Scenario {
+    toml::from_str(&std::fs::read_to_string(file(&format!("{name}.toml"))).expect("a file"))
+        .expect("a scenario")
+}
+
+#[test]
+fn each_file_is_what_its_scenario_makes() {
+    for name in ["elevator", "aileron", "rudder"] {
+        let scenario = scenario(name);
+        let model = Model::compile(&catalog::find(&scenario.model).expect("a catalog model"))
+            .expect("a model");
+        let made = ingest::to_csv_as_recorded(&scenario.fly(&model).expect("a maneuver"));
+        let kept = std::fs::read_to_string(file(&format!("{name}.csv"))).expect("a file");
+        assert!(
+            made == kept,
+            "data/{name}.csv is not what `trimtab simulate data/{name}.toml` makes"
+        );
+    }
+}
+
+#[test]
+fn the_truth_is_within_four_standard_errors() {
+    for (model, names) in [
+        ("short-period", vec!["elevator"]),
+        ("lateral-directional-4", vec!["aileron", "rudder"]),
+    ] {
+        let maneuvers: Vec<_> = (names.iter())
+            .map(|name| std::fs::read(file(&format!("{name}.csv"))).expect("a file"))
+            .map(|bytes| {
+                Arc::new(
+                    ingest::read(&bytes, Format::Csv, &Limits::default()).expect("a recording"),
+                )
+            })
+            .collect();
+        let uses: Vec<_> = maneuvers
+            .iter()
+            .map(|maneuver| json!({"id": maneuver.digest()}))
+            .collect();
+        let spec: JobSpec =
+            serde_json::from_value(json!({"model": model, "maneuvers": uses})).expect("a spec");
+        let document = catalog::find(model).expect("a catalog model");
+        let plan = job::prepare(&spec, &document, &maneuvers)
+            .unwrap_or_else(|faults| panic!("{faults:#?}"));
+        let result = job::run(&plan, &mut |_| ControlFlow::Continue(()))
+            .unwrap_or_else(|faults| panic!("{faults:#?}"));
+        assert!(
+            result.estimate.outcome.is_minimum(),
+            "{}",
+            result.estimate.reason
+        );
+        let truth = scenario(names[0]).truth;
+        let mut compared = 0;
+        for parameter in &result.estimate.parameters {
+            if let (Some(error), Some(&truth)) =
+                (parameter.standard_error, truth.get(&parameter.name))
+            {
+                let off = (parameter.estimate - truth).abs() / error;
+                assert!(
+                    off < 4.0,
+                    "{model} {}: {off:.1} standard errors off",
+                    parameter.name
+                );
+                compared += 1;
+            }
+        }
+        assert!(compared >= 9, "only {compared} parameters compared");
+    }
+}
