@@ -61,14 +61,10 @@ fn forward(
     machinery
         .run(segment, &parameters(model), |block| {
             for (output, rows) in rows.iter_mut().enumerate() {
-                let own = columns.of_output(output);
-                for (k, row) in block
-                    .sensitivity(output)
-                    .chunks(own.len())
-                    .take(block.len)
-                    .enumerate()
-                {
-                    for (&parameter, &value) in own.iter().zip(row) {
+                for k in 0..block.len {
+                    for (&parameter, &value) in
+                        columns.of_output(output).iter().zip(block.row(output, k))
+                    {
                         rows[(block.first + k) * all.len() + parameter] = value;
                     }
                 }

@@ -10,6 +10,7 @@ mod evaluation;
 mod fit;
 mod information;
 mod likelihood;
+mod local_sums;
 mod options;
 mod output_error;
 mod problem;

@@ -4,7 +4,7 @@
 //! alone is the *prelude*, run once for each θ; the *body* runs for each sample.
 
 use super::graph::{Binary, Graph, Node, NodeId, Unary};
-use super::scalar::Scalar;
+use super::scalar::{Lanes, Scalar};
 
 /// Where the symbols of a model stand, in registers as in the graph.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -57,6 +57,8 @@ pub struct Program {
     prelude: Vec<Instruction>,
     body: Vec<Instruction>,
     results: Vec<u32>,
+    /// By result: does it change from sample to sample, or only with θ?
+    varies: Vec<bool>,
 }
 
 /// The registers of one evaluation; made once, used for every sample.
@@ -80,6 +82,7 @@ impl Program {
             prelude: Vec::new(),
             body: Vec::new(),
             results: Vec::new(),
+            varies: Vec::new(),
         };
         let mut register = vec![0_u32; graph.len()];
         let mut varies = vec![false; graph.len()];
@@ -133,6 +136,7 @@ impl Program {
             }
         }
         program.results = roots.iter().map(|&root| register[root as usize]).collect();
+        program.varies = roots.iter().map(|&root| varies[root as usize]).collect();
         program
     }
 
@@ -148,6 +152,11 @@ impl Program {
     /// Operations a sample, without those done once for each θ.
     pub fn operations(&self) -> usize {
         self.body.len()
+    }
+
+    /// Whether result `i` changes from sample to sample; if not, it stands once θ is set.
+    pub fn varies(&self, i: usize) -> bool {
+        self.varies[i]
     }
 
     /// Registers with the constants in place; parameters are still to be set.
@@ -170,6 +179,11 @@ impl Program {
     #[inline]
     pub fn run<T: Scalar>(&self, workspace: &mut Workspace<T>) {
         execute(&self.body, &mut workspace.0);
+    }
+
+    /// As [`Self::run`], with the widest vectors that the machine has; the numbers are the same.
+    pub fn run_lanes(&self, workspace: &mut Workspace<Lanes>) {
+        execute_lanes(&self.body, &mut workspace.0);
     }
 
     /// Result `i` of the last run.
@@ -215,6 +229,12 @@ fn operands(node: Node) -> impl Iterator<Item = NodeId> {
     list.into_iter().flatten()
 }
 
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
+fn execute_lanes(instructions: &[Instruction], registers: &mut [Lanes]) {
+    execute(instructions, registers);
+}
+
+#[inline(always)]
 fn execute<T: Scalar>(instructions: &[Instruction], registers: &mut [T]) {
     for instruction in instructions {
         let a = registers[instruction.a as usize];

@@ -4,17 +4,23 @@
 //! [`simulate`] gives y for any kind of number; [`Sensitivities`] gives y and ∂y/∂θ. A [`Scenario`] makes a
 //! maneuver of known truth.
 
+mod columns;
 mod input_design;
+mod linearised;
 mod method;
+mod pack;
+mod recursion;
 mod scenario;
 mod segment;
 mod sensitivity;
 mod stepper;
 mod trajectory;
 
+pub use columns::Columns;
 pub use input_design::InputDesign;
 pub use method::{InputInterpolation, Integrator};
+pub use pack::{PACK, Pack, add_scaled, packs, plus, scaled};
 pub use scenario::{Scenario, ScenarioError};
 pub use segment::{Segment, Steps};
-pub use sensitivity::{Block, Columns, Sensitivities};
+pub use sensitivity::{Block, Sensitivities};
 pub use trajectory::{Diverged, simulate};

@@ -1,0 +1,182 @@
+//! The sums of one segment, in the columns of its own sensitivities.
+
+use multiversion::multiversion;
+use nalgebra::DMatrix;
+
+use super::evaluation::{Sums, pair};
+use super::problem::Problem;
+use crate::simulate::{Block, PACK, Pack, Segment, add_scaled, packs, plus, scaled};
+
+pub(super) struct LocalSums {
+    full: bool,
+    /// By output: columns of its sensitivities.
+    widths: Vec<usize>,
+    residuals: DMatrix<f64>,
+    /// By pair of outputs (i, j): a row of packs over the columns of j for each column of i.
+    /// Where i = j only packs up to the diagonal are summed.
+    products: Vec<Vec<Pack>>,
+    /// By output i, then j: Σ S_iᵀ e_j.
+    gradients: Vec<Vec<Vec<Pack>>>,
+    /// By output: the residuals of the block.
+    block_residuals: Vec<Vec<f64>>,
+}
+
+impl LocalSums {
+    /// `full`: the noise of the outputs is correlated, so that all pairs of outputs count.
+    pub fn new(problem: &Problem, full: bool) -> Self {
+        let outputs = problem.model.outputs.len();
+        let widths: Vec<usize> = (0..outputs)
+            .map(|i| problem.columns.of_output(i).len())
+            .collect();
+        let pairs = (0..outputs).flat_map(|i| (if full { 0 } else { i }..=i).map(move |j| (i, j)));
+        let products = pairs
+            .map(|(i, j)| vec![Pack::default(); widths[i] * packs(widths[j])])
+            .collect();
+        let columns = if full { outputs } else { 1 };
+        let gradients = widths
+            .iter()
+            .map(|&width| vec![vec![Pack::default(); packs(width)]; columns])
+            .collect();
+        let block_residuals = vec![Vec::new(); outputs];
+        Self {
+            full,
+            widths,
+            residuals: DMatrix::zeros(outputs, outputs),
+            products,
+            gradients,
+            block_residuals,
+        }
+    }
+
+    pub fn add(&mut self, block: &Block<'_>, segment: &Segment) {
+        let outputs = self.widths.len();
+        for (i, residuals) in self.block_residuals.iter_mut().enumerate() {
+            let measured = &segment.measured[i][block.first..block.first + block.len];
+            residuals.clear();
+            residuals.extend(measured.iter().zip(block.output(i)).map(|(z, y)| z - y));
+        }
+        let residuals = &self.block_residuals;
+        for i in 0..outputs {
+            let rows = block.packed_rows(i);
+            for j in if self.full { 0..i } else { i..i } {
+                self.residuals[(i, j)] += dot(&residuals[i], &residuals[j]);
+                let to = &mut self.products[pair(i, j, true)];
+                add_cross_products(
+                    to,
+                    rows,
+                    self.widths[i],
+                    block.packed_rows(j),
+                    packs(self.widths[j]),
+                );
+            }
+            self.residuals[(i, i)] += dot(&residuals[i], &residuals[i]);
+            add_products(
+                &mut self.products[pair(i, i, self.full)],
+                rows,
+                self.widths[i],
+            );
+            for (j, gradient) in self.gradients[i].iter_mut().enumerate() {
+                add_gradient(gradient, rows, &residuals[if self.full { j } else { i }]);
+            }
+        }
+    }
+
+    /// Adds to the sums of all segments, in the places of θ.
+    pub fn scatter(&self, problem: &Problem, segment: usize, total: &mut Sums) {
+        let outputs = self.widths.len();
+        let places = |output: usize| -> Vec<Option<usize>> {
+            let parameters = problem.columns.of_output(output).iter();
+            parameters
+                .map(|&parameter| problem.unknowns.place(segment, parameter))
+                .collect()
+        };
+        total.residuals += &self.residuals;
+        for i in 0..outputs {
+            let rows = places(i);
+            for j in if self.full { 0..=i } else { i..=i } {
+                let columns = places(j);
+                let from = self.products[pair(i, j, self.full)].as_flattened();
+                let stride = packs(columns.len()) * PACK;
+                let to = &mut total.products[pair(i, j, self.full)];
+                for (a, row) in rows.iter().enumerate() {
+                    for (b, column) in columns.iter().enumerate() {
+                        let (Some(row), Some(column)) = (*row, *column) else {
+                            continue;
+                        };
+                        // only the lower triangle is summed where both are the same
+                        let (a, b) = if i == j && b > a { (b, a) } else { (a, b) };
+                        to[(row, column)] += from[a * stride + b];
+                    }
+                }
+            }
+            for (gradient, to) in self.gradients[i].iter().zip(&mut total.gradients[i]) {
+                for (&value, place) in gradient.as_flattened().iter().zip(&rows) {
+                    if let Some(place) = *place {
+                        to[place] += value;
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// to += Σ_k row_k row_kᵀ, up to the diagonal; four samples at a time, so that sums stay in registers longer.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
+fn add_products(to: &mut [Pack], rows: &[Pack], width: usize) {
+    let stride = packs(width);
+    let mut quads = rows.chunks_exact(4 * stride.max(1));
+    for quad in &mut quads {
+        let (r0, rest) = quad.split_at(stride);
+        let (r1, rest) = rest.split_at(stride);
+        let (r2, r3) = rest.split_at(stride);
+        for a in 0..width {
+            let (pack, lane) = (a / PACK, a % PACK);
+            let (s0, s1, s2, s3) = (
+                r0[pack][lane],
+                r1[pack][lane],
+                r2[pack][lane],
+                r3[pack][lane],
+            );
+            let line = &mut to[a * stride..a * stride + pack + 1];
+            for ((((to, v0), v1), v2), v3) in line.iter_mut().zip(r0).zip(r1).zip(r2).zip(r3) {
+                let near = plus(scaled(s0, *v0), scaled(s1, *v1));
+                let far = plus(scaled(s2, *v2), scaled(s3, *v3));
+                *to = plus(*to, plus(near, far));
+            }
+        }
+    }
+    for row in quads.remainder().chunks_exact(stride.max(1)) {
+        for a in 0..width {
+            let (pack, lane) = (a / PACK, a % PACK);
+            let factor = row[pack][lane];
+            add_scaled(&mut to[a * stride..a * stride + pack + 1], factor, row);
+        }
+    }
+}
+
+/// to += Σ_k left_k right_kᵀ
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
+fn add_cross_products(to: &mut [Pack], left: &[Pack], width: usize, right: &[Pack], across: usize) {
+    let stride = packs(width);
+    for (left, right) in left
+        .chunks_exact(stride.max(1))
+        .zip(right.chunks_exact(across.max(1)))
+    {
+        for a in 0..width {
+            let factor = left[a / PACK][a % PACK];
+            add_scaled(&mut to[a * across..(a + 1) * across], factor, right);
+        }
+    }
+}
+
+/// to += Σ_k row_k e_k
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
+fn add_gradient(to: &mut [Pack], rows: &[Pack], residuals: &[f64]) {
+    for (row, &residual) in rows.chunks_exact(to.len().max(1)).zip(residuals) {
+        add_scaled(to, residual, row);
+    }
+}

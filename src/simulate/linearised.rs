@@ -1,0 +1,74 @@
+//! The results of a program over a block of samples, evaluated side by side.
+
+use crate::model::{LANES, Lanes, Program, Workspace};
+
+/// Samples in a block.
+pub(super) const BLOCK: usize = 4 * LANES;
+
+/// Results of one program, by stage of the integration scheme and sample of the block.
+pub(super) struct Linearised<'m> {
+    program: &'m Program,
+    workspace: Workspace<Lanes>,
+    results: usize,
+    /// Results that change from sample to sample; the others are filled in once for each θ.
+    varying: Vec<usize>,
+    /// By stage, then result: values over the block.
+    values: Vec<[f64; BLOCK]>,
+}
+
+impl<'m> Linearised<'m> {
+    pub fn new(program: &'m Program, stages: usize) -> Self {
+        let results = program.len();
+        Self {
+            program,
+            workspace: program.workspace(),
+            results,
+            varying: (0..results).filter(|&i| program.varies(i)).collect(),
+            values: vec![[0.0; BLOCK]; stages * results],
+        }
+    }
+
+    pub fn set_parameters(&mut self, parameters: &[f64]) {
+        let lanes: Vec<Lanes> = parameters
+            .iter()
+            .map(|&value| Lanes([value; LANES]))
+            .collect();
+        self.program.set_parameters(&mut self.workspace, &lanes);
+        for i in (0..self.results).filter(|&i| !self.program.varies(i)) {
+            let constant = self.program.result(&self.workspace, i).0[0];
+            self.values
+                .iter_mut()
+                .skip(i)
+                .step_by(self.results)
+                .for_each(|values| values.fill(constant));
+        }
+    }
+
+    /// Evaluates the samples of the block from `group` on; `set` puts states, inputs and time in place.
+    pub fn evaluate(
+        &mut self,
+        stage: usize,
+        group: usize,
+        set: &impl Fn(&Program, &mut Workspace<Lanes>),
+    ) {
+        if self.varying.is_empty() {
+            return;
+        }
+        set(self.program, &mut self.workspace);
+        self.program.run_lanes(&mut self.workspace);
+        for &i in &self.varying {
+            let result = self.program.result(&self.workspace, i);
+            self.values[stage * self.results + i][group..group + LANES].copy_from_slice(&result.0);
+        }
+    }
+
+    #[inline(always)]
+    pub fn value(&self, stage: usize, result: usize, k: usize) -> f64 {
+        self.values[stage * self.results + result][k]
+    }
+
+    /// A result over the block.
+    pub fn over_block(&self, result: usize) -> &[f64; BLOCK] {
+        &self.values[result]
+    }
+}
