@@ -214,6 +214,37 @@ async fn sigkill_loses_nothing_that_was_accepted() {
 }
 
 #[tokio::test]
+async fn clients_that_stand_still_do_not_hold_up_the_end() {
+    use std::io::Write;
+    let directory = TempDir::new().unwrap();
+    let process = Process::start(directory.path(), 1);
+    let address = process.url.strip_prefix("http://").unwrap().to_string();
+    let connect = || std::net::TcpStream::connect(&address).unwrap();
+    let (idle, mut head, mut body) = (connect(), connect(), connect());
+    head.write_all(b"GET /v1/jobs HTTP/1.1\r\nHost: x\r\n")
+        .unwrap();
+    body.write_all(
+        b"POST /v1/maneuvers HTTP/1.1\r\nHost: x\r\nContent-Type: text/csv\r\nContent-Length: 999\r\n\r\nt[s],",
+    )
+    .unwrap();
+    // the server is surely reading all three when it has answered a fourth
+    assert_eq!(
+        send(client().get(format!("{}/health/ready", process.url)))
+            .await
+            .status,
+        200
+    );
+    let (status, took) = tokio::task::spawn_blocking(|| process.terminate())
+        .await
+        .unwrap();
+    assert!(
+        status.success() && took < Duration::from_secs(5),
+        "{status} {took:?}"
+    );
+    drop((idle, head, body));
+}
+
+#[tokio::test]
 async fn an_address_that_others_can_reach_is_refused() {
     let directory = TempDir::new().unwrap();
     let database = directory.path().join("test.db");
