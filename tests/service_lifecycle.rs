@@ -10,6 +10,8 @@ use common::server::{Server, client, send, wait};
 use common::sse::Stream;
 use serde_json::{Value, json};
 use tempfile::TempDir;
+use trimtab::http::Config;
+use trimtab::store::LEASE;
 
 /// A job that is certain to run while the test acts on it.
 async fn running(server: &Server) -> String {
@@ -77,6 +79,48 @@ async fn stopping_gives_a_running_job_back_to_the_queue() {
         .pop()
         .unwrap();
     assert_eq!(last.name, "released");
+}
+
+#[tokio::test]
+async fn a_worker_that_is_overtaken_writes_nothing_more() {
+    let server = Server::start_with(Config::default(), 1).await;
+    let id = running(&server).await;
+    // the worker extends its lease with all it writes: it takes some tries to come in between
+    let mut successor = None;
+    for _ in 0..200 {
+        server.store.clock().advance(LEASE * 2);
+        successor = server.store.claim("successor").await.unwrap();
+        if successor.is_some() {
+            break;
+        }
+    }
+    let successor = successor.expect("the lease has run out");
+    assert_eq!(successor.attempt, 2);
+    tokio::time::sleep(Duration::from_millis(500)).await;
+    server.store.heartbeat(&successor).await.unwrap();
+    let events = server
+        .store
+        .events(successor.job, 0, 1000)
+        .await
+        .unwrap()
+        .entries;
+    assert_eq!(
+        events[events.len() - 1].name,
+        "claimed",
+        "nothing behind the second claim"
+    );
+
+    // and the overtaken worker is free for the next job
+    let maneuver = server.upload(&elevator()).await;
+    let next = server.submit(&job(&maneuver)).await;
+    let done = tokio::time::timeout(Duration::from_secs(20), server.wait(&next))
+        .await
+        .unwrap();
+    assert_eq!(done["status"], "succeeded");
+    assert_eq!(
+        server.get(&format!("/v1/jobs/{id}")).await.json()["status"],
+        "running"
+    );
 }
 
 /// A server with some finished jobs, one under way and a queue behind it.
