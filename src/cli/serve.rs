@@ -13,6 +13,9 @@ use super::Failure;
 use crate::store::Store;
 use crate::{http, ingest, work};
 
+/// The service ends within this time, even if its database does not answer any more.
+const LONGEST_END: Duration = Duration::from_millis(4200);
+
 /// How long the threads of solvers that do not notice the end are waited for; their jobs are back in
 /// the queue by then.
 const THREADS_GRACE: Duration = Duration::from_millis(300);
@@ -126,17 +129,25 @@ impl Serve {
         let url = format!("http://{}", listener.local_addr()?);
         println!("listening on {url}");
         tracing::info!(url, database = self.database, workers, "ready");
-        tokio::join!(
-            http::run(self.config(), listener, store.clone(), shutdown.clone()),
-            work::run(store.clone(), workers, shutdown),
-        );
-        if tokio::time::timeout(Duration::from_secs(1), store.close())
-            .await
-            .is_err()
-        {
-            tracing::warn!("the database was not closed in time; nothing is lost by that");
+        let config = self.config();
+        let serve = async {
+            tokio::join!(
+                http::run(config, listener, store.clone(), shutdown.clone()),
+                work::run(store.clone(), workers, shutdown.clone()),
+            );
+            store.close().await;
+            tracing::info!("ended");
+        };
+        let too_late = async {
+            shutdown.cancelled().await;
+            tokio::time::sleep(LONGEST_END).await;
+        };
+        tokio::select! {
+            () = serve => {}
+            () = too_late => {
+                tracing::warn!("cut off what did not end; jobs under way are taken up when their leases run out");
+            }
         }
-        tracing::info!("ended");
         Ok(())
     }
 

@@ -1,13 +1,12 @@
 //! JSON bodies: what is wrong with one is said with its place.
 
 use axum::extract::{FromRequest, Request};
-use serde::de::DeserializeOwned;
+use serde::de::{DeserializeOwned, IgnoredAny};
 use serde_path_to_error::{Path, Segment};
 
 use super::code::Code;
 use super::problem::Problem;
 use super::{Service, body};
-use crate::job::Fault;
 
 /// A JSON body, within [`super::Config::max_json_body`].
 pub struct JsonBody<T> {
@@ -45,20 +44,18 @@ pub fn text(bytes: Vec<u8>) -> Result<String, Problem> {
 
 /// Reads JSON; a fault of shape comes with its JSON pointer.
 pub fn parse<T: DeserializeOwned>(text: &str) -> Result<T, Problem> {
+    let invalid = |error: serde_json::Error| Problem::new(Code::InvalidJson, error.to_string());
     let mut deserializer = serde_json::Deserializer::from_str(text);
     let value = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
         let pointer = pointer(error.path());
         let error = error.into_inner();
-        if error.is_data() {
-            let fault = Fault::new(pointer, Code::WrongShape.name(), error.to_string());
-            Problem::of_faults(Code::WrongShape, vec![fault])
-        } else {
-            Problem::new(Code::InvalidJson, error.to_string())
+        // a number where a word is expected is a syntax error to the library; not to who sent it
+        match serde_json::from_str::<IgnoredAny>(text) {
+            Err(_) if !error.is_data() => invalid(error),
+            _ => Problem::at(Code::WrongShape, &pointer, error.to_string()),
         }
     })?;
-    deserializer
-        .end()
-        .map_err(|error| Problem::new(Code::InvalidJson, error.to_string()))?;
+    deserializer.end().map_err(invalid)?;
     Ok(value)
 }
 

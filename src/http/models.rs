@@ -226,6 +226,10 @@ async fn get_model(
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
     let format = choose(query.format, &headers, &[Format::Json, Format::Toml])?;
+    if let (Format::Toml, Some(text)) = (format, catalog::text(&id)) {
+        // as it was written, comments and all
+        return Ok(cacheable(&headers, format, text));
+    }
     let document = find(&service, &id).await?.ok_or_else(|| {
         let id: String = id.chars().take(80).collect();
         let detail = format!("there is no model '{id}', neither in the catalog nor stored");

@@ -2,4 +2,8 @@
 #![allow(dead_code)]
 
 pub mod flight_data;
+pub mod process;
 pub mod published_cases;
+pub mod recordings;
+pub mod server;
+pub mod sse;
