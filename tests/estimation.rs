@@ -270,7 +270,7 @@ fn a_start_that_diverges_at_once_names_the_place() {
     let changes = json!({"parameters": {"a": {"start": 1e6}}});
     let faults = try_solve(model(), changes, &maneuver(0.01)).expect_err("a fault");
     assert_eq!(
-        (faults[0].pointer.as_str(), faults[0].code.as_str()),
+        (faults[0].pointer.as_str(), &*faults[0].code),
         ("/parameters", "diverged_at_start")
     );
     assert!(

@@ -1,7 +1,8 @@
 //! Model documents that are wrong: each fault with its place, a stable word, and the remedy.
 
 use serde_json::{Value, json};
-use trimtab::model::{Edit, Model, ModelDocument, ModelError};
+use trimtab::flight::Fault;
+use trimtab::model::{Edit, Model, ModelDocument};
 
 fn document() -> Value {
     json!({
@@ -30,18 +31,18 @@ fn changed(pointer: &str, value: Value) -> Value {
     document
 }
 
-fn compile(document: Value) -> Result<Model, Vec<ModelError>> {
+fn compile(document: Value) -> Result<Model, Vec<Fault>> {
     Model::compile(
         &serde_json::from_value::<ModelDocument>(document).expect("the shape of a document"),
     )
 }
 
 /// Pointer, code and message of the only fault.
-fn fault(document: Value) -> (String, &'static str, String) {
+fn fault(document: Value) -> (String, String, String) {
     let mut faults = compile(document).expect_err("a fault");
     assert_eq!(faults.len(), 1, "{faults:#?}");
     let fault = faults.remove(0);
-    (fault.pointer, fault.code, fault.message)
+    (fault.pointer, fault.code.into_owned(), fault.message)
 }
 
 #[test]
@@ -168,7 +169,7 @@ fn a_longer_circle_is_written_out() {
     });
     let (pointer, code, message) = fault(changed("/definitions", circle));
     assert_eq!(
-        (pointer.as_str(), code),
+        (pointer.as_str(), code.as_str()),
         ("/definitions/a/equation", "cyclic_definition")
     );
     assert!(message.contains("a -> b -> c -> a"), "{message}");
@@ -179,10 +180,10 @@ fn all_faults_are_told_at_once() {
     let mut document = changed("/states/q/derivative", json!("moment + Mqq*q"));
     document["outputs"]["q"]["equation"] = json!("q +");
     document["inputs"]["de"]["unit"] = json!("furlong");
-    let codes: Vec<&str> = compile(document)
+    let codes: Vec<_> = compile(document)
         .expect_err("faults")
         .iter()
-        .map(|f| f.code)
+        .map(|f| f.code.clone())
         .collect();
     assert_eq!(codes, ["unknown_unit", "unknown_symbol", "syntax_error"]);
 }
@@ -193,7 +194,10 @@ fn a_model_of_500_states_is_refused_with_the_bound() {
         .map(|i| (format!("x{i}"), json!({"initial": "0", "derivative": "0"})))
         .collect();
     let (pointer, code, message) = fault(changed("/states", Value::Object(states)));
-    assert_eq!((pointer.as_str(), code), ("/states", "model_too_large"));
+    assert_eq!(
+        (pointer.as_str(), code.as_str()),
+        ("/states", "model_too_large")
+    );
     assert_eq!(message, "500 states; at most 64 are allowed");
 }
 
@@ -222,7 +226,7 @@ fn a_model_whose_derivatives_explode_is_refused() {
     document["states"]["q"]["derivative"] = json!(format!("Ma*({sum})"));
     let faults = compile(document).expect_err("a fault");
     assert_eq!(
-        (faults[0].code, faults[0].pointer.as_str()),
+        (&*faults[0].code, faults[0].pointer.as_str()),
         ("model_too_large", "")
     );
 }

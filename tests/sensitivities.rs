@@ -18,7 +18,12 @@ fn segment(model: &Model, samples: usize) -> Segment {
     let step = 0.04;
     let wave = |channel: usize, k: usize| {
         let t = k as f64 * step;
-        0.05 * ((1.3 + channel as f64) * t).sin() + if (k / 37) % 2 == 0 { 0.03 } else { -0.02 }
+        0.05 * ((1.3 + channel as f64) * t).sin()
+            + if (k / 37).is_multiple_of(2) {
+                0.03
+            } else {
+                -0.02
+            }
     };
     let series = |count: usize| {
         (0..count)

@@ -2,7 +2,9 @@
 //!
 //! [`Problem`] is a model with its data, [`output_error`] finds the θ of least negative log-likelihood
 //!
-//!     J(θ, R) = ½ Σ_k (z_k − y_k)ᵀ R⁻¹ (z_k − y_k) + (N/2) ln|R| + (N n_y/2) ln 2π
+//! ```text
+//! J(θ, R) = ½ Σ_k (z_k − y_k)ᵀ R⁻¹ (z_k − y_k) + (N/2) ln|R| + (N n_y/2) ln 2π
+//! ```
 //!
 //! and [`Estimate`] is the answer, with the reason why the solver stopped.
 

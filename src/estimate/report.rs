@@ -41,12 +41,14 @@ pub struct Iteration {
     pub cost: f64,
     /// det R, what the field's programs print as cost.
     #[schema(example = 8.9377e-12)]
+    #[serde(deserialize_with = "null_as_nan")]
     pub det_r: f64,
     /// Variance of each output's residual, SI units squared (the diagonal of R).
     pub variance: Vec<f64>,
     /// All free parameters in the order of the parameter table, each in its own unit.
     pub parameters: Vec<f64>,
     /// Length of the gradient of the cost, each component times the parameter's standard error.
+    #[serde(deserialize_with = "null_as_nan")]
     pub gradient_norm: f64,
     /// Length of the step that led here, in standard errors; 0 for the start.
     pub step: f64,
@@ -71,6 +73,7 @@ pub struct Estimate {
     pub simulations: usize,
     /// -ln L at the estimate.
     pub cost: f64,
+    #[serde(deserialize_with = "null_as_nan")]
     pub det_r: f64,
     /// R, rows by outputs, SI units squared.
     pub noise_covariance: Vec<Vec<f64>>,
@@ -125,8 +128,10 @@ pub struct OutputFit {
     /// Mean of the residual.
     pub bias: f64,
     /// Coefficient of determination R².
+    #[serde(deserialize_with = "null_as_nan")]
     pub r_squared: f64,
     /// Theil's inequality coefficient: 0 perfect, 1 useless.
+    #[serde(deserialize_with = "null_as_nan")]
     pub theil: f64,
 }
 
@@ -179,6 +184,11 @@ impl ParameterEstimate {
     }
 }
 
+/// JSON has no word for a number out of range: it is written `null`, and read back as NaN.
+fn null_as_nan<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Option::<f64>::deserialize(deserializer).map(|number| number.unwrap_or(f64::NAN))
+}
+
 /// A number for a table: five digits, as a decimal where that is readable.
 pub fn five_digits(value: f64) -> String {
     let size = value.abs();
@@ -195,6 +205,20 @@ pub fn five_digits(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_number_out_of_range_is_read_back() {
+        let fit = OutputFit {
+            name: "a".into(),
+            unit: "-".into(),
+            rms: 0.0,
+            bias: 0.0,
+            r_squared: f64::NAN,
+            theil: 0.5,
+        };
+        let read: OutputFit = serde_json::from_str(&serde_json::to_string(&fit).unwrap()).unwrap();
+        assert!(read.r_squared.is_nan() && read.theil == 0.5);
+    }
 
     #[test]
     fn numbers_have_five_digits() {

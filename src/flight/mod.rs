@@ -4,6 +4,7 @@
 //! nothing behind this room ever sees a degree or a knot.
 
 mod dimension;
+mod fault;
 mod finding;
 mod maneuver;
 mod sampling;
@@ -11,6 +12,7 @@ mod si_name;
 mod unit;
 
 pub use dimension::Dimension;
+pub use fault::{Fault, escape};
 pub use finding::{Finding, Severity};
 pub use maneuver::{Channel, Maneuver, ManeuverError};
 pub use sampling::{GAP_FACTOR, Gap, Sampling};

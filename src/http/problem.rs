@@ -111,9 +111,7 @@ impl Problem {
 
 impl From<IngestError> for Problem {
     fn from(error: IngestError) -> Self {
-        let faults = error.into_faults().into_iter();
-        let faults = faults.map(|fault| Fault::new(fault.pointer, fault.code, fault.message));
-        Self::of_faults(Code::InvalidManeuver, faults.collect())
+        Self::of_faults(Code::InvalidManeuver, error.into_faults())
     }
 }
 

@@ -121,8 +121,7 @@ async fn check(
 
 /// Compiles a model by itself; the pointers of its faults are into the document.
 pub fn check_model(document: &ModelDocument) -> Result<(), Vec<Fault>> {
-    let compiled = Model::compile(document).map(drop);
-    compiled.map_err(|errors| errors.into_iter().map(Fault::from).collect())
+    Model::compile(document).map(drop)
 }
 
 fn bounds(spec: &JobSpec) -> Vec<Fault> {

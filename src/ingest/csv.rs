@@ -3,14 +3,15 @@
 use ::csv::{ByteRecord, ReaderBuilder};
 use indexmap::IndexMap;
 
-use crate::flight::Maneuver;
+use crate::flight::{Fault, Maneuver};
 
 use super::{
-    Fault, IngestError, Limits,
+    IngestError, Limits,
     axis::{TimeAxis, code_of},
     cell::{number, unquote},
     code,
     fault::pointer,
+    fault::{CELLS_LISTED, of_file},
     header::{Column, Header},
     text::{decode, line_at, quoted},
 };
@@ -20,7 +21,7 @@ use super::{
 /// Empty cells and the usual words (nan, na, null, inf in any case) are missing values.
 ///
 /// # Errors
-/// Every fault of the header; else the first [`Fault::CELLS_LISTED`] faults of rows and cells.
+/// Every fault of the header; else the first [`CELLS_LISTED`] faults of rows and cells.
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Maneuver, IngestError> {
     let text = decode(bytes)?;
     let (header_line, rows) = split_header(text);
@@ -35,7 +36,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Maneuver, IngestErro
         let rows = extent.rows;
         let message =
             format!("{rows} row(s) below the header: a maneuver needs at least 2 samples");
-        return Err(Fault::of_file(code::TOO_FEW_SAMPLES, message).into());
+        return Err(of_file(code::TOO_FEW_SAMPLES, message).into());
     }
     let too_much = [limits.samples(extent.rows), limits.values(extent.cells)];
     IngestError::refuse(too_much.into_iter().flatten().collect())?;
@@ -69,7 +70,7 @@ fn check_delimiter(header: &str) -> Result<(), Fault> {
         .into_iter()
         .find(|&(delimiter, _)| count(delimiter) > count(','));
     found.map_or(Ok(()), |(_, name)| {
-        Err(Fault::of_file(
+        Err(of_file(
             code::WRONG_DELIMITER,
             format!(
                 "the header's cells are separated by {name}; separate them by commas, with decimal points in the numbers"
@@ -135,7 +136,7 @@ impl Rows<'_> {
             .from_reader(&self.text.as_bytes()[self.behind..]);
         let mut record = ByteRecord::new();
         let mut row = 0;
-        while faults.len() < Fault::CELLS_LISTED && next(&mut reader, &mut record)? {
+        while faults.len() < CELLS_LISTED && next(&mut reader, &mut record)? {
             if record.len() == 1 && record[0].trim_ascii().is_empty() {
                 continue;
             }
@@ -157,7 +158,7 @@ impl Rows<'_> {
             }
             self.push_time(&mut axis, row, &record, &mut values, &mut faults);
         }
-        faults.truncate(Fault::CELLS_LISTED);
+        faults.truncate(CELLS_LISTED);
         IngestError::refuse(faults)?;
         self.maneuver(axis, values)
     }
@@ -192,7 +193,7 @@ impl Rows<'_> {
             }
         }
         Maneuver::new(axis.into_seconds(), channels)
-            .map_err(|error| Fault::of_file(code_of(&error), error.to_string()).into())
+            .map_err(|error| of_file(code_of(&error), error.to_string()).into())
     }
 
     fn not_a_number(&self, row: usize, record: &ByteRecord, column: &Column, cell: &[u8]) -> Fault {
@@ -224,7 +225,7 @@ impl Rows<'_> {
 fn next(reader: &mut ::csv::Reader<&[u8]>, record: &mut ByteRecord) -> Result<bool, Fault> {
     reader
         .read_byte_record(record)
-        .map_err(|error| Fault::of_file(code::WRONG_SHAPE, error.to_string()))
+        .map_err(|error| of_file(code::WRONG_SHAPE, error.to_string()))
 }
 
 fn cell_pointer(row: usize, column: &Column) -> String {
@@ -333,7 +334,7 @@ mod tests {
     fn at_most_twenty_faults_of_cells_are_listed() {
         let rows: String = (0..100).map(|k| format!("{k},x,y,z\n")).collect();
         let listed = faults(&format!("t[s],a,b,c\n{rows}"));
-        assert_eq!(listed.len(), Fault::CELLS_LISTED);
+        assert_eq!(listed.len(), CELLS_LISTED);
         assert_eq!(listed[19], "not_a_number /rows/7/b");
     }
 

@@ -2,46 +2,14 @@
 
 use std::fmt;
 
-use serde::Serialize;
+use crate::flight::Fault;
 
-/// One fault of a recording.
-#[derive(Clone, PartialEq, Eq, Debug, Serialize)]
-pub struct Fault {
-    /// Where. CSV: `/columns/<name, or number from 1>`, `/rows/<data row from 1>/<column name>`,
-    /// `/rows/<data row from 1>`. JSON: an RFC 6901 pointer into the document. Empty: the whole file.
-    pub pointer: String,
-    /// A stable word out of [`code`].
-    pub code: &'static str,
-    /// What is wrong and what would fix it.
-    pub message: String,
-}
+/// Faults of cells and rows are listed up to this many; behind them reading stops.
+pub(super) const CELLS_LISTED: usize = 20;
 
-impl Fault {
-    /// Faults of cells and rows are listed up to this many; behind them reading stops.
-    pub const CELLS_LISTED: usize = 20;
-
-    pub(super) fn new(
-        pointer: impl Into<String>,
-        code: &'static str,
-        message: impl Into<String>,
-    ) -> Self {
-        Self {
-            pointer: pointer.into(),
-            code,
-            message: message.into(),
-        }
-    }
-
-    /// A fault of the file as a whole.
-    pub(super) fn of_file(code: &'static str, message: impl Into<String>) -> Self {
-        Self::new("", code, message)
-    }
-}
-
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.pointer, self.message)
-    }
+/// A fault of the file as a whole.
+pub(super) fn of_file(code: &'static str, message: impl Into<String>) -> Fault {
+    Fault::new("", code, message)
 }
 
 /// Why a recording was refused: one fault or more.
@@ -191,7 +159,7 @@ mod tests {
     fn an_error_prints_each_fault_with_its_place() {
         let faults = vec![
             Fault::new("/rows/1", code::ROW_LENGTH, "one"),
-            Fault::of_file(code::NOT_UTF8, "two"),
+            of_file(code::NOT_UTF8, "two"),
         ];
         let error = IngestError::refuse(faults).unwrap_err();
         assert_eq!(error.to_string(), "/rows/1: one\ntwo");

@@ -2,10 +2,11 @@
 
 use std::collections::HashSet;
 
-use crate::flight::Unit;
+use crate::flight::{Fault, Unit};
 
 use super::{
-    Fault, IngestError, Limits, code,
+    IngestError, Limits, code,
+    fault::of_file,
     fault::pointer,
     name::{Names, is_identifier},
     text::quoted,
@@ -147,13 +148,13 @@ fn time_column(labels: &[Label]) -> Option<usize> {
 
 fn missing_columns(time: Option<usize>, count: usize) -> impl Iterator<Item = Fault> {
     let no_time = time.is_none().then(|| {
-        Fault::of_file(
+        of_file(
             code::NO_TIME_COLUMN,
             "no column is named t or time; every recording needs one, as t[s]",
         )
     });
     let no_channels = (time.is_some() && count == 1).then(|| {
-        Fault::of_file(
+        of_file(
             code::NO_CHANNELS,
             "there is no channel beside time; add a column for every recorded quantity",
         )

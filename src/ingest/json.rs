@@ -11,13 +11,14 @@ use indexmap::IndexMap;
 use serde_json::error::Category;
 use serde_path_to_error::{Path, Segment};
 
-use crate::flight::{Channel, Maneuver, ManeuverError};
+use crate::flight::{Channel, Fault, Maneuver, ManeuverError};
 
 use super::{
-    Fault, IngestError, Limits,
+    IngestError, Limits,
     axis::{TimeAxis, code_of},
     code,
     fault::pointer,
+    fault::{CELLS_LISTED, of_file},
     name::Names,
     recording::{Channels, RecordedTime, Recording},
     text::{decode, short_message},
@@ -28,7 +29,7 @@ use super::{
 ///
 /// # Errors
 /// The first fault of syntax or shape; else every fault of names, units and lengths and the first
-/// [`Fault::CELLS_LISTED`] of the time axis.
+/// [`CELLS_LISTED`] of the time axis.
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Maneuver, IngestError> {
     let text = decode(bytes)?;
     survey(text, limits)?;
@@ -117,13 +118,13 @@ impl Recording {
             ));
         } else if samples < 2 {
             let error = ManeuverError::TooFewSamples { count: samples };
-            faults.push(Fault::of_file(code_of(&error), error.to_string()));
+            faults.push(of_file(code_of(&error), error.to_string()));
         }
         let time = self.time.into_seconds(samples, &mut faults);
         let channels = self.channels.into_si(samples, limits, &mut faults);
         IngestError::refuse(faults)?;
         Maneuver::new(time, channels)
-            .map_err(|error| Fault::of_file(code_of(&error), error.to_string()).into())
+            .map_err(|error| of_file(code_of(&error), error.to_string()).into())
     }
 }
 
@@ -165,7 +166,7 @@ impl RecordedTime {
             };
             faults.push(Fault::new(place, code_of(&error), error.to_string()));
             found += 1;
-            if is_even || found == Fault::CELLS_LISTED {
+            if is_even || found == CELLS_LISTED {
                 break;
             }
         }

@@ -1,6 +1,7 @@
 //! How much a recording may hold. Every bound is named in its fault.
 
-use super::{Fault, code};
+use super::{code, fault::of_file};
+use crate::flight::Fault;
 
 /// Bounds of a recording.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -30,7 +31,7 @@ impl Default for Limits {
 impl Limits {
     pub(super) fn columns(&self, found: usize) -> Option<Fault> {
         (found > self.max_columns).then(|| {
-            Fault::of_file(
+            of_file(
                 code::TOO_MANY_COLUMNS,
                 format!(
                     "{found} columns are more than max_columns = {}; leave out channels that the estimation does not need",
@@ -42,7 +43,7 @@ impl Limits {
 
     pub(super) fn samples(&self, found: usize) -> Option<Fault> {
         (found > self.max_samples).then(|| {
-            Fault::of_file(
+            of_file(
                 code::TOO_MANY_SAMPLES,
                 format!(
                     "{found} samples are more than max_samples = {}; upload the maneuvers of the flight one by one, or at a lower rate",
@@ -54,7 +55,7 @@ impl Limits {
 
     pub(super) fn values(&self, found: usize) -> Option<Fault> {
         (found > self.max_values).then(|| {
-            Fault::of_file(
+            of_file(
                 code::TOO_MANY_VALUES,
                 format!(
                     "{found} values are more than max_values = {}; leave out channels, or upload a shorter part",

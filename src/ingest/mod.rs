@@ -24,7 +24,7 @@ mod text;
 mod units;
 
 pub use export::{to_csv, to_csv_as_recorded, to_json};
-pub use fault::{Fault, IngestError, code};
+pub use fault::{IngestError, code};
 pub use limits::Limits;
 pub use quality::quality;
 pub use recording::Recording;
@@ -57,7 +57,7 @@ impl Format {
 /// Reads a recording.
 ///
 /// # Errors
-/// All faults that can be found at once: every fault of a header, the first [`Fault::CELLS_LISTED`] of
+/// All faults that can be found at once: every fault of a header, the first 20 of
 /// the cells.
 pub fn read(bytes: &[u8], format: Format, limits: &Limits) -> Result<Maneuver, IngestError> {
     match format {

@@ -1,6 +1,7 @@
 //! Bytes to text, and text of a stranger into a message.
 
-use super::{Fault, code};
+use super::{code, fault::of_file};
+use crate::flight::Fault;
 
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 const LONGEST_QUOTE: usize = 60;
@@ -20,13 +21,13 @@ pub(super) fn decode(bytes: &[u8]) -> Result<&str, Fault> {
         };
         let at = offset + (bytes.len() - body.len());
         let line = line_at(body, offset);
-        Fault::of_file(
+        of_file(
             code::NOT_UTF8,
             format!("not UTF-8 at byte {at} (from 0), line {line}: {what}"),
         )
     })?;
     if text.trim().is_empty() {
-        return Err(Fault::of_file(
+        return Err(of_file(
             code::EMPTY_BODY,
             "the file is empty; send a recording with a time axis and at least one channel",
         ));

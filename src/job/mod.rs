@@ -2,14 +2,13 @@
 //! status, and the pure function from a spec and its data to a result.
 
 mod event;
-mod fault;
 mod resolve;
 mod run;
 mod spec;
 mod status;
 
+pub use crate::flight::Fault;
 pub use event::{Event, EventBody, Prepared};
-pub use fault::Fault;
 pub use run::{JobResult, MOST_MANEUVERS, Plan, prepare, run};
 pub use spec::{Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride};
 pub use status::Status;

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::Fault;
 use super::spec::{Gaps, JobSpec, ManeuverUse};
-use crate::flight::{Dimension, Finding, Maneuver, Severity};
+use crate::flight::{Dimension, Finding, Maneuver, Severity, escape};
 use crate::model::{ChannelFormula, Model, Quantity, Recorded};
 use crate::simulate::{Segment, Steps};
 
@@ -216,13 +216,12 @@ fn samples(
 ) -> Vec<f64> {
     let name = &quantity.name;
     let mapped = spec.channels.get(name);
-    let mapping = format!("/channels/{}", name.replace('~', "~0").replace('/', "~1"));
     let pointer = if mapped.is_some() {
-        mapping.clone()
+        format!("/channels/{}", escape(name))
     } else {
         format!("/maneuvers/{index}")
     };
-    let mut fault = |code: &str, message: String| {
+    let mut fault = |code: &'static str, message: String| {
         // several stretches of one recording have the same fault
         let fault = Fault::new(&pointer, code, message);
         if !faults.contains(&fault) {

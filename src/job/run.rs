@@ -11,8 +11,8 @@ use super::{Fault, JobSpec, ModelSource, Prepared};
 use crate::estimate::{
     Estimate, Iteration, Noise, Options, Problem, TimeHistory, Unknowns, histories, output_error,
 };
-use crate::flight::Maneuver;
-use crate::model::{ChannelFormula, Model, ModelDocument, ModelError, Start};
+use crate::flight::{Maneuver, escape};
+use crate::model::{ChannelFormula, Model, ModelDocument, Start};
 use crate::simulate::Segment;
 
 /// A job whose model is compiled and whose data are resolved: nothing left that bad input could break.
@@ -94,7 +94,7 @@ pub fn prepare(
             )
             .map_err(|(code, message)| {
                 Fault::new(
-                    format!("/model/parameters/{}/start", info.name),
+                    format!("/model/parameters/{}/start", escape(&info.name)),
                     code,
                     message,
                 )
@@ -177,7 +177,7 @@ fn edited(spec: &JobSpec, declared: &ModelDocument, faults: &mut Vec<Fault>) -> 
                 known.join(", ")
             );
             faults.push(Fault::new(
-                format!("/parameters/{name}"),
+                format!("/parameters/{}", escape(name)),
                 "unknown_parameter",
                 message,
             ));
@@ -194,8 +194,8 @@ fn edited(spec: &JobSpec, declared: &ModelDocument, faults: &mut Vec<Fault>) -> 
 }
 
 /// Where a fault of the edited document came from: an override, or the model itself.
-fn model_fault(spec: &JobSpec, declared: &ModelDocument, error: ModelError) -> Fault {
-    let parameter = error
+fn model_fault(spec: &JobSpec, declared: &ModelDocument, fault: Fault) -> Fault {
+    let parameter = fault
         .pointer
         .strip_prefix("/parameters/")
         .and_then(|rest| rest.split('/').next());
@@ -203,13 +203,7 @@ fn model_fault(spec: &JobSpec, declared: &ModelDocument, error: ModelError) -> F
         spec.parameters.contains_key(name) && declared.parameters.contains_key(name)
     });
     let prefix = if overridden { "" } else { "/model" };
-    Fault::from(error).under(prefix)
-}
-
-impl From<ModelError> for Fault {
-    fn from(error: ModelError) -> Self {
-        Self::new(error.pointer, error.code, error.message)
-    }
+    fault.under(prefix)
 }
 
 fn check_shape(spec: &JobSpec, maneuvers: usize, faults: &mut Vec<Fault>) {
@@ -279,7 +273,7 @@ fn check_names(spec: &JobSpec, model: &Model, faults: &mut Vec<Fault>) {
                 known.join(", ")
             );
             faults.push(Fault::new(
-                format!("/channels/{name}"),
+                format!("/channels/{}", escape(name)),
                 "unknown_channel",
                 message,
             ));

@@ -5,27 +5,26 @@
 use super::dimensions::measure;
 use super::document::{ModelDocument, Start};
 use super::expression::{self, BinaryOperator, Expression, Function, Kind, Span};
-use super::fault::{ModelError, escape};
 use super::graph::{Binary, Graph, MOST_GRAPH_NODES, NodeId, Unary};
 use super::jacobian::Jacobian;
 use super::names::{Meaning, Names};
 use super::program::{Program, Slots};
 use super::{Model, ParameterInfo, Quantity, limits};
-use crate::flight::{Dimension, Unit};
+use crate::flight::{Dimension, Fault, Unit, escape};
 
 impl Model {
     /// Compiles a document.
     ///
     /// # Errors
     /// Every fault with its place: syntax, unknown names, cycles, units that do not agree, bounds.
-    pub fn compile(document: &ModelDocument) -> Result<Self, Vec<ModelError>> {
+    pub fn compile(document: &ModelDocument) -> Result<Self, Vec<Fault>> {
         let mut faults = limits::check(document);
         if !faults.is_empty() {
             return Err(faults);
         }
         if document.outputs.is_empty() {
             let message = "a model needs at least one output to compare with a recording";
-            faults.push(ModelError::new("/outputs", "no_outputs", message));
+            faults.push(Fault::new("/outputs", "no_outputs", message));
         }
         let names = Names::collect(document, &mut faults);
         let equations = Equations::read(document, &names, &mut faults);
@@ -82,11 +81,11 @@ impl Model {
     }
 }
 
-fn too_large() -> ModelError {
+fn too_large() -> Fault {
     let message = format!(
         "equations and their derivatives need more than {MOST_GRAPH_NODES} operations; simplify them"
     );
-    ModelError::new("", "model_too_large", message)
+    Fault::new("", "model_too_large", message)
 }
 
 /// The parsed and checked equations of a document, in its order.
@@ -98,7 +97,7 @@ struct Equations {
 }
 
 impl Equations {
-    fn read(document: &ModelDocument, names: &Names, faults: &mut Vec<ModelError>) -> Self {
+    fn read(document: &ModelDocument, names: &Names, faults: &mut Vec<Fault>) -> Self {
         let mut read = |pointer: String, text: &str, unit: &str, of: Option<Dimension>| {
             read_equation(&pointer, text, unit, of, names, faults)
         };
@@ -168,9 +167,9 @@ fn read_equation(
     unit: &str,
     wanted: Option<Dimension>,
     names: &Names,
-    faults: &mut Vec<ModelError>,
+    faults: &mut Vec<Fault>,
 ) -> Expression {
-    let mut fault = |code, message: String| faults.push(ModelError::new(pointer, code, message));
+    let mut fault = |code, message: String| faults.push(Fault::new(pointer, code, message));
     let zero = Expression {
         kind: Kind::Number(0.0),
         span: Span::default(),
@@ -234,7 +233,7 @@ fn data_function(expression: &Expression) -> Option<Function> {
 }
 
 /// An initial state is known before anything is recorded.
-fn initial_is_constant(state: &str, text: &str, names: &Names, faults: &mut Vec<ModelError>) {
+fn initial_is_constant(state: &str, text: &str, names: &Names, faults: &mut Vec<Fault>) {
     let Ok(parsed) = expression::parse(text) else {
         return;
     };
@@ -248,12 +247,12 @@ fn initial_is_constant(state: &str, text: &str, names: &Names, faults: &mut Vec<
                 span.start + 1
             );
             let pointer = format!("/states/{}/initial", escape(state));
-            faults.push(ModelError::new(pointer, "initial_depends_on_data", message));
+            faults.push(Fault::new(pointer, "initial_depends_on_data", message));
         }
     }
 }
 
-fn parameters(document: &ModelDocument, faults: &mut Vec<ModelError>) -> Vec<ParameterInfo> {
+fn parameters(document: &ModelDocument, faults: &mut Vec<Fault>) -> Vec<ParameterInfo> {
     let info = |(name, parameter): (&String, &super::Parameter)| {
         let pointer = format!("/parameters/{}", escape(name));
         let unit = Unit::parse(&parameter.unit).unwrap_or(Unit::NONE);
@@ -270,7 +269,7 @@ fn parameters(document: &ModelDocument, faults: &mut Vec<ModelError>) -> Vec<Par
             .flatten()
             .any(|number| !number.is_finite())
         {
-            faults.push(ModelError::new(
+            faults.push(Fault::new(
                 &pointer,
                 "not_finite",
                 "start and bounds must be finite numbers",
@@ -280,13 +279,13 @@ fn parameters(document: &ModelDocument, faults: &mut Vec<ModelError>) -> Vec<Par
             && lower >= upper
         {
             let message = format!("lower bound {lower} is not below upper bound {upper}");
-            faults.push(ModelError::new(&pointer, "bad_bounds", message));
+            faults.push(Fault::new(&pointer, "bad_bounds", message));
         } else if let Start::Value(start) = parameter.start
             && (parameter.lower.is_some_and(|lower| start < lower)
                 || parameter.upper.is_some_and(|upper| start > upper))
         {
             let message = format!("start {start} is outside the bounds");
-            faults.push(ModelError::new(
+            faults.push(Fault::new(
                 format!("{pointer}/start"),
                 "bad_bounds",
                 message,
@@ -295,7 +294,7 @@ fn parameters(document: &ModelDocument, faults: &mut Vec<ModelError>) -> Vec<Par
         if let Start::FromData(text) = &parameter.start
             && let Err(error) = expression::parse(text)
         {
-            faults.push(ModelError::new(
+            faults.push(Fault::new(
                 format!("{pointer}/start"),
                 "syntax_error",
                 error.to_string(),
@@ -346,7 +345,7 @@ impl Builder<'_> {
         &mut self,
         document: &ModelDocument,
         equations: &Equations,
-    ) -> Result<Roots, Vec<ModelError>> {
+    ) -> Result<Roots, Vec<Fault>> {
         self.definitions = vec![Progress::Untouched; equations.definitions.len()];
         for i in 0..equations.definitions.len() {
             let mut path = Vec::new();
@@ -362,7 +361,7 @@ impl Builder<'_> {
                     "the definition needs itself: {}; break the circle",
                     cycle.iter().map(name).collect::<Vec<_>>().join(" -> ")
                 );
-                vec![ModelError::new(
+                vec![Fault::new(
                     format!("/definitions/{}/equation", escape(first)),
                     "cyclic_definition",
                     message,

@@ -1,6 +1,7 @@
 //! Bounds on a model document: a document from the network is hostile until proven otherwise.
 
-use super::{ModelDocument, ModelError};
+use super::ModelDocument;
+use crate::flight::Fault;
 
 pub const MOST_STATES: usize = 64;
 pub const MOST_INPUTS: usize = 64;
@@ -9,7 +10,7 @@ pub const MOST_PARAMETERS: usize = 512;
 pub const MOST_DEFINITIONS: usize = 256;
 pub const MOST_CONSTANTS: usize = 256;
 
-pub(super) fn check(document: &ModelDocument) -> Vec<ModelError> {
+pub(super) fn check(document: &ModelDocument) -> Vec<Fault> {
     let counts = [
         ("states", document.states.len(), MOST_STATES),
         ("inputs", document.inputs.len(), MOST_INPUTS),
@@ -23,7 +24,7 @@ pub(super) fn check(document: &ModelDocument) -> Vec<ModelError> {
         .filter(|&(_, count, most)| count > most)
         .map(|(what, count, most)| {
             let message = format!("{count} {what}; at most {most} are allowed");
-            ModelError::new(format!("/{what}"), "model_too_large", message)
+            Fault::new(format!("/{what}"), "model_too_large", message)
         });
     too_many.collect()
 }

@@ -9,7 +9,6 @@ mod dimensions;
 mod document;
 mod edit;
 pub mod expression;
-mod fault;
 mod formula;
 mod graph;
 mod jacobian;
@@ -22,7 +21,6 @@ pub use document::{
     Constant, Definition, Input, ModelDocument, Output, Parameter, Per, Start, State,
 };
 pub use edit::{Edit, EditError, EditKind};
-pub use fault::ModelError;
 pub use formula::{ChannelFormula, FormulaError, Recorded};
 pub use jacobian::Jacobian;
 pub use program::{Program, Workspace};

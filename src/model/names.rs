@@ -4,8 +4,7 @@ use indexmap::IndexMap;
 
 use super::document::ModelDocument;
 use super::expression::{Function, is_name};
-use super::fault::{ModelError, escape};
-use crate::flight::{Dimension, Unit};
+use crate::flight::{Dimension, Fault, Unit, escape};
 
 /// What a name in an equation stands for.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -30,7 +29,7 @@ const PI: &str = "pi";
 
 impl<'d> Names<'d> {
     /// Collects names and units; what is wrong with them is added to `faults`.
-    pub fn collect(document: &'d ModelDocument, faults: &mut Vec<ModelError>) -> Self {
+    pub fn collect(document: &'d ModelDocument, faults: &mut Vec<Fault>) -> Self {
         let mut table = IndexMap::new();
         table.insert(TIME, (Meaning::Time, Some(Dimension::SECOND)));
         table.insert(
@@ -49,7 +48,7 @@ impl<'d> Names<'d> {
             );
             if !constant.value.is_finite() {
                 let pointer = format!("/constants/{}/value", escape(name));
-                faults.push(ModelError::new(
+                faults.push(Fault::new(
                     pointer,
                     "not_finite",
                     "a constant must be a finite number",
@@ -99,7 +98,7 @@ impl<'d> Names<'d> {
                 let message = format!(
                     "'{name}' is an input too; what is recorded once cannot drive the model and test it"
                 );
-                faults.push(ModelError::new(pointer, "duplicate_name", message));
+                faults.push(Fault::new(pointer, "duplicate_name", message));
             }
         }
         names
@@ -134,7 +133,7 @@ impl<'d> Names<'d> {
         name: &'d str,
         meaning: Meaning,
         unit: Option<Unit>,
-        faults: &mut Vec<ModelError>,
+        faults: &mut Vec<Fault>,
     ) {
         let pointer = format!("/{section}/{}", escape(name));
         if let Some(fault) = unfit(name, &pointer) {
@@ -147,12 +146,12 @@ impl<'d> Names<'d> {
             let message = format!(
                 "'{name}' is defined twice; constants, inputs, parameters, definitions and states share their names"
             );
-            faults.push(ModelError::new(pointer, "duplicate_name", message));
+            faults.push(Fault::new(pointer, "duplicate_name", message));
         }
     }
 }
 
-fn unfit(name: &str, pointer: &str) -> Option<ModelError> {
+fn unfit(name: &str, pointer: &str) -> Option<Fault> {
     let why = if !is_name(name) {
         "a name is a letter or '_' followed by letters, digits and '_', at most 64 in all"
             .to_string()
@@ -161,11 +160,11 @@ fn unfit(name: &str, pointer: &str) -> Option<ModelError> {
     } else {
         return None;
     };
-    Some(ModelError::new(pointer, "invalid_name", why))
+    Some(Fault::new(pointer, "invalid_name", why))
 }
 
-fn unit(text: &str, pointer: &str, faults: &mut Vec<ModelError>) -> Option<Unit> {
+fn unit(text: &str, pointer: &str, faults: &mut Vec<Fault>) -> Option<Unit> {
     Unit::parse(text)
-        .map_err(|error| faults.push(ModelError::new(pointer, "unknown_unit", error.to_string())))
+        .map_err(|error| faults.push(Fault::new(pointer, "unknown_unit", error.to_string())))
         .ok()
 }

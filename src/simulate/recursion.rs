@@ -140,26 +140,33 @@ impl Recursion {
     }
 }
 
-/// A block of samples, of which the first is `first`: rows of ∂y/∂θ at each, and ∂x/∂θ behind the last.
+/// A block of samples, linearised.
+pub(super) struct Sweep<'a> {
+    pub stages: &'a [Stage],
+    pub steps: &'a Steps,
+    /// The first sample of the block, how many there are, and the last of the segment.
+    pub first: usize,
+    pub len: usize,
+    pub last: usize,
+    pub dynamics: &'a Linearised<'a>,
+    pub observation: &'a Linearised<'a>,
+}
+
+/// Rows of ∂y/∂θ at each sample of a block, and ∂x/∂θ behind the last.
 ///
 /// Compiled for several vector widths. None of them contracts products and sums, so that all give the same
 /// numbers.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
-pub(super) fn sweep(
-    recursion: &mut Recursion,
-    stages: &[Stage],
-    steps: &Steps,
-    first: usize,
-    len: usize,
-    last: usize,
-    dynamics: &Linearised<'_>,
-    observation: &Linearised<'_>,
-    rows: &mut [Vec<Pack>],
-) {
-    for k in 0..len {
-        recursion.form_rows(k, observation, rows);
-        if first + k < last {
-            recursion.step(stages, steps.length(first + k), k, dynamics);
+pub(super) fn sweep(block: &Sweep<'_>, recursion: &mut Recursion, rows: &mut [Vec<Pack>]) {
+    for k in 0..block.len {
+        recursion.form_rows(k, block.observation, rows);
+        if block.first + k < block.last {
+            recursion.step(
+                block.stages,
+                block.steps.length(block.first + k),
+                k,
+                block.dynamics,
+            );
         }
     }
 }

@@ -12,7 +12,7 @@ use super::columns::Columns;
 use super::linearised::{BLOCK, Linearised};
 use super::method::{InputInterpolation, Integrator, Stage};
 use super::pack::{Pack, packs};
-use super::recursion::{Recursion, sweep};
+use super::recursion::{Recursion, Sweep, sweep};
 use super::segment::Segment;
 use super::stepper::{Stepper, between};
 use super::trajectory::{Diverged, initial_state};
@@ -119,20 +119,16 @@ impl<'m> Sensitivities<'m> {
                 });
             }
             self.linearise(segment, first, len);
-            let (dynamics, observation) = (&self.dynamics, &self.observation);
-            let last = segment.len() - 1;
-            let (recursion, rows) = (&mut self.recursion, &mut self.rows);
-            sweep(
-                recursion,
-                self.stages,
-                &segment.steps,
+            let block = Sweep {
+                stages: self.stages,
+                steps: &segment.steps,
                 first,
                 len,
-                last,
-                dynamics,
-                observation,
-                rows,
-            );
+                last: segment.len() - 1,
+                dynamics: &self.dynamics,
+                observation: &self.observation,
+            };
+            sweep(&block, &mut self.recursion, &mut self.rows);
             sink(&Block {
                 first,
                 len,

@@ -76,8 +76,8 @@ impl<'m, T: Scalar> Stepper<'m, T> {
                 self.sum[i] = self.sum[i] + weight * self.slope[i];
             }
         }
-        for i in 0..n {
-            state[i] = state[i] + self.sum[i];
+        for (state, &sum) in state.iter_mut().zip(&self.sum) {
+            *state = *state + sum;
         }
     }
 }

@@ -1,25 +1,29 @@
-//! What is wrong with a request, said so that it can be put right.
+//! What is wrong with something sent in, said so that it can be put right.
+
+use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// One fault: where, a stable word, and a sentence with the remedy.
+/// One fault of a recording, a model document or a job: where, a stable word, and a sentence with the remedy.
 #[derive(Clone, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Fault {
-    /// JSON pointer into the request.
+    /// Where. In JSON an RFC 6901 pointer; in CSV `/columns/<name, or number from 1>`,
+    /// `/rows/<data row from 1>/<column name>` or `/rows/<data row from 1>`. Empty: the whole.
     #[schema(example = "/model/states/q/derivative")]
     pub pointer: String,
     #[schema(example = "unit_mismatch")]
-    pub code: String,
+    #[schema(value_type = String)]
+    pub code: Cow<'static, str>,
     #[schema(example = "column 9: cannot add rad/s and rad")]
     pub message: String,
 }
 
 impl Fault {
-    pub fn new(pointer: impl Into<String>, code: &str, message: impl Into<String>) -> Self {
+    pub fn new(pointer: impl Into<String>, code: &'static str, message: impl Into<String>) -> Self {
         Self {
             pointer: pointer.into(),
-            code: code.to_string(),
+            code: Cow::Borrowed(code),
             message: message.into(),
         }
     }
@@ -40,4 +44,9 @@ impl std::fmt::Display for Fault {
             write!(f, "{}: {}", self.pointer, self.message)
         }
     }
+}
+
+/// One step of a JSON pointer (RFC 6901).
+pub fn escape(name: &str) -> String {
+    name.replace('~', "~0").replace('/', "~1")
 }
