@@ -274,3 +274,26 @@ fn edits_add_one_parameter_whose_unit_follows() {
         "duplicate_name"
     );
 }
+
+/// Deep trees must not overflow the stack of a thread: that would end the whole process.
+#[test]
+fn the_longest_chain_of_operators_fits_on_a_small_stack() {
+    let chain = |operator: &str| format!("q{}", format!("{operator}q").repeat(990));
+    let check = move || {
+        for operator in ["+", "-"] {
+            let text = format!("moment + Mq*({})", chain(operator));
+            compile(changed("/states/q/derivative", json!(text))).expect("a model");
+        }
+        let deep = format!("{}q{}", "sin(".repeat(60), ")".repeat(60));
+        compile(changed(
+            "/states/q/derivative",
+            json!(format!("moment*{}", deep.replace("q", "alpha"))),
+        ))
+        .expect("a model");
+    };
+    let thread = std::thread::Builder::new()
+        .stack_size(1 << 20)
+        .spawn(check)
+        .expect("a thread");
+    thread.join().expect("no fault");
+}
