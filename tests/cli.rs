@@ -1,0 +1,173 @@
+//! The commands, run as a person would.
+
+mod common;
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use common::process::Process;
+use serde_json::Value;
+use trimtab::model::ModelDocument;
+
+fn trimtab(arguments: &[&str]) -> Output {
+    let program = env!("CARGO_BIN_EXE_trimtab");
+    let directory = Path::new(env!("CARGO_MANIFEST_DIR"));
+    Command::new(program)
+        .args(arguments)
+        .current_dir(directory)
+        .output()
+        .expect("the program runs")
+}
+
+fn said(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).expect("text")
+}
+
+#[track_caller]
+fn succeeds(arguments: &[&str]) -> String {
+    let output = trimtab(arguments);
+    assert!(output.status.success(), "{}", said(&output.stderr));
+    said(&output.stdout)
+}
+
+#[track_caller]
+fn fails(arguments: &[&str]) -> String {
+    let output = trimtab(arguments);
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output.stdout));
+    said(&output.stderr)
+}
+
+#[test]
+fn fit_works_without_a_server() {
+    let table = succeeds(&["fit", "data/elevator.csv", "--model", "short-period"]);
+    assert!(
+        table.contains("Mde") && table.contains("alpha_0 [elevator]") && table.contains("R²"),
+        "{table}"
+    );
+    let json = succeeds(&[
+        "fit",
+        "data/elevator.csv",
+        "-m",
+        "short-period",
+        "--fix",
+        "q_bias",
+        "--json",
+    ]);
+    let result: Value = serde_json::from_str(&json).expect("JSON");
+    assert_eq!(result["estimate"]["outcome"], "converged");
+    let bias = result["estimate"]["parameters"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .find(|p| p["name"] == "q_bias");
+    assert_eq!(bias.expect("the parameter")["fixed"], true);
+}
+
+#[test]
+fn what_cannot_be_done_is_said_with_the_remedy() {
+    let words = fails(&["fit", "data/elevator.csv", "--model", "short-periot"]);
+    assert!(
+        words.contains("no catalog model 'short-periot'; known are short-period"),
+        "{words}"
+    );
+    let words = fails(&[
+        "fit",
+        "data/elevator.csv",
+        "--model",
+        "lateral-directional-2",
+    ]);
+    assert!(
+        words.contains("no channel 'da' is recorded for the model's input"),
+        "{words}"
+    );
+    let words = fails(&["fit", "no-such-file.csv", "--model", "short-period"]);
+    assert!(words.contains("no-such-file.csv: No such file"), "{words}");
+    let words = fails(&[
+        "fit",
+        "data/elevator.csv",
+        "-m",
+        "short-period",
+        "--start",
+        "Ma",
+    ]);
+    assert!(
+        words.contains("--start 'Ma' should read NAME=VALUE"),
+        "{words}"
+    );
+    let words = fails(&[
+        "submit",
+        "data/elevator.csv",
+        "-m",
+        "short-period",
+        "--server",
+        "http://127.0.0.1:1",
+    ]);
+    assert!(
+        words.contains("the server does not answer") && words.contains("trimtab serve"),
+        "{words}"
+    );
+}
+
+#[test]
+fn submit_and_watch_go_to_a_server() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let server = Process::start(directory.path(), 1);
+    let job = [
+        "submit",
+        "data/aileron.csv",
+        "data/rudder.csv",
+        "-m",
+        "lateral-directional-4",
+        "--server",
+        &server.url,
+    ];
+    let id = succeeds(&job);
+    let table = succeeds(&["watch", id.trim(), "--server", &server.url]);
+    assert!(
+        table.contains("Ndr") && table.contains("V_e [rudder]"),
+        "{table}"
+    );
+    let words = fails(&["watch", "nonsense", "--server", &server.url]);
+    assert!(
+        words.contains("404") && words.contains("there is no job 'nonsense'"),
+        "{words}"
+    );
+    let bad = [
+        "submit",
+        "data/elevator.csv",
+        "-m",
+        "short-period",
+        "-c",
+        "q=qq",
+        "--watch",
+        "--server",
+        &server.url,
+    ];
+    let words = fails(&bad);
+    assert!(
+        words.contains("422") && words.contains("/channels/q") && words.contains("no channel 'qq'"),
+        "{words}"
+    );
+}
+
+#[test]
+fn a_server_is_not_put_where_others_can_reach_it() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let database = directory.path().join("never.db");
+    let database = database.to_str().expect("a path");
+    let words = fails(&["serve", "--listen", "0.0.0.0:0", "--database", database]);
+    assert!(words.contains("refusing to listen on 0.0.0.0:0"), "{words}");
+    assert!(!Path::new(database).exists());
+}
+
+#[test]
+fn the_catalog_can_be_read() {
+    assert!(
+        succeeds(&["model"])
+            .lines()
+            .any(|line| line.starts_with("lateral-directional-4 "))
+    );
+    let document: ModelDocument =
+        toml::from_str(&succeeds(&["model", "short-period"])).expect("a document");
+    assert_eq!(document.name, "short-period");
+}
