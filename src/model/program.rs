@@ -32,11 +32,70 @@ impl Slots {
     }
 }
 
+/// What an instruction does with its operands a, b, c. Flat, so that it is told by one jump.
 #[derive(Clone, Copy, Debug)]
 enum Operation {
-    Unary(Unary),
-    Binary(Binary),
+    Negate,
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Tanh,
+    Exp,
+    Ln,
+    Sqrt,
+    Abs,
+    Sign,
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+    Atan2,
+    Less,
+    LessOrEqual,
     Select,
+    /// c + a b, rounded as the two operations are.
+    MultiplyAdd,
+    /// c - a b, rounded as the two operations are.
+    MultiplySubtract,
+}
+
+impl From<Unary> for Operation {
+    fn from(unary: Unary) -> Self {
+        match unary {
+            Unary::Negate => Self::Negate,
+            Unary::Sin => Self::Sin,
+            Unary::Cos => Self::Cos,
+            Unary::Tan => Self::Tan,
+            Unary::Asin => Self::Asin,
+            Unary::Acos => Self::Acos,
+            Unary::Atan => Self::Atan,
+            Unary::Tanh => Self::Tanh,
+            Unary::Exp => Self::Exp,
+            Unary::Ln => Self::Ln,
+            Unary::Sqrt => Self::Sqrt,
+            Unary::Abs => Self::Abs,
+            Unary::Sign => Self::Sign,
+        }
+    }
+}
+
+impl From<Binary> for Operation {
+    fn from(binary: Binary) -> Self {
+        match binary {
+            Binary::Add => Self::Add,
+            Binary::Subtract => Self::Subtract,
+            Binary::Multiply => Self::Multiply,
+            Binary::Divide => Self::Divide,
+            Binary::Power => Self::Power,
+            Binary::Atan2 => Self::Atan2,
+            Binary::Less => Self::Less,
+            Binary::LessOrEqual => Self::LessOrEqual,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -67,14 +126,7 @@ pub struct Workspace<T>(Vec<T>);
 
 impl Program {
     pub(super) fn compile(graph: &Graph, slots: Slots, roots: &[NodeId]) -> Self {
-        let mut needed = vec![false; graph.len()];
-        roots.iter().for_each(|&root| needed[root as usize] = true);
-        for id in (0..graph.len()).rev() {
-            if needed[id] {
-                operands(graph.node(id as NodeId))
-                    .for_each(|operand| needed[operand as usize] = true);
-            }
-        }
+        let uses = uses(graph, roots);
         let mut program = Self {
             slots,
             registers: slots.count(),
@@ -84,15 +136,46 @@ impl Program {
             results: Vec::new(),
             varies: Vec::new(),
         };
-        let mut register = vec![0_u32; graph.len()];
+        let needed = || (0..graph.len()).filter(|&id| uses[id] > 0);
         let mut varies = vec![false; graph.len()];
-        let first_parameter = slots.parameter(0);
-        for id in (0..graph.len()).filter(|&id| needed[id]) {
-            let node = graph.node(id as NodeId);
-            varies[id] = match node {
-                Node::Symbol(slot) => slot < first_parameter,
-                _ => operands(node).any(|operand| varies[operand as usize]),
+        for id in needed() {
+            varies[id] = match graph.node(id as NodeId) {
+                Node::Symbol(slot) => slot < slots.parameter(0),
+                node => operands(node).any(|operand| varies[operand as usize]),
             };
+        }
+        // a product that only one sum uses becomes a part of it
+        let product = |id: NodeId| match graph.node(id) {
+            Node::Binary(Binary::Multiply, a, b)
+                if uses[id as usize] == 1 && varies[id as usize] =>
+            {
+                Some((a, b))
+            }
+            _ => None,
+        };
+        let mut absorbed = vec![false; graph.len()];
+        let mut sums = vec![None; graph.len()];
+        for id in needed() {
+            let (operation, rest, factor) = match graph.node(id as NodeId) {
+                Node::Binary(Binary::Add, a, b) if product(b).is_some() => {
+                    (Operation::MultiplyAdd, a, b)
+                }
+                Node::Binary(Binary::Add, a, b) if product(a).is_some() => {
+                    (Operation::MultiplyAdd, b, a)
+                }
+                Node::Binary(Binary::Subtract, a, b) if product(b).is_some() => {
+                    (Operation::MultiplySubtract, a, b)
+                }
+                _ => continue,
+            };
+            if let Some((a, b)) = product(factor) {
+                absorbed[factor as usize] = true;
+                sums[id] = Some((operation, a, b, rest));
+            }
+        }
+        let mut register = vec![0_u32; graph.len()];
+        for id in needed().filter(|&id| !absorbed[id]) {
+            let node = graph.node(id as NodeId);
             if let Node::Symbol(slot) = node {
                 register[id] = slot;
                 continue;
@@ -100,34 +183,24 @@ impl Program {
             let target = program.registers as u32;
             program.registers += 1;
             register[id] = target;
+            if let Node::Constant(bits) = node {
+                program.constants.push((target, f64::from_bits(bits)));
+                continue;
+            }
             let at = |operand: NodeId| register[operand as usize];
-            let instruction = match node {
-                Node::Constant(bits) => {
-                    program.constants.push((target, f64::from_bits(bits)));
-                    continue;
-                }
-                Node::Symbol(_) => continue,
-                Node::Unary(unary, a) => Instruction {
-                    operation: Operation::Unary(unary),
-                    target,
-                    a: at(a),
-                    b: 0,
-                    c: 0,
-                },
-                Node::Binary(binary, a, b) => Instruction {
-                    operation: Operation::Binary(binary),
-                    target,
-                    a: at(a),
-                    b: at(b),
-                    c: 0,
-                },
-                Node::Select(a, b, c) => Instruction {
-                    operation: Operation::Select,
-                    target,
-                    a: at(a),
-                    b: at(b),
-                    c: at(c),
-                },
+            let (operation, a, b, c) = match (sums[id], node) {
+                (Some((operation, a, b, c)), _) => (operation, at(a), at(b), at(c)),
+                (None, Node::Unary(unary, a)) => (unary.into(), at(a), 0, 0),
+                (None, Node::Binary(binary, a, b)) => (binary.into(), at(a), at(b), 0),
+                (None, Node::Select(a, b, c)) => (Operation::Select, at(a), at(b), at(c)),
+                (None, Node::Constant(_) | Node::Symbol(_)) => continue,
+            };
+            let instruction = Instruction {
+                operation,
+                target,
+                a,
+                b,
+                c,
             };
             if varies[id] {
                 program.body.push(instruction)
@@ -219,6 +292,19 @@ impl Program {
     }
 }
 
+/// How often each node is used by those that `roots` need; roots count as used from outside.
+fn uses(graph: &Graph, roots: &[NodeId]) -> Vec<u32> {
+    let mut uses = vec![0_u32; graph.len()];
+    // twice, so that no sum takes a root's product for its own
+    roots.iter().for_each(|&root| uses[root as usize] += 2);
+    for id in (0..graph.len()).rev() {
+        if uses[id] > 0 {
+            operands(graph.node(id as NodeId)).for_each(|operand| uses[operand as usize] += 1);
+        }
+    }
+    uses
+}
+
 fn operands(node: Node) -> impl Iterator<Item = NodeId> {
     let list = match node {
         Node::Constant(_) | Node::Symbol(_) => [None; 3],
@@ -238,40 +324,32 @@ fn execute_lanes(instructions: &[Instruction], registers: &mut [Lanes]) {
 fn execute<T: Scalar>(instructions: &[Instruction], registers: &mut [T]) {
     for instruction in instructions {
         let a = registers[instruction.a as usize];
-        let value = match instruction.operation {
-            Operation::Binary(binary) => {
-                let b = registers[instruction.b as usize];
-                match binary {
-                    Binary::Add => a + b,
-                    Binary::Subtract => a - b,
-                    Binary::Multiply => a * b,
-                    Binary::Divide => a / b,
-                    Binary::Power => a.power(b),
-                    Binary::Atan2 => a.atan2(b),
-                    Binary::Less => a.less(b),
-                    Binary::LessOrEqual => a.less_or_equal(b),
-                }
-            }
-            Operation::Unary(unary) => match unary {
-                Unary::Negate => -a,
-                Unary::Sin => a.sin(),
-                Unary::Cos => a.cos(),
-                Unary::Tan => a.tan(),
-                Unary::Asin => a.asin(),
-                Unary::Acos => a.acos(),
-                Unary::Atan => a.atan(),
-                Unary::Tanh => a.tanh(),
-                Unary::Exp => a.exp(),
-                Unary::Ln => a.ln(),
-                Unary::Sqrt => a.sqrt(),
-                Unary::Abs => a.abs(),
-                Unary::Sign => a.sign(),
-            },
-            Operation::Select => a.select(
-                registers[instruction.b as usize],
-                registers[instruction.c as usize],
-            ),
+        let b = registers[instruction.b as usize];
+        registers[instruction.target as usize] = match instruction.operation {
+            Operation::Add => a + b,
+            Operation::Subtract => a - b,
+            Operation::Multiply => a * b,
+            Operation::MultiplyAdd => registers[instruction.c as usize] + a * b,
+            Operation::MultiplySubtract => registers[instruction.c as usize] - a * b,
+            Operation::Divide => a / b,
+            Operation::Power => a.power(b),
+            Operation::Atan2 => a.atan2(b),
+            Operation::Less => a.less(b),
+            Operation::LessOrEqual => a.less_or_equal(b),
+            Operation::Select => a.select(b, registers[instruction.c as usize]),
+            Operation::Negate => -a,
+            Operation::Sin => a.sin(),
+            Operation::Cos => a.cos(),
+            Operation::Tan => a.tan(),
+            Operation::Asin => a.asin(),
+            Operation::Acos => a.acos(),
+            Operation::Atan => a.atan(),
+            Operation::Tanh => a.tanh(),
+            Operation::Exp => a.exp(),
+            Operation::Ln => a.ln(),
+            Operation::Sqrt => a.sqrt(),
+            Operation::Abs => a.abs(),
+            Operation::Sign => a.sign(),
         };
-        registers[instruction.target as usize] = value;
     }
 }

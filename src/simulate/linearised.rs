@@ -68,7 +68,12 @@ impl<'m> Linearised<'m> {
     }
 
     /// A result over the block.
-    pub fn over_block(&self, result: usize) -> &[f64; BLOCK] {
-        &self.values[result]
+    pub fn over_block(&self, stage: usize, result: usize) -> &[f64; BLOCK] {
+        &self.values[stage * self.results + result]
+    }
+
+    /// Whether a result changes from sample to sample.
+    pub fn varies(&self, result: usize) -> bool {
+        self.program.varies(result)
     }
 }

@@ -3,73 +3,102 @@
 use multiversion::multiversion;
 
 use super::columns::Columns;
-use super::linearised::Linearised;
+use super::linearised::{BLOCK, Linearised};
 use super::method::Stage;
-use super::pack::{Pack, add_scaled, packs};
+use super::pack::{PACK, Pack, add_scaled, packs, plus, scaled};
 use super::segment::Steps;
 use crate::model::Model;
 
+/// One product of a recursion: an entry of a Jacobian times a row of ∂x/∂θ.
+#[derive(Clone, Copy)]
+struct Product {
+    entry: usize,
+    state: usize,
+}
+
+/// An entry of a Jacobian by parameters that belongs to a column, and where it stands in a block of rows.
+#[derive(Clone, Copy)]
+struct Place {
+    entry: usize,
+    /// Number within the rows of one sample.
+    number: usize,
+}
+
 /// ∂x/∂θ at one sample, and what is needed to get to the next.
 pub(super) struct Recursion {
-    /// Packs of a row.
+    states: usize,
+    /// Packs of a row of ∂x/∂θ.
     width: usize,
     /// By state, then column.
     current: Vec<Pack>,
     stage: Vec<Pack>,
     slope: Vec<Pack>,
     sum: Vec<Pack>,
-    /// (row, state) of the entries of ∂f/∂x.
-    by_state: Vec<(usize, usize)>,
-    /// Entry of ∂f/∂θ, row and column, for those that belong to a column.
-    by_parameter: Vec<(usize, usize, usize)>,
-    /// (output, state) of the entries of ∂g/∂x.
-    observed_states: Vec<(usize, usize)>,
-    /// Entry of ∂g/∂θ, output and place in its row, for those that belong to a column.
-    observed_parameters: Vec<(usize, usize, usize)>,
-    /// By output: packs of a row.
+    /// ∂f/∂x, by row.
+    by_state: Vec<Vec<Product>>,
+    by_parameter: Vec<Place>,
+    /// ∂f/∂θ as rows of packs: by stage, then sample of the block.
+    forcing: Vec<Pack>,
+    /// ∂g/∂x, by output.
+    observed_states: Vec<Vec<Product>>,
+    /// ∂g/∂θ, by output.
+    observed_parameters: Vec<Vec<Place>>,
+    /// ∂g/∂θ as rows of packs: by output, then sample of the block.
+    observed: Vec<Vec<Pack>>,
+    /// By output: packs of a row of ∂y/∂θ.
     row_widths: Vec<usize>,
 }
 
 impl Recursion {
-    pub fn new(model: &Model, columns: &Columns) -> Self {
+    pub fn new(model: &Model, columns: &Columns, stages: usize) -> Self {
+        let (states, outputs) = (model.states.len(), columns.outputs());
         let width = packs(columns.dynamic.len());
-        let dynamics = &model.dynamics_jacobian;
         let column_of = |parameter: usize| columns.dynamic.iter().position(|&p| p == parameter);
+        let dynamics = &model.dynamics_jacobian;
         let by_parameter = (dynamics.by_parameter.iter().enumerate())
             .filter_map(|(i, &(row, parameter))| {
-                Some((dynamics.by_state.len() + i, row, column_of(parameter)?))
+                let number = row * width * PACK + column_of(parameter)?;
+                Some(Place {
+                    entry: dynamics.by_state.len() + i,
+                    number,
+                })
             })
             .collect();
         let observation = &model.observation_jacobian;
-        let place_of = |output: usize, parameter: usize| {
-            columns
+        let mut observed_parameters = vec![Vec::new(); outputs];
+        for (i, &(output, parameter)) in observation.by_parameter.iter().enumerate() {
+            if let Some(number) = columns
                 .of_output(output)
                 .iter()
                 .position(|&p| p == parameter)
-        };
-        let observed_parameters = (observation.by_parameter.iter().enumerate())
-            .filter_map(|(i, &(output, parameter))| {
-                Some((
-                    observation.by_state.len() + i,
-                    output,
-                    place_of(output, parameter)?,
-                ))
-            })
+            {
+                observed_parameters[output].push(Place {
+                    entry: observation.by_state.len() + i,
+                    number,
+                });
+            }
+        }
+        let zeros = || vec![Pack::default(); width * states];
+        let row_widths: Vec<usize> = (0..outputs)
+            .map(|output| packs(columns.of_output(output).len()))
             .collect();
-        let zeros = || vec![Pack::default(); width * model.states.len()];
         Self {
+            states,
             width,
             current: zeros(),
             stage: zeros(),
             slope: zeros(),
             sum: zeros(),
-            by_state: dynamics.by_state.clone(),
+            by_state: by_row(&dynamics.by_state, states),
             by_parameter,
-            observed_states: observation.by_state.clone(),
+            forcing: vec![Pack::default(); stages * BLOCK * width * states],
+            observed_states: by_row(&observation.by_state, outputs),
             observed_parameters,
-            row_widths: (0..columns.outputs())
-                .map(|output| packs(columns.of_output(output).len()))
+            observed: row_widths
+                .iter()
+                .map(|&width| vec![Pack::default(); BLOCK * width])
                 .collect(),
+            row_widths,
         }
     }
 
@@ -89,24 +118,64 @@ impl Recursion {
         }
     }
 
+    /// Puts the Jacobians by parameters of a block into rows of packs: entries that only θ changes when
+    /// `constant`, all others otherwise. Places are the same in every block, so that what stands stays.
+    pub fn place(
+        &mut self,
+        constant: bool,
+        stages: usize,
+        dynamics: &Linearised<'_>,
+        observation: &Linearised<'_>,
+    ) {
+        let sample = self.width * self.states * PACK;
+        let forcing = self.forcing.as_flattened_mut();
+        for place in self
+            .by_parameter
+            .iter()
+            .filter(|place| dynamics.varies(place.entry) != constant)
+        {
+            for stage in 0..stages {
+                let to = forcing[stage * BLOCK * sample..]
+                    .iter_mut()
+                    .skip(place.number)
+                    .step_by(sample);
+                to.zip(dynamics.over_block(stage, place.entry))
+                    .for_each(|(to, &value)| *to = value);
+            }
+        }
+        for ((places, rows), &width) in self
+            .observed_parameters
+            .iter()
+            .zip(&mut self.observed)
+            .zip(&self.row_widths)
+        {
+            for place in places
+                .iter()
+                .filter(|place| observation.varies(place.entry) != constant)
+            {
+                let to = rows
+                    .as_flattened_mut()
+                    .iter_mut()
+                    .skip(place.number)
+                    .step_by(width * PACK);
+                to.zip(observation.over_block(0, place.entry))
+                    .for_each(|(to, &value)| *to = value);
+            }
+        }
+    }
+
     /// ∂y/∂θ = ∂g/∂x ∂x/∂θ + ∂g/∂θ at sample `k` of the block.
     #[inline(always)]
     fn form_rows(&self, k: usize, observation: &Linearised<'_>, rows: &mut [Vec<Pack>]) {
-        for (rows, &width) in rows.iter_mut().zip(&self.row_widths) {
-            rows[k * width..(k + 1) * width].fill(Pack::default());
-        }
-        for (entry, &(output, state)) in self.observed_states.iter().enumerate() {
-            let from = &self.current[state * self.width..(state + 1) * self.width];
-            let at = k * self.row_widths[output];
-            add_scaled(
-                &mut rows[output][at..at + self.width],
-                observation.value(0, entry, k),
-                from,
-            );
-        }
-        for &(entry, output, place) in &self.observed_parameters {
-            let at = k * self.row_widths[output];
-            rows[output][at..].as_flattened_mut()[place] += observation.value(0, entry, k);
+        for (output, rows) in rows.iter_mut().enumerate() {
+            let stride = self.row_widths[output];
+            let row = &mut rows[k * stride..(k + 1) * stride];
+            row.copy_from_slice(&self.observed[output][k * stride..(k + 1) * stride]);
+            for product in &self.observed_states[output] {
+                let from =
+                    &self.current[product.state * self.width..(product.state + 1) * self.width];
+                add_scaled(row, observation.value(0, product.entry, k), from);
+            }
         }
     }
 
@@ -117,27 +186,41 @@ impl Recursion {
         self.sum.copy_from_slice(&self.current);
         for (s, stage) in stages.iter().enumerate() {
             if s > 0 {
-                self.stage.copy_from_slice(&self.current);
-                add_scaled(&mut self.stage, h * stage.advance, &self.slope);
+                let advance = h * stage.advance;
+                for ((to, &from), &slope) in
+                    self.stage.iter_mut().zip(&self.current).zip(&self.slope)
+                {
+                    *to = plus(from, scaled(advance, slope));
+                }
             }
             let states = if s > 0 { &self.stage } else { &self.current };
-            self.slope.fill(Pack::default());
-            for (entry, &(row, state)) in self.by_state.iter().enumerate() {
-                let from = &states[state * width..(state + 1) * width];
-                add_scaled(
-                    &mut self.slope[row * width..(row + 1) * width],
-                    dynamics.value(s, entry, k),
-                    from,
-                );
+            let at = (s * BLOCK + k) * width * self.states;
+            let forcing = &self.forcing[at..at + width * self.states];
+            let weight = h * stage.weight;
+            for (row, products) in self.by_state.iter().enumerate() {
+                for pack in 0..width {
+                    let mut slope = forcing[row * width + pack];
+                    for product in products {
+                        let value = dynamics.value(s, product.entry, k);
+                        slope = plus(slope, scaled(value, states[product.state * width + pack]));
+                    }
+                    self.slope[row * width + pack] = slope;
+                    let sum = &mut self.sum[row * width + pack];
+                    *sum = plus(*sum, scaled(weight, slope));
+                }
             }
-            let slope = self.slope.as_flattened_mut();
-            for &(entry, row, column) in &self.by_parameter {
-                slope[row * width * super::pack::PACK + column] += dynamics.value(s, entry, k);
-            }
-            add_scaled(&mut self.sum, h * stage.weight, &self.slope);
         }
         std::mem::swap(&mut self.current, &mut self.sum);
     }
+}
+
+/// Entries (row, state) as products, by row.
+fn by_row(entries: &[(usize, usize)], rows: usize) -> Vec<Vec<Product>> {
+    let mut products = vec![Vec::new(); rows];
+    for (entry, &(row, state)) in entries.iter().enumerate() {
+        products[row].push(Product { entry, state });
+    }
+    products
 }
 
 /// A block of samples, linearised.

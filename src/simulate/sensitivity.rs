@@ -31,7 +31,7 @@ pub struct Block<'a> {
 impl Block<'_> {
     /// y of one output, sample by sample.
     pub fn output(&self, output: usize) -> &[f64] {
-        &self.outputs.over_block(output)[..self.len]
+        &self.outputs.over_block(0, output)[..self.len]
     }
 
     /// ∂y/∂θ of one output at sample `k` of the block, in the order of [`Columns::of_output`].
@@ -86,7 +86,7 @@ impl<'m> Sensitivities<'m> {
             dynamics: Linearised::new(&model.dynamics_jacobian.program, stages.len()),
             observation: Linearised::new(&model.observation_jacobian.program, 1),
             outputs: Linearised::new(&model.observation, 1),
-            recursion: Recursion::new(model, columns),
+            recursion: Recursion::new(model, columns, stages.len()),
             stage_states: vec![[0.0; BLOCK]; stages.len() * model.states.len()],
             elapsed: [0.0; BLOCK],
             rows: (0..columns.outputs()).map(rows).collect(),
@@ -109,6 +109,9 @@ impl<'m> Sensitivities<'m> {
         self.outputs.set_parameters(parameters);
         let mut state = initial_state(self.model, parameters);
         self.recursion.start(self.model, self.columns, parameters);
+        let stages = self.stages.len();
+        self.recursion
+            .place(true, stages, &self.dynamics, &self.observation);
         let mut elapsed = 0.0;
         for first in (0..segment.len()).step_by(BLOCK) {
             let len = BLOCK.min(segment.len() - first);
@@ -119,6 +122,8 @@ impl<'m> Sensitivities<'m> {
                 });
             }
             self.linearise(segment, first, len);
+            self.recursion
+                .place(false, stages, &self.dynamics, &self.observation);
             let block = Sweep {
                 stages: self.stages,
                 steps: &segment.steps,
