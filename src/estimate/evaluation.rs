@@ -1,12 +1,11 @@
 //! One look at the data for a θ: residuals, and with sensitivities the sums that a step is made of.
-//!
-//! Sums are kept by output and unweighted, since R is known only when all residuals are.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::local_sums::LocalSums;
 use super::options::{Noise, NoiseStructure};
 use super::problem::Problem;
+use super::sums::{ResidualSums, Sums, mirror};
 use crate::simulate::{Sensitivities, simulate};
 
 /// The simulation left the range of numbers: where, as far as it is known.
@@ -14,19 +13,6 @@ use crate::simulate::{Sensitivities, simulate};
 pub struct LeftRange {
     pub segment: usize,
     pub sample: Option<usize>,
-}
-
-/// Σ e eᵀ over all samples, outputs by outputs; only the diagonal unless R is full.
-pub(super) type ResidualSums = DMatrix<f64>;
-
-/// For each pair of outputs (i, j), j ≤ i: Σ S_iᵀ S_j and Σ S_iᵀ e_j over all samples, in θ's places.
-#[derive(Clone, Debug)]
-pub(super) struct Sums {
-    pub residuals: ResidualSums,
-    /// By pair; see [`pair`].
-    pub products: Vec<DMatrix<f64>>,
-    /// By output i, then j: Σ S_iᵀ e_j.
-    pub gradients: Vec<Vec<DVector<f64>>>,
 }
 
 /// Evaluates a problem at any θ; buffers are kept.
@@ -149,19 +135,6 @@ impl<'p> Evaluator<'p> {
             Ok(total)
         } else {
             Err(LeftRange::default())
-        }
-    }
-}
-
-/// Where the pair of outputs (i, j), j ≤ i, is kept.
-pub(super) fn pair(i: usize, j: usize, full: bool) -> usize {
-    if full { i * (i + 1) / 2 + j } else { i }
-}
-
-fn mirror(sums: &mut DMatrix<f64>) {
-    for i in 0..sums.nrows() {
-        for j in 0..i {
-            sums[(j, i)] = sums[(i, j)];
         }
     }
 }

@@ -8,8 +8,9 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::evaluation::{Evaluator, LeftRange, ResidualSums, Sums, pair};
+use super::evaluation::{Evaluator, LeftRange};
 use super::options::{Noise, NoiseStructure};
+use super::sums::{ResidualSums, Sums, pair};
 
 /// All that an iteration needs to know at a θ, but for the small solve.
 #[derive(Clone, Debug)]

@@ -3,8 +3,8 @@
 use multiversion::multiversion;
 use nalgebra::DMatrix;
 
-use super::evaluation::{Sums, pair};
 use super::problem::Problem;
+use super::sums::{Sums, pair};
 use crate::simulate::{Block, PACK, Pack, Segment, add_scaled, packs, plus, scaled};
 
 pub(super) struct LocalSums {

@@ -18,6 +18,7 @@ mod output_error;
 mod problem;
 mod report;
 mod step;
+mod sums;
 mod unknowns;
 
 pub use evaluation::{Evaluator, LeftRange};

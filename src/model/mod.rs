@@ -8,6 +8,7 @@ mod compile;
 mod dimensions;
 mod document;
 mod edit;
+mod equations;
 pub mod expression;
 mod formula;
 mod graph;
