@@ -12,7 +12,7 @@ const ROOMS: [(&str, &[&str]); 11] = [
     ("job", &["estimate", "simulate", "model", "flight"]),
     ("store", &["job", "estimate", "model", "flight", "ingest"]),
     ("work", &["store", "job", "estimate", "model", "flight"]),
-    ("dashboard", &["job", "estimate"]),
+    ("dashboard", &["job", "estimate", "flight"]),
     (
         "http",
         &[

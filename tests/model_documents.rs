@@ -297,3 +297,38 @@ fn the_longest_chain_of_operators_fits_on_a_small_stack() {
         .expect("a thread");
     thread.join().expect("no fault");
 }
+
+#[test]
+fn an_edit_keeps_its_promise_on_units_with_an_offset_or_a_root() {
+    let mut document = document();
+    document["inputs"]["V"] = json!({"unit": "m/s"});
+    document["outputs"]["T"] = json!({"unit": "degC", "equation": "T0"});
+    document["parameters"]["T0"] = json!({"unit": "degC", "start": 15.0});
+    let declared: ModelDocument = serde_json::from_value(document).expect("a document");
+    let edit = |text: Value| {
+        serde_json::from_value::<Edit>(text)
+            .expect("an edit")
+            .apply(&declared)
+            .expect("edited")
+    };
+    let biased = edit(json!({"kind": "sensor_bias", "target": "T"}));
+    let model = Model::compile(&biased).expect("a model");
+    let bias = model
+        .parameters
+        .iter()
+        .find(|p| p.name == "T_bias")
+        .expect("the parameter");
+    assert_eq!(bias.unit.to_si(0.0), 0.0);
+    let rooted = edit(json!({"kind": "missing_term", "target": "q", "term": "sqrt(V)"}));
+    Model::compile(&rooted).expect("a model");
+}
+
+#[test]
+fn a_name_that_stands_twice_is_refused() {
+    let text = document().to_string().replacen("\"Ma\":", "\"Mq\":", 1);
+    let refused = serde_json::from_str::<ModelDocument>(&text).expect_err("a refusal");
+    assert!(
+        refused.to_string().contains("'Mq' is defined twice"),
+        "{refused}"
+    );
+}

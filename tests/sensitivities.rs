@@ -113,11 +113,20 @@ fn worst(model: &Model, a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
                     .collect()
             };
             let (a, b) = (column(a), column(b));
+            assert!(
+                a.iter().chain(&b).all(|value| value.is_finite()),
+                "{}",
+                model.document.name
+            );
             let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
             let difference: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a - b).collect();
-            if norm(&difference) > 0.0 {
-                worst = worst.max(norm(&difference) / norm(&b));
-            }
+            // a column of zeros must be one in both
+            let error = if norm(&b) > 0.0 {
+                norm(&difference) / norm(&b)
+            } else {
+                norm(&a)
+            };
+            worst = worst.max(error);
         }
     }
     worst

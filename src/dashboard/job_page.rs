@@ -5,6 +5,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use super::figure::history_svg;
 use super::style::CSS;
 use crate::estimate::{Estimate, TimeHistory, five_digits as number};
+use crate::flight::Finding;
 use crate::job::{Fault, Status};
 
 /// What the page shows.
@@ -15,6 +16,8 @@ pub struct JobView<'a> {
     pub status: Status,
     /// Why it failed.
     pub faults: &'a [Fault],
+    /// What is odd about the data in use.
+    pub findings: &'a [Finding],
     pub estimate: Option<&'a Estimate>,
     pub histories: &'a [TimeHistory],
 }
@@ -69,6 +72,9 @@ fn state(view: &JobView<'_>) -> Markup {
         }
         @if !view.faults.is_empty() {
             ul { @for fault in view.faults { li { code { (fault.pointer) } " " (fault.message) } } }
+        }
+        @for finding in view.findings {
+            p { strong { "Note: " } (finding.message) "; " (finding.remedy) }
         }
         @if !view.status.is_over() {
             // the log says when there is something new to show

@@ -8,11 +8,15 @@ use super::problem::Problem;
 use super::sums::{ResidualSums, Sums, mirror};
 use crate::simulate::{Sensitivities, simulate};
 
-/// The simulation left the range of numbers: where, as far as it is known.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-pub struct LeftRange {
-    pub segment: usize,
-    pub sample: Option<usize>,
+/// Why a θ gives no cost.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Unusable {
+    /// The simulation left the range of numbers.
+    LeftRange { segment: usize, sample: usize },
+    /// Outputs are finite, but the cost or a derivative of an output is not.
+    NotFinite,
+    /// The covariance of the residuals is singular: some outputs' residuals are not independent.
+    SingularNoise,
 }
 
 /// Evaluates a problem at any θ; buffers are kept.
@@ -56,7 +60,7 @@ impl<'p> Evaluator<'p> {
     }
 
     /// Residuals alone.
-    pub(super) fn residuals(&mut self, theta: &[f64]) -> Result<ResidualSums, LeftRange> {
+    pub(super) fn residuals(&mut self, theta: &[f64]) -> Result<ResidualSums, Unusable> {
         self.simulations += 1;
         let problem = self.problem;
         let options = &problem.options;
@@ -89,12 +93,12 @@ impl<'p> Evaluator<'p> {
         if sums.iter().all(|v| v.is_finite()) {
             Ok(sums)
         } else {
-            Err(LeftRange::default())
+            Err(Unusable::NotFinite)
         }
     }
 
     /// Residuals and the sums of their sensitivities.
-    pub(super) fn sums(&mut self, theta: &[f64]) -> Result<Sums, LeftRange> {
+    pub(super) fn sums(&mut self, theta: &[f64]) -> Result<Sums, Unusable> {
         self.evaluations += 1;
         let problem = self.problem;
         let outputs = problem.model.outputs.len();
@@ -119,9 +123,9 @@ impl<'p> Evaluator<'p> {
             let mut local = LocalSums::new(problem, self.full);
             self.machinery
                 .run(segment, &self.parameters, |block| local.add(block, segment))
-                .map_err(|diverged| LeftRange {
+                .map_err(|diverged| Unusable::LeftRange {
                     segment: index,
-                    sample: Some(diverged.sample),
+                    sample: diverged.sample,
                 })?;
             local.scatter(problem, index, &mut total);
         }
@@ -134,7 +138,7 @@ impl<'p> Evaluator<'p> {
         if finite {
             Ok(total)
         } else {
-            Err(LeftRange::default())
+            Err(Unusable::NotFinite)
         }
     }
 }

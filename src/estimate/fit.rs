@@ -5,7 +5,7 @@ use super::report::{OutputFit, OutputSeries, Series, TimeHistory};
 use crate::simulate::simulate;
 
 /// Measured and modelled time histories of all segments for θ.
-pub fn histories(problem: &Problem, theta: &[f64]) -> Vec<TimeHistory> {
+pub(super) fn histories(problem: &Problem, theta: &[f64]) -> Vec<TimeHistory> {
     let model = &problem.model;
     let options = &problem.options;
     let mut parameters = Vec::new();
@@ -50,8 +50,7 @@ pub fn histories(problem: &Problem, theta: &[f64]) -> Vec<TimeHistory> {
 }
 
 /// The fit of each output over all segments.
-pub(super) fn fits(problem: &Problem, theta: &[f64]) -> Vec<OutputFit> {
-    let histories = histories(problem, theta);
+pub(super) fn fits(problem: &Problem, histories: &[TimeHistory]) -> Vec<OutputFit> {
     let fit = |(i, output): (usize, &crate::model::Quantity)| {
         let all = |pick: fn(&OutputSeries) -> &Vec<f64>| -> Vec<f64> {
             histories

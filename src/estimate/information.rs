@@ -19,7 +19,7 @@ pub(super) struct Spectrum {
 }
 
 impl Spectrum {
-    /// `None` where the decomposition fails, which only numbers that are not finite bring about.
+    /// `None` where the decomposition fails: entries that are not finite, or no convergence.
     pub fn of(matrix: &DMatrix<f64>, diagonal: &DVector<f64>) -> Option<Self> {
         let scale = diagonal.map(|d| if d > 0.0 { d.sqrt().recip() } else { 0.0 });
         let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
@@ -27,6 +27,13 @@ impl Spectrum {
         });
         if scaled.iter().any(|v| !v.is_finite()) {
             return None;
+        }
+        if scaled.is_empty() {
+            return Some(Self {
+                scale,
+                values: DVector::zeros(0),
+                vectors: scaled,
+            });
         }
         let eigen = SymmetricEigen::try_new(scaled, f64::EPSILON, 10_000)?;
         Some(Self {

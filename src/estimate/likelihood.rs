@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::evaluation::{Evaluator, LeftRange};
+use super::evaluation::{Evaluator, Unusable};
 use super::options::{Noise, NoiseStructure};
 use super::sums::{ResidualSums, Sums, pair};
 
@@ -29,13 +29,12 @@ impl NormalEquations {
     ///
     /// # Errors
     /// The simulation leaves the range of numbers.
-    pub fn at(evaluator: &mut Evaluator<'_>, theta: &[f64]) -> Result<Self, LeftRange> {
+    pub fn at(evaluator: &mut Evaluator<'_>, theta: &[f64]) -> Result<Self, Unusable> {
         let sums = evaluator.sums(theta)?;
         let problem = evaluator.problem();
         let noise = &problem.options.noise;
         let samples = problem.samples();
-        let weighting =
-            Weighting::new(noise, &sums.residuals, samples).ok_or(LeftRange::default())?;
+        let weighting = Weighting::new(noise, &sums.residuals, samples)?;
         Ok(Self {
             information: weighting.information(&sums),
             descent: weighting.descent(&sums),
@@ -62,53 +61,43 @@ pub(super) struct Weighting {
     pub cost: f64,
 }
 
-/// Variances below this share of the largest possible one count as this: a perfect fit has no likelihood.
+/// The least variance, SI units squared: a perfect fit would have an infinite likelihood.
 const SMALLEST_VARIANCE: f64 = 1e-280;
 
+/// A pivot of the residuals' correlation matrix below this is rounding: the outputs are not independent.
+const SMALLEST_PIVOT: f64 = 1e-10;
+
 impl Weighting {
-    /// `None` where R is not positive definite.
-    pub fn new(noise: &Noise, residuals: &ResidualSums, samples: usize) -> Option<Self> {
+    /// # Errors
+    /// R is singular, or the cost is not finite.
+    pub fn new(noise: &Noise, residuals: &ResidualSums, samples: usize) -> Result<Self, Unusable> {
         let n = samples as f64;
         let outputs = residuals.nrows();
-        let covariance = match noise {
-            Noise::Given { variance } => {
-                DMatrix::from_diagonal(&DVector::from_column_slice(variance))
-            }
+        let (covariance, inverse, ln_det) = match noise {
+            Noise::Given { variance } => independent(DVector::from_column_slice(variance)),
             Noise::Estimated {
                 structure: NoiseStructure::Diagonal,
-            } => DMatrix::from_diagonal(
-                &residuals
+            } => independent(
+                residuals
                     .diagonal()
                     .map(|sum| (sum / n).max(SMALLEST_VARIANCE)),
             ),
             Noise::Estimated {
                 structure: NoiseStructure::Full,
-            } => residuals / n,
-        };
-        let (inverse, ln_det) = if matches!(
-            noise,
-            Noise::Estimated {
-                structure: NoiseStructure::Full
-            }
-        ) {
-            let factor = covariance.clone().cholesky()?;
-            let ln_det = 2.0 * factor.l_dirty().diagonal().map(f64::ln).sum();
-            (factor.inverse(), ln_det)
-        } else {
-            let variance = covariance.diagonal();
-            (
-                DMatrix::from_diagonal(&variance.map(f64::recip)),
-                variance.map(f64::ln).sum(),
-            )
+            } => correlated(residuals / n)?,
         };
         let quadratic = inverse.component_mul(residuals).sum();
         let cost = 0.5 * quadratic + 0.5 * n * ln_det + 0.5 * n * outputs as f64 * TAU.ln();
-        cost.is_finite().then_some(Self {
-            covariance,
-            inverse,
-            ln_det,
-            cost,
-        })
+        if cost.is_finite() {
+            Ok(Self {
+                covariance,
+                inverse,
+                ln_det,
+                cost,
+            })
+        } else {
+            Err(Unusable::NotFinite)
+        }
     }
 
     pub fn det(&self) -> f64 {
@@ -173,4 +162,31 @@ impl Weighting {
         }
         term
     }
+}
+
+type Factored = (DMatrix<f64>, DMatrix<f64>, f64);
+
+/// R, R⁻¹ and ln|R| of outputs whose noises are independent.
+fn independent(variance: DVector<f64>) -> Factored {
+    let inverse = DMatrix::from_diagonal(&variance.map(f64::recip));
+    let ln_det = variance.map(f64::ln).sum();
+    (DMatrix::from_diagonal(&variance), inverse, ln_det)
+}
+
+/// R, R⁻¹ and ln|R| of correlated outputs, by way of the correlation matrix: units must not decide what is singular.
+fn correlated(covariance: DMatrix<f64>) -> Result<Factored, Unusable> {
+    if covariance.iter().any(|v| !v.is_finite()) {
+        return Err(Unusable::NotFinite);
+    }
+    let deviation = covariance.diagonal().map(f64::sqrt);
+    let scale = DMatrix::from_diagonal(&deviation.map(f64::recip));
+    let factor = (&scale * &covariance * &scale)
+        .cholesky()
+        .ok_or(Unusable::SingularNoise)?;
+    let pivots = factor.l_dirty().diagonal();
+    if pivots.iter().any(|pivot| pivot * pivot < SMALLEST_PIVOT) {
+        return Err(Unusable::SingularNoise);
+    }
+    let ln_det = 2.0 * (pivots.map(f64::ln).sum() + deviation.map(f64::ln).sum());
+    Ok((covariance, &scale * factor.inverse() * &scale, ln_det))
 }

@@ -8,9 +8,12 @@
 //!
 //! and [`Estimate`] is the answer, with the reason why the solver stopped.
 
+mod answer;
+mod error_bounds;
 mod evaluation;
 mod fit;
 mod information;
+mod iterate;
 mod likelihood;
 mod local_sums;
 mod options;
@@ -21,8 +24,8 @@ mod step;
 mod sums;
 mod unknowns;
 
-pub use evaluation::{Evaluator, LeftRange};
-pub use fit::histories;
+pub use answer::Solution;
+pub use evaluation::{Evaluator, Unusable};
 pub use likelihood::NormalEquations;
 pub use options::{Method, Noise, NoiseStructure, Options};
 pub use output_error::{Observer, output_error};

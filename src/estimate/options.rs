@@ -12,8 +12,8 @@ pub struct Options {
     pub integrator: Integrator,
     pub input_interpolation: InputInterpolation,
     pub noise: Noise,
-    /// Converged when a full step would move the estimate by less than this many standard errors
-    /// (square root of stepᵀ F step, F the information matrix).
+    /// Converged when a full step would move the estimate by less than this many standard errors:
+    /// √(gᵀ H⁻¹ g), g the gradient and H the Hessian of the cost that the step is made with.
     #[schema(example = 1e-5, exclusive_minimum = 0.0)]
     pub tolerance: f64,
     /// The budget of iterations.
@@ -38,7 +38,8 @@ impl Default for Options {
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
-    /// Damped step, solved by singular value decomposition (Góes, Hemerly, Maciel eq. 36-37).
+    /// Damped step by singular value decomposition of the scaled, symmetric Hessian (Góes, Hemerly, Maciel
+    /// eq. 36-37): directions that the data do not see are left out.
     #[default]
     LevenbergMarquardt,
     /// Full step, halved while the cost rises.

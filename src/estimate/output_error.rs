@@ -2,16 +2,17 @@
 
 use std::ops::ControlFlow;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
-use super::evaluation::{Evaluator, LeftRange};
-use super::fit::fits;
-use super::information::Spectrum;
-use super::likelihood::{NormalEquations, Weighting};
+use super::answer::{Solution, answer};
+use super::error_bounds::ErrorBounds;
+use super::evaluation::{Evaluator, Unusable};
+use super::iterate::{Iterate, Taken};
+use super::likelihood::Weighting;
 use super::options::Method;
 use super::problem::Problem;
-use super::report::{Bound, CollinearSet, Estimate, Iteration, Outcome, ParameterEstimate};
-use super::step::{Newton, advanced, held};
+use super::report::{Iteration, Outcome};
+use super::step::advanced;
 
 /// Told of each iteration; may stop the solver.
 pub type Observer<'o> = dyn FnMut(&Iteration) -> ControlFlow<()> + 'o;
@@ -28,358 +29,196 @@ const MOST_TRIALS: usize = 16;
 /// The cost is a sum over all samples: differences below this share of it are rounding.
 const ROUNDING: f64 = 1e-13;
 
-/// Estimates θ from the start values of the problem. Returns the estimate and θ, SI.
+/// Estimates θ from the start values of the problem.
 ///
 /// # Errors
-/// The start values' own simulation leaves the range of numbers, so that there is nothing to begin with.
-pub fn output_error(
-    problem: &Problem,
-    observer: &mut Observer<'_>,
-) -> Result<(Estimate, Vec<f64>), LeftRange> {
+/// The start values give no cost, so that there is nothing to begin with.
+pub fn output_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<Solution, Unusable> {
     let mut evaluator = Evaluator::new(problem);
     let mut current = Iterate::at(problem, &mut evaluator, problem.unknowns.start())?;
-    let mut iteration = 0;
+    let mut taken = Taken::default();
     let mut damping = match problem.options.method {
         Method::LevenbergMarquardt => DAMPING_START,
         Method::GaussNewton => 0.0,
     };
-    let mut last = Taken::default();
-    let (outcome, reason) = loop {
-        let report = current.report(problem, iteration, &last);
-        if observer(&report).is_break() {
-            break (
-                Outcome::Cancelled,
-                format!("stopped on request after {iteration} iteration(s)"),
-            );
+    let mut iteration = 0;
+    let stopped = loop {
+        if observer(&current.report(problem, iteration, &taken)).is_break() {
+            break Stopped::OnRequest;
         }
         let Some(newton) = &current.newton else {
-            break (
-                Outcome::Stalled,
-                "the information matrix has entries that are not numbers".to_string(),
-            );
+            break Stopped::NoDirection;
         };
         let distance = newton.distance();
         if distance < problem.options.tolerance {
-            break current.finished(problem, distance);
+            break Stopped::Minimum { distance };
         }
         if iteration == problem.options.max_iterations {
-            let reason = format!(
-                "the budget of {iteration} iterations is used up; a further step would move the estimate by {distance:.1e} standard errors"
-            );
-            break (Outcome::Budget, reason);
+            break Stopped::Budget { distance };
         }
-        match better(problem, &mut evaluator, &current, damping) {
-            Search::Found(next, taken) => {
-                damping = taken.next_damping;
-                current = *next;
-                last = taken;
+        match search(problem, &mut evaluator, &current, damping) {
+            Ok((next, how)) => {
+                let eased = how.damping * DAMPING_EASED;
+                damping = if eased < DAMPING_NONE { 0.0 } else { eased };
+                (current, taken) = (*next, how);
                 iteration += 1;
             }
-            Search::Nothing { out_of_range: true } => {
-                let reason = "every step tried leads to a simulation that leaves the range of numbers; start closer, or set bounds";
-                break (Outcome::Diverged, reason.to_string());
-            }
-            Search::Nothing {
-                out_of_range: false,
-            } => {
-                let reason = format!(
-                    "no step lowers the cost any more, though the next one would be {distance:.1e} standard errors long"
-                );
-                break (Outcome::Stalled, reason);
-            }
+            Err(Nothing { in_range: true }) => break Stopped::Stalled { distance },
+            Err(Nothing { in_range: false }) => break Stopped::Diverged,
         }
     };
-    let estimate = current.estimate(problem, &evaluator, iteration, outcome, reason);
-    Ok((estimate, current.theta))
+    let bounds = ErrorBounds::new(&current.information, &current.held);
+    let (outcome, reason) = stopped.say(problem, iteration, &current, &bounds);
+    Ok(answer(
+        problem,
+        &current,
+        &bounds,
+        &evaluator,
+        iteration,
+        (outcome, reason),
+    ))
 }
 
-/// A θ and everything that is known there.
-struct Iterate {
-    theta: Vec<f64>,
-    weighting: Weighting,
-    information: DMatrix<f64>,
-    held: Vec<Option<Bound>>,
-    newton: Option<Newton>,
-}
-
-/// How an iterate was reached.
-#[derive(Clone, Copy, Default)]
-struct Taken {
-    length: f64,
-    damping: f64,
-    halvings: usize,
-    next_damping: f64,
-}
-
-enum Search {
-    Found(Box<Iterate>, Taken),
-    Nothing { out_of_range: bool },
+/// No θ of lower cost was found; was there any that could be simulated?
+struct Nothing {
+    in_range: bool,
 }
 
 /// Looks for a θ of lower cost: by halving the step (Gauss-Newton) or by damping it more (Levenberg-Marquardt).
-fn better(
+fn search(
     problem: &Problem,
     evaluator: &mut Evaluator<'_>,
     current: &Iterate,
     start_damping: f64,
-) -> Search {
+) -> Result<(Box<Iterate>, Taken), Nothing> {
     let Some(newton) = &current.newton else {
-        return Search::Nothing {
-            out_of_range: false,
-        };
+        return Err(Nothing { in_range: true });
     };
     let most = current.weighting.cost + ROUNDING * (1.0 + current.weighting.cost.abs());
-    let mut damping = start_damping;
-    let mut share = 1.0;
-    let mut out_of_range = false;
+    let (mut damping, mut share) = (start_damping, 1.0);
+    let mut in_range = false;
     for trial in 0..MOST_TRIALS {
         let step = newton.step(damping);
         let theta = advanced(&problem.unknowns, &current.theta, &step, share);
         // the first trial is nearly always taken: its sensitivities are then not worked out twice
-        let lower = trial == 0
-            || match evaluator.residuals(&theta) {
-                Ok(residuals) => {
-                    Weighting::new(&problem.options.noise, &residuals, problem.samples())
-                        .is_some_and(|weighting| weighting.cost <= most)
-                }
-                Err(_) => false,
-            };
-        let next = if lower {
-            Some(Iterate::at(problem, evaluator, theta))
-        } else {
-            None
-        };
-        match next {
-            Some(Ok(next)) if next.weighting.cost <= most => {
-                let moved = DVector::from_iterator(
-                    step.len(),
-                    next.theta.iter().zip(&current.theta).map(|(a, b)| a - b),
-                );
+        let worth_it = trial == 0
+            || evaluator.residuals(&theta).is_ok_and(|residuals| {
+                in_range = true;
+                let weighting =
+                    Weighting::new(&problem.options.noise, &residuals, problem.samples());
+                weighting.is_ok_and(|weighting| weighting.cost <= most)
+            });
+        if worth_it && let Ok(next) = Iterate::at(problem, evaluator, theta) {
+            in_range = true;
+            if next.weighting.cost <= most {
+                let moved = next.theta.iter().zip(&current.theta).map(|(a, b)| a - b);
+                let moved = DVector::from_iterator(step.len(), moved);
                 let length = moved.dot(&(&current.information * &moved)).max(0.0).sqrt();
-                let eased = damping * DAMPING_EASED;
-                let next_damping = if eased < DAMPING_NONE { 0.0 } else { eased };
-                return Search::Found(
+                return Ok((
                     Box::new(next),
                     Taken {
                         length,
                         damping,
                         halvings: trial,
-                        next_damping,
                     },
-                );
+                ));
             }
-            Some(Err(_)) => out_of_range = true,
-            _ => {}
         }
         match problem.options.method {
             Method::GaussNewton => share *= 0.5,
             Method::LevenbergMarquardt => damping = (damping * DAMPING_RAISED).max(DAMPING_START),
         }
     }
-    Search::Nothing { out_of_range }
+    Err(Nothing { in_range })
 }
 
-impl Iterate {
-    fn at(
+/// Why the loop ended.
+enum Stopped {
+    Minimum { distance: f64 },
+    Budget { distance: f64 },
+    Stalled { distance: f64 },
+    Diverged,
+    NoDirection,
+    OnRequest,
+}
+
+impl Stopped {
+    /// The outcome, and what to say of it.
+    fn say(
+        self,
         problem: &Problem,
-        evaluator: &mut Evaluator<'_>,
-        theta: Vec<f64>,
-    ) -> Result<Self, LeftRange> {
-        let equations = NormalEquations::at(evaluator, &theta)?;
-        let held = held(&problem.unknowns, &theta, &equations.descent);
-        let newton = Newton::new(
-            &equations.information,
-            equations.relaxation.as_ref(),
-            &equations.descent,
-            &held,
-        );
-        let NormalEquations {
-            weighting,
-            information,
-            ..
-        } = equations;
-        Ok(Self {
-            theta,
-            weighting,
-            information,
-            held,
-            newton,
-        })
-    }
-
-    fn report(&self, problem: &Problem, number: usize, taken: &Taken) -> Iteration {
-        Iteration {
-            number,
-            cost: self.weighting.cost,
-            det_r: self.weighting.det(),
-            variance: self
-                .weighting
-                .covariance
-                .diagonal()
-                .iter()
-                .copied()
-                .collect(),
-            parameters: problem.in_own_units(&self.theta),
-            gradient_norm: self.newton.as_ref().map_or(0.0, Newton::gradient_norm),
-            step: taken.length,
-            damping: taken.damping,
-            halvings: taken.halvings,
+        iterations: usize,
+        at: &Iterate,
+        bounds: &ErrorBounds,
+    ) -> (Outcome, String) {
+        match self {
+            Self::Minimum { distance } => minimum(problem, at, bounds, distance),
+            Self::Budget { distance } => {
+                let reason = format!(
+                    "the budget of {iterations} iterations is used up; a further step would move the estimate by {distance:.1e} standard errors"
+                );
+                (Outcome::Budget, reason)
+            }
+            Self::Stalled { distance } => {
+                let remedy = match problem.options.method {
+                    Method::GaussNewton => {
+                        "; try the method levenberg_marquardt, or other start values"
+                    }
+                    Method::LevenbergMarquardt => "; try other start values",
+                };
+                let reason = format!(
+                    "no step lowers the cost any more, though the next one would be {distance:.1e} standard errors long{remedy}"
+                );
+                (Outcome::Stalled, reason)
+            }
+            Self::Diverged => {
+                let reason = "every step tried leads to a simulation that leaves the range of numbers; start closer, or set bounds";
+                (Outcome::Diverged, reason.to_string())
+            }
+            Self::NoDirection => (
+                Outcome::Stalled,
+                "the information matrix gives no direction to go on in".to_string(),
+            ),
+            Self::OnRequest => (
+                Outcome::Cancelled,
+                format!("stopped on request after {iterations} iteration(s)"),
+            ),
         }
     }
+}
 
-    /// The outcome at a point from which no step of any length leads further down.
-    fn finished(&self, problem: &Problem, distance: f64) -> (Outcome, String) {
-        let collinear = self.collinear(problem);
-        if !collinear.is_empty() {
-            let sets: Vec<String> = collinear
-                .iter()
-                .map(|set| set.parameters.join(" + "))
-                .collect();
-            let reason = format!(
-                "the data cannot tell apart, or cannot see: {}; fix one of each set, or fly a maneuver that separates them",
-                sets.join("; ")
-            );
-            return (Outcome::Singular, reason);
-        }
-        let at_bound: Vec<String> = (0..self.held.len())
-            .filter(|&i| self.held[i].is_some())
-            .map(|i| problem.name(i))
+/// A point from which no step of any length leads further down: what kind of one.
+fn minimum(
+    problem: &Problem,
+    at: &Iterate,
+    bounds: &ErrorBounds,
+    distance: f64,
+) -> (Outcome, String) {
+    let collinear = bounds.collinear(problem);
+    if !collinear.is_empty() {
+        let sets: Vec<String> = collinear
+            .iter()
+            .map(|set| set.parameters.join(" + "))
             .collect();
         let reason = format!(
-            "converged: a further step would move the estimate by {distance:.1e} standard errors"
+            "the data cannot tell apart, or cannot see: {}; fix one of each set, or fly a maneuver that separates them",
+            sets.join("; ")
         );
-        if at_bound.is_empty() {
-            (Outcome::Converged, reason)
-        } else {
-            (
-                Outcome::AtBound,
-                format!("{reason}; held at a bound: {}", at_bound.join(", ")),
-            )
-        }
+        return (Outcome::Singular, reason);
     }
-
-    fn moving(&self) -> Vec<usize> {
-        (0..self.held.len())
-            .filter(|&i| self.held[i].is_none())
-            .collect()
-    }
-
-    fn spectrum(&self) -> Option<Spectrum> {
-        let moving = self.moving();
-        let own = self
-            .information
-            .select_rows(&moving)
-            .select_columns(&moving);
-        Spectrum::of(&own, &own.diagonal())
-    }
-
-    fn collinear(&self, problem: &Problem) -> Vec<CollinearSet> {
-        let moving = self.moving();
-        let sets = self
-            .spectrum()
-            .map_or(Vec::new(), |spectrum| spectrum.collinear());
-        let named = |members: Vec<(usize, f64)>| {
-            let own_unit = |&(i, component): &(usize, f64)| {
-                let place = moving[i];
-                (
-                    problem.name(place),
-                    component
-                        / problem.model.parameters[problem.unknowns.at(place).parameter]
-                            .unit
-                            .scale,
-                )
-            };
-            let (parameters, mut direction): (Vec<String>, Vec<f64>) =
-                members.iter().map(own_unit).unzip();
-            let largest = direction
-                .iter()
-                .fold(0.0, |a: f64, b| if b.abs() > a.abs() { *b } else { a });
-            direction
-                .iter_mut()
-                .for_each(|component| *component /= largest);
-            CollinearSet {
-                parameters,
-                direction,
-            }
-        };
-        sets.into_iter().map(named).collect()
-    }
-
-    fn estimate(
-        &self,
-        problem: &Problem,
-        evaluator: &Evaluator<'_>,
-        iterations: usize,
-        outcome: Outcome,
-        reason: String,
-    ) -> Estimate {
-        let collinear = self.collinear(problem);
-        let moving = self.moving();
-        let covariance = self.spectrum().map(|spectrum| spectrum.inverse());
-        let mut standard_errors: Vec<Option<f64>> = vec![None; self.theta.len()];
-        let mut correlation = Vec::new();
-        if let Some(covariance) = &covariance {
-            let error = |i: usize| covariance[(i, i)].sqrt();
-            for (i, &place) in moving.iter().enumerate() {
-                let unseen = collinear
-                    .iter()
-                    .any(|set| set.parameters.contains(&problem.name(place)));
-                standard_errors[place] = Some(error(i)).filter(|e| !unseen && e.is_finite());
-            }
-            if collinear.is_empty() {
-                let n = self.theta.len();
-                correlation = vec![vec![0.0; n]; n];
-                (0..n).for_each(|i| correlation[i][i] = 1.0);
-                for (a, &i) in moving.iter().enumerate() {
-                    for (b, &j) in moving.iter().enumerate().filter(|&(b, _)| b != a) {
-                        correlation[i][j] = covariance[(a, b)] / (error(a) * error(b));
-                    }
-                }
-            }
-        }
-        let covariance = &self.weighting.covariance;
-        Estimate {
-            outcome,
-            reason,
-            iterations,
-            evaluations: evaluator.evaluations,
-            simulations: evaluator.simulations,
-            cost: self.weighting.cost,
-            det_r: self.weighting.det(),
-            noise_covariance: covariance
-                .row_iter()
-                .map(|row| row.iter().copied().collect())
-                .collect(),
-            outputs: fits(problem, &self.theta),
-            parameters: self.table(problem, &standard_errors),
-            correlation,
-            collinear,
-            samples: problem.samples(),
-        }
-    }
-
-    /// All parameters, fixed ones too, in the order of the document.
-    fn table(&self, problem: &Problem, standard_errors: &[Option<f64>]) -> Vec<ParameterEstimate> {
-        let unknowns = &problem.unknowns;
-        let row = |(index, unknown): (usize, &super::Unknown)| {
-            let info = &problem.model.parameters[unknown.parameter];
-            let own = |value: f64| (value - info.unit.offset) / info.unit.scale;
-            let place = unknowns.free.iter().position(|&i| i == index);
-            ParameterEstimate {
-                name: info.name.clone(),
-                unit: info.document.unit.clone(),
-                segment: unknown
-                    .segment
-                    .map(|segment| problem.segments[segment].label.clone()),
-                start: own(unknown.start),
-                estimate: own(place.map_or(unknown.start, |place| self.theta[place])),
-                standard_error: place
-                    .and_then(|place| standard_errors[place])
-                    .map(|error| error / info.unit.scale),
-                fixed: unknown.fixed,
-                at_bound: place.and_then(|place| self.held[place]),
-            }
-        };
-        unknowns.all.iter().enumerate().map(row).collect()
+    let held: Vec<String> = (0..at.held.len())
+        .filter(|&place| at.held[place].is_some())
+        .map(|place| problem.name(place))
+        .collect();
+    let reason = format!(
+        "converged: a further step would move the estimate by {distance:.1e} standard errors"
+    );
+    if held.is_empty() {
+        (Outcome::Converged, reason)
+    } else {
+        (
+            Outcome::AtBound,
+            format!("{reason}; held at a bound: {}", held.join(", ")),
+        )
     }
 }

@@ -2,6 +2,7 @@
 
 use super::options::Options;
 use super::unknowns::Unknowns;
+use crate::flight::Unit;
 use crate::model::Model;
 use crate::simulate::{Columns, Segment};
 
@@ -51,12 +52,17 @@ impl Problem {
         }
     }
 
+    /// The unit of the unknown at a place of θ.
+    pub fn unit(&self, place: usize) -> Unit {
+        self.model.parameters[self.unknowns.at(place).parameter].unit
+    }
+
     /// θ in the parameters' own units.
     pub fn in_own_units(&self, theta: &[f64]) -> Vec<f64> {
-        let own = |(place, &value): (usize, &f64)| {
-            let unit = self.model.parameters[self.unknowns.at(place).parameter].unit;
-            (value - unit.offset) / unit.scale
-        };
-        theta.iter().enumerate().map(own).collect()
+        theta
+            .iter()
+            .enumerate()
+            .map(|(place, &value)| self.unit(place).from_si(value))
+            .collect()
     }
 }

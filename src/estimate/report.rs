@@ -47,7 +47,8 @@ pub struct Iteration {
     pub variance: Vec<f64>,
     /// All free parameters in the order of the parameter table, each in its own unit.
     pub parameters: Vec<f64>,
-    /// Length of the gradient of the cost, each component times the parameter's standard error.
+    /// Length of the gradient of the cost, each component times the standard error that the parameter
+    /// would have if it were the only one.
     #[serde(deserialize_with = "null_as_nan")]
     pub gradient_norm: f64,
     /// Length of the step that led here, in standard errors; 0 for the start.

@@ -67,7 +67,7 @@ impl fmt::Display for Dimension {
             .collect();
         let below: Vec<_> = (0..5)
             .filter(|&i| self.0[i] < 0)
-            .map(|i| factor(i, -self.0[i]))
+            .map(|i| factor(i, self.0[i].saturating_neg()))
             .collect();
         match (above.is_empty(), below.as_slice()) {
             (true, []) => write!(f, "-"),

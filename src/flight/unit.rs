@@ -25,6 +25,9 @@ pub enum UnitError {
 
 const LONGEST_UNIT: usize = 64;
 
+/// Beyond these conversion would turn values into zero or nothing.
+const SCALES: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
+
 impl Unit {
     pub const NONE: Self = Self {
         scale: 1.0,
@@ -34,6 +37,11 @@ impl Unit {
 
     pub fn to_si(self, value: f64) -> f64 {
         value * self.scale + self.offset
+    }
+
+    /// The inverse of [`Self::to_si`].
+    pub fn from_si(self, value: f64) -> f64 {
+        (value - self.offset) / self.scale
     }
 
     /// Reads a unit expression: factors joined by `*`, `.` or a space and `/`, powers by `^`.
@@ -60,11 +68,13 @@ impl Unit {
             Fault::Unknown(symbol) => UnitError::Unknown { symbol },
             Fault::Malformed(why) => malformed(why),
         })?;
-        if parser.rest.is_empty() {
-            Ok(unit)
-        } else {
-            Err(malformed("there is something behind its end"))
+        if !parser.rest.is_empty() {
+            return Err(malformed("there is something behind its end"));
         }
+        if !SCALES.contains(&unit.scale) {
+            return Err(malformed("it is too far from SI to convert from"));
+        }
+        Ok(unit)
     }
 
     fn scaled(scale: f64, dimension: Dimension) -> Self {
@@ -127,18 +137,18 @@ impl Parser<'_> {
             return Ok(base);
         }
         self.advance('^');
-        let digits = self.take_while(|c| c.is_ascii_digit() || c == '-');
-        let exponent: i32 = digits
+        let digits = self.take_while(|c| c.is_ascii_digit() || matches!(c, '-' | '.'));
+        let exponent: f64 = digits
             .parse()
-            .map_err(|_| Fault::Malformed("'^' needs a whole number behind it"))?;
-        if exponent.abs() > 9 {
+            .map_err(|_| Fault::Malformed("'^' needs a number behind it"))?;
+        if exponent.abs() > 9.0 {
             return Err(Fault::Malformed("a power is larger than 9"));
         }
         let dimension = base
             .dimension
-            .to_power(f64::from(exponent))
-            .ok_or(Fault::Malformed("a power is too large"))?;
-        Ok(Unit::scaled(base.scale.powi(exponent), dimension))
+            .to_power(exponent)
+            .ok_or(Fault::Malformed("a power must be a multiple of a sixth"))?;
+        Ok(Unit::scaled(base.scale.powf(exponent), dimension))
     }
 
     fn factor(&mut self) -> Result<Unit, Fault> {
@@ -308,6 +318,7 @@ mod tests {
         assert_eq!(dimension("-"), "-");
         assert_eq!(dimension(""), "-");
         assert_eq!(dimension("m s^-2"), "m/s^2");
+        assert_eq!(dimension("s^0.5/m^0.5"), "s^0.5/m^0.5");
     }
 
     #[test]
@@ -328,6 +339,9 @@ mod tests {
             "((((((((((m))))))))))",
             &"m*".repeat(99),
             "2m",
+            "km^9*km^9*km^9*km^9*km^9",
+            "mm^9*mm^9*mm^9*mm^9",
+            "m^0.1",
         ] {
             assert!(Unit::parse(text).is_err(), "{text} was accepted");
         }

@@ -19,6 +19,9 @@ use super::{Service, body, json};
 use crate::model::{ModelDocument, catalog};
 use crate::store::{BadCursor, ModelRecord, Page, StoreError};
 
+/// Of what a TOML reader says, in characters.
+const LONGEST_DETAIL: usize = 500;
+
 pub fn router() -> OpenApiRouter<Service> {
     OpenApiRouter::new()
         .routes(routes!(add_model, list_models))
@@ -145,7 +148,11 @@ async fn add_model(
 
 fn parse_toml(text: &str) -> Result<ModelDocument, Problem> {
     // its message shows the line
-    toml::from_str(text).map_err(|error| Problem::new(Code::InvalidToml, error.to_string()))
+    toml::from_str(text).map_err(|error| {
+        // the message repeats the line at fault, however long that is
+        let detail: String = error.to_string().chars().take(LONGEST_DETAIL).collect();
+        Problem::new(Code::InvalidToml, detail)
+    })
 }
 
 /// List models: the catalog, then what was stored, newest first.
@@ -232,7 +239,9 @@ async fn get_model(
     }
     let document = find(&service, &id).await?.ok_or_else(|| {
         let id: String = id.chars().take(80).collect();
-        let detail = format!("there is no model '{id}', neither in the catalog nor stored");
+        let detail = format!(
+            "there is no model '{id}'; the catalog goes by name, stored models by their id"
+        );
         Problem::new(Code::UnknownModel, detail)
     })?;
     document_as(format, &headers, &document)

@@ -10,6 +10,7 @@ use super::jobs;
 use super::problem::Problem;
 use super::query::JobId;
 use crate::dashboard::{JobView, job_page};
+use crate::flight::Finding;
 use crate::job::{EventBody, JobSpec};
 use crate::store::Part;
 
@@ -34,6 +35,13 @@ async fn get_job_page(
             .to_string(),
         None => String::new(),
     };
+    let log = service.store.events(id, 0, usize::from(u8::MAX)).await?;
+    let findings: Vec<Finding> = (log.entries.into_iter().rev())
+        .find_map(|event| match serde_json::from_str(&event.body) {
+            Ok(EventBody::Prepared(prepared)) => Some(prepared.findings),
+            _ => None,
+        })
+        .unwrap_or_default();
     let render = move || {
         let faults = match &job.ending {
             Some(EventBody::Failed { faults }) => faults.as_slice(),
@@ -45,6 +53,7 @@ async fn get_job_page(
             model: &model,
             status: job.status,
             faults,
+            findings: &findings,
             estimate: estimate.as_ref(),
             histories: &histories,
         })

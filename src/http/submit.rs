@@ -155,7 +155,7 @@ async fn resolve_model(
     Ok(model.ok_or_else(|| {
         let name: String = name.chars().take(80).collect();
         let message = format!(
-            "there is no model '{name}', neither in the catalog nor stored; /v1/models lists all"
+            "there is no model '{name}'; the catalog goes by name, stored models by their id: /v1/models lists both"
         );
         Fault::new("/model", "unknown_model", message)
     }))

@@ -1,6 +1,7 @@
 //! What a job is, without saying where it is kept or who runs it: its spec, its log of events, its
 //! status, and the pure function from a spec and its data to a result.
 
+mod bounds;
 mod event;
 mod resolve;
 mod run;

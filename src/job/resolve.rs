@@ -16,6 +16,21 @@ pub(super) struct Stretch<'m> {
     steps: Steps,
 }
 
+impl Stretch<'_> {
+    pub fn label(&self) -> &str {
+        &self.label
+    }
+
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Counted from 1.
+    pub fn first_row(&self) -> usize {
+        self.rows.start + 1
+    }
+}
+
 /// Cuts the maneuvers of a job into stretches without gaps.
 pub(super) fn stretches<'m>(
     spec: &JobSpec,
@@ -120,8 +135,8 @@ fn gap_finding(
 ) -> Finding {
     let (done, remedy) = match usage.gaps {
         Gaps::Split => (
-            "each part is simulated from its own initial state",
-            "say \"gaps\": \"join\" to run them as one continuous time history, or choose \"rows\"",
+            "each part is simulated from the initial state that the model gives it",
+            "say \"gaps\": \"join\" beside the maneuver\'s \"id\" (--join on the command line) to run them as one continuous time history, or choose \"rows\"",
         ),
         Gaps::Join => (
             "it is closed up, as if there were none",
@@ -258,9 +273,14 @@ fn samples(
         .collect();
     if let Some(&first) = missing.first() {
         let message = format!(
-            "the model's {role} '{name}' ('{text}') has no value in {} row(s), first in row {}; choose \"rows\" without them, or upload the recording with them filled in",
+            "the model's {role} '{name}' ('{text}') has no value in {} row(s), first in row {}; {}",
             missing.len(),
-            stretch.rows.start + first + 1
+            stretch.rows.start + first + 1,
+            if mapped.is_some() {
+                "correct the formula where it is no number, or choose \"rows\" without them"
+            } else {
+                "choose \"rows\" without them, or upload the recording with them filled in"
+            }
         );
         return fault("missing_values", message);
     }

@@ -6,10 +6,12 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::bounds;
 use super::resolve::{self, Named};
 use super::{Fault, JobSpec, ModelSource, Prepared};
 use crate::estimate::{
-    Estimate, Iteration, Noise, Options, Problem, TimeHistory, Unknowns, histories, output_error,
+    Estimate, Iteration, Noise, Options, Problem, Solution, TimeHistory, Unknowns, Unusable,
+    output_error,
 };
 use crate::flight::{Maneuver, escape};
 use crate::model::{ChannelFormula, Model, ModelDocument, Start};
@@ -30,6 +32,9 @@ pub struct JobResult {
     pub model: ModelDocument,
     pub histories: Vec<TimeHistory>,
 }
+
+/// Variances of noise that leave the likelihood a number.
+const VARIANCES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
 
 /// Most maneuvers in one job.
 pub const MOST_MANEUVERS: usize = 256;
@@ -66,6 +71,13 @@ pub fn prepare(
     let mut findings = Vec::new();
     let recordings: Vec<&Maneuver> = maneuvers.iter().map(Arc::as_ref).collect();
     let stretches = resolve::stretches(spec, &recordings, &mut findings, &mut faults);
+    bounds::check_data(&model, &stretches, &mut faults);
+    if faults
+        .iter()
+        .any(|fault| fault.code == bounds::JOB_TOO_LARGE)
+    {
+        return Err(faults);
+    }
     let mut resolved = Vec::new();
     for (index, stretches) in stretches.iter().enumerate() {
         for stretch in stretches {
@@ -92,18 +104,12 @@ pub fn prepare(
                 },
                 info.unit.dimension,
             )
-            .map_err(|(code, message)| {
-                Fault::new(
-                    format!("/model/parameters/{}/start", escape(&info.name)),
-                    code,
-                    message,
-                )
-            }),
+            .map_err(|(code, message)| Fault::new(start_pointer(spec, &info.name), code, message)),
         }
     };
     let unknowns = Unknowns::new(&model, resolved.len(), start).map_err(|fault| vec![fault])?;
     let segments: Vec<Segment> = resolved.into_iter().map(|(segment, _)| segment).collect();
-    check_size(&model, &segments, &unknowns)?;
+    bounds::check_unknowns(&model, &segments, &unknowns, &spec.options)?;
     let problem = Problem::new(model, segments, unknowns, spec.options.clone());
     let prepared = Prepared {
         segments: problem
@@ -139,21 +145,39 @@ pub fn run(
     observer: &mut dyn FnMut(&Iteration) -> ControlFlow<()>,
 ) -> Result<JobResult, Vec<Fault>> {
     let problem = &plan.problem;
-    let (estimate, theta) = output_error(problem, observer).map_err(|left| {
-        let place = problem.segments.get(left.segment).zip(left.sample).map_or(String::new(), |(segment, sample)| {
-            let time = segment.time[sample.min(segment.len() - 1)];
-            format!(" in segment {} at {time:.3} s (sample {})", segment.label, sample + 1)
-        });
-        let message = format!(
-            "with the start values the simulation leaves the range of numbers{place}; give other \"start\" values, or a shorter stretch of \"rows\""
-        );
-        vec![Fault::new("/parameters", "diverged_at_start", message)]
-    })?;
-    Ok(JobResult {
-        histories: histories(problem, &theta),
+    let Solution {
         estimate,
+        histories,
+    } = output_error(problem, observer).map_err(|why| vec![no_start(problem, why)])?;
+    Ok(JobResult {
+        estimate,
+        histories,
         model: plan.model.clone(),
     })
+}
+
+/// Why the start values lead nowhere.
+fn no_start(problem: &Problem, why: Unusable) -> Fault {
+    match why {
+        Unusable::LeftRange { segment, sample } => {
+            let segment = &problem.segments[segment];
+            let time = segment.time[sample.min(segment.len() - 1)];
+            let message = format!(
+                "with the start values the simulation leaves the range of numbers in segment {} at {time:.3} s (sample {}); give other \"start\" values, or a shorter stretch of \"rows\"",
+                segment.label,
+                sample + 1
+            );
+            Fault::new("/parameters", "diverged_at_start", message)
+        }
+        Unusable::NotFinite => {
+            let message = "with the start values an output or its derivative by a parameter is not a finite number at some sample (a root, logarithm, power or quotient at zero?); give other \"start\" values, or guard the expression with if(...)";
+            Fault::new("/parameters", "diverged_at_start", message)
+        }
+        Unusable::SingularNoise => {
+            let message = "the residuals of some outputs are not independent, so that their full covariance is singular; use the structure \"diagonal\", or leave one of these outputs out";
+            Fault::new("/options/noise", "singular_noise", message)
+        }
+    }
 }
 
 /// The declared document with the job's edits and overrides in it.
@@ -231,11 +255,11 @@ fn check_shape(spec: &JobSpec, maneuvers: usize, faults: &mut Vec<Fault>) {
 }
 
 fn check_options(options: &Options, model: &Model, faults: &mut Vec<Fault>) {
-    if !(options.tolerance.is_finite() && options.tolerance > 0.0) {
+    if !(options.tolerance > 0.0 && options.tolerance <= 1.0) {
         faults.push(Fault::new(
             "/options/tolerance",
             "bad_option",
-            "tolerance must be a positive number",
+            "tolerance must be above 0 and at most 1 standard error",
         ));
     }
     if !(1..=MOST_ITERATIONS).contains(&options.max_iterations) {
@@ -248,10 +272,9 @@ fn check_options(options: &Options, model: &Model, faults: &mut Vec<Fault>) {
             .iter()
             .map(|output| output.name.as_str())
             .collect();
-        if variance.len() != outputs.len() || variance.iter().any(|v| !(v.is_finite() && *v > 0.0))
-        {
+        if variance.len() != outputs.len() || variance.iter().any(|v| !VARIANCES.contains(v)) {
             let message = format!(
-                "give one positive variance for each output: {}",
+                "give one variance from 1e-60 to 1e60 for each output, in this order: {}",
                 outputs.join(", ")
             );
             faults.push(Fault::new("/options/noise/variance", "bad_option", message));
@@ -281,24 +304,17 @@ fn check_names(spec: &JobSpec, model: &Model, faults: &mut Vec<Fault>) {
     }
 }
 
-fn check_size(model: &Model, segments: &[Segment], unknowns: &Unknowns) -> Result<(), Vec<Fault>> {
-    if unknowns.is_empty() {
-        let message = "all parameters are fixed: there is nothing to estimate; free one with \"fixed\": false";
-        return Err(vec![Fault::new(
-            "/parameters",
-            "nothing_to_estimate",
-            message,
-        )]);
-    }
-    let values = segments.iter().map(Segment::len).sum::<usize>() * model.outputs.len();
-    if values <= unknowns.len() || segments.iter().any(|segment| segment.len() < 2) {
-        let message = format!(
-            "{values} measured values for {} unknowns; at least two samples a segment and more values than unknowns are needed",
-            unknowns.len()
-        );
-        return Err(vec![Fault::new("/maneuvers", "too_few_samples", message)]);
-    }
-    Ok(())
+/// Where a parameter's start was given.
+fn start_pointer(spec: &JobSpec, name: &str) -> String {
+    let overridden = spec
+        .parameters
+        .get(name)
+        .is_some_and(|change| change.start.is_some());
+    format!(
+        "{}/parameters/{}/start",
+        if overridden { "" } else { "/model" },
+        escape(name)
+    )
 }
 
 fn start_from_data(

@@ -31,11 +31,19 @@ pub struct JobSpec {
     /// One or more; fitted together.
     pub maneuvers: Vec<ManeuverUse>,
     /// How model inputs and outputs are made from recorded channels, where not simply by name.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[serde(
+        default,
+        deserialize_with = "crate::model::unique",
+        skip_serializing_if = "IndexMap::is_empty"
+    )]
     #[schema(example = json!({"da": "(da_right - da_left)/2"}))]
     pub channels: IndexMap<String, String>,
     /// Other start values, bounds or fixings than the document's.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[serde(
+        default,
+        deserialize_with = "crate::model::unique",
+        skip_serializing_if = "IndexMap::is_empty"
+    )]
     #[schema(example = json!({"q_bias": {"fixed": true, "start": 0.0}}))]
     pub parameters: IndexMap<String, ParameterOverride>,
     #[serde(default)]

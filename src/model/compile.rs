@@ -103,7 +103,7 @@ fn parameters(document: &ModelDocument, faults: &mut Vec<Fault>) -> Vec<Paramete
         if numbers
             .into_iter()
             .flatten()
-            .any(|number| !number.is_finite())
+            .any(|number| !unit.to_si(number).is_finite())
         {
             faults.push(Fault::new(
                 &pointer,

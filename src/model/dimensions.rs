@@ -196,6 +196,10 @@ mod tests {
                 .unwrap_err()
                 .contains("must be a written number")
         );
-        assert!(measured("V < q").unwrap_err().contains("cannot compare"));
+        assert!(
+            measured("if(V < q, 1, 2)")
+                .unwrap_err()
+                .contains("cannot compare")
+        );
     }
 }

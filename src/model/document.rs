@@ -28,22 +28,46 @@ pub struct ModelDocument {
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
     /// Known numbers: mass, wing area, gravity.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[serde(
+        default,
+        deserialize_with = "super::unique::unique",
+        skip_serializing_if = "IndexMap::is_empty"
+    )]
     pub constants: IndexMap<String, Constant>,
     /// Recorded quantities that drive the model, u.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[serde(
+        default,
+        deserialize_with = "super::unique::unique",
+        skip_serializing_if = "IndexMap::is_empty"
+    )]
     pub inputs: IndexMap<String, Input>,
     /// Unknowns θ, free or fixed.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[serde(
+        default,
+        deserialize_with = "super::unique::unique",
+        skip_serializing_if = "IndexMap::is_empty"
+    )]
     pub parameters: IndexMap<String, Parameter>,
     /// Named intermediate quantities (`qbar`, `CL`), each defined by those before or after it.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[serde(
+        default,
+        deserialize_with = "super::unique::unique",
+        skip_serializing_if = "IndexMap::is_empty"
+    )]
     pub definitions: IndexMap<String, Definition>,
     /// The states x with their differential equations. A model without states is allowed.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[serde(
+        default,
+        deserialize_with = "super::unique::unique",
+        skip_serializing_if = "IndexMap::is_empty"
+    )]
     pub states: IndexMap<String, State>,
     /// The outputs y, compared with recorded channels.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[serde(
+        default,
+        deserialize_with = "super::unique::unique",
+        skip_serializing_if = "IndexMap::is_empty"
+    )]
     pub outputs: IndexMap<String, Output>,
 }
 

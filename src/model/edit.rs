@@ -111,7 +111,7 @@ impl Edit {
                 };
                 let (equation, unit) = (&output.equation, &output.unit);
                 let (equation, unit) = match self.kind {
-                    EditKind::SensorBias => (format!("{equation} + {name}"), unit.clone()),
+                    EditKind::SensorBias => (format!("{equation} + {name}"), of_a_difference(unit)),
                     EditKind::SensorScale => {
                         (format!("(1 + {name})*({equation})"), "-".to_string())
                     }
@@ -227,6 +227,14 @@ impl EditKind {
             Self::SensorDrift => "drift",
             Self::MissingTerm => "missing term",
         }
+    }
+}
+
+/// The unit of a difference: a temperature in degC differs by kelvins.
+fn of_a_difference(unit: &str) -> String {
+    match Unit::parse(unit) {
+        Ok(parsed) if parsed.offset != 0.0 => parsed.dimension.to_string(),
+        _ => unit.to_string(),
     }
 }
 

@@ -348,6 +348,8 @@ impl Graph {
                 if let Some(db) = db {
                     let logarithm = self.unary(Unary::Ln, a);
                     let slope = self.multiply(whole, logarithm);
+                    // 0^b stays 0 as b changes, where ln 0 is not a number
+                    let slope = self.select(a, slope, zero);
                     let part = self.multiply(slope, db);
                     sum = self.add(sum, part);
                 }

@@ -17,6 +17,7 @@ pub mod limits;
 mod names;
 mod program;
 mod scalar;
+mod unique;
 
 pub use document::{
     Constant, Definition, Input, ModelDocument, Output, Parameter, Per, Start, State,
@@ -26,6 +27,7 @@ pub use formula::{ChannelFormula, FormulaError, Recorded};
 pub use jacobian::Jacobian;
 pub use program::{Program, Workspace};
 pub use scalar::{LANES, Lanes, Scalar};
+pub use unique::unique;
 
 use crate::flight::Unit;
 

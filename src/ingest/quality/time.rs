@@ -24,7 +24,7 @@ pub(super) fn gaps(maneuver: &Maneuver) -> Vec<Finding> {
             None,
             &[gap.before],
             message,
-            "a job simulates each part from its own initial state; say \"gaps\": \"join\" in the job to run them as one time history",
+            "a job simulates each part from its own initial state; say \"gaps\": \"join\" beside the maneuver's \"id\" in the job to run them as one time history",
         )
     };
     let listed = sampling.gaps.iter().take(Finding::ROWS_LISTED);

@@ -28,9 +28,40 @@ pub fn parse(text: &str) -> Result<Expression, SyntaxError> {
         nodes: 0,
     };
     let expression = parser.expression(0)?;
-    match parser.peek() {
-        Token::End => Ok(expression),
-        _ => Err(parser.unexpected("an operator or the end of the expression")),
+    if parser.peek() != Token::End {
+        return Err(parser.unexpected("an operator or the end of the expression"));
+    }
+    match misplaced_comparison(&expression) {
+        Some(span) => Err(SyntaxError {
+            span,
+            message: "a comparison may stand only as the condition of if(condition, a, b)"
+                .to_string(),
+        }),
+        None => Ok(expression),
+    }
+}
+
+/// A comparison that is not the condition of an `if`.
+fn misplaced_comparison(expression: &Expression) -> Option<Span> {
+    match &expression.kind {
+        Kind::Number(_) | Kind::Name(_) => None,
+        Kind::Negate(inner) => misplaced_comparison(inner),
+        Kind::Binary(operator, ..) if operator.is_comparison() => Some(expression.span),
+        Kind::Binary(_, left, right) => {
+            misplaced_comparison(left).or_else(|| misplaced_comparison(right))
+        }
+        Kind::Call(Function::If, arguments) => {
+            arguments
+                .iter()
+                .enumerate()
+                .find_map(|(i, argument)| match &argument.kind {
+                    Kind::Binary(operator, left, right) if i == 0 && operator.is_comparison() => {
+                        misplaced_comparison(left).or_else(|| misplaced_comparison(right))
+                    }
+                    _ => misplaced_comparison(argument),
+                })
+        }
+        Kind::Call(_, arguments) => arguments.iter().find_map(misplaced_comparison),
     }
 }
 
@@ -282,6 +313,12 @@ mod tests {
         );
         assert_eq!(fault("1e999"), "column 1: '1e999' is not a number");
         assert!(fault("α").contains("has no meaning"));
+        assert!(
+            fault("1 + (a < b)").starts_with("column 6: a comparison may stand only"),
+            "{}",
+            fault("1 + (a < b)")
+        );
+        assert!(parse("if(a < b, if(c >= d, 1, 2), 3)").is_ok());
     }
 
     #[test]

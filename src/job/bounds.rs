@@ -1,0 +1,120 @@
+//! Bounds on the size of a job: what would take memory or time without end is refused before it begins.
+
+use std::collections::HashSet;
+
+use super::Fault;
+use super::resolve::Stretch;
+use crate::estimate::{Noise, NoiseStructure, Options, Unknowns};
+use crate::model::Model;
+use crate::simulate::Segment;
+
+/// Most values (samples times inputs, outputs and time) that a job is made of.
+pub const MOST_VALUES: usize = 50_000_000;
+/// Most segments.
+pub const MOST_SEGMENTS: usize = 1_000;
+/// Most free unknowns, those of each segment counted.
+pub const MOST_UNKNOWNS: usize = 1_000;
+/// Most entries of normal equations, over all outputs or pairs of outputs.
+const MOST_ENTRIES: usize = 50_000_000;
+
+pub(super) const JOB_TOO_LARGE: &str = "job_too_large";
+
+/// Checks what is to be made of the recordings, by maneuver and stretch.
+pub(super) fn check_data(model: &Model, stretches: &[Vec<Stretch<'_>>], faults: &mut Vec<Fault>) {
+    let all = || stretches.iter().flatten();
+    let segments = all().count();
+    if segments > MOST_SEGMENTS {
+        let message = format!(
+            "gaps cut the recordings into {segments} segments, at most {MOST_SEGMENTS} are allowed; say \"gaps\": \"join\" with the maneuver, or upload it with even sampling"
+        );
+        faults.push(Fault::new("/maneuvers", JOB_TOO_LARGE, message));
+    }
+    let samples: usize = all().map(Stretch::len).sum();
+    let values = samples * (1 + model.inputs.len() + model.outputs.len());
+    if values > MOST_VALUES {
+        let message = format!(
+            "{samples} samples of {} inputs and {} outputs are {values} values, at most {MOST_VALUES} are allowed; choose \"rows\", or fewer maneuvers",
+            model.inputs.len(),
+            model.outputs.len()
+        );
+        faults.push(Fault::new("/maneuvers", JOB_TOO_LARGE, message));
+    }
+    let mut labels = HashSet::new();
+    for (index, stretches) in stretches.iter().enumerate() {
+        for stretch in stretches {
+            if !labels.insert(stretch.label()) {
+                let message = format!(
+                    "there is another segment '{}' in this job; give the maneuver a \"label\" of its own",
+                    stretch.label()
+                );
+                faults.push(Fault::new(
+                    format!("/maneuvers/{index}/label"),
+                    "duplicate_label",
+                    message,
+                ));
+            }
+            if stretch.len() < 2 {
+                let message = format!(
+                    "segment {} is a single sample (row {}) between gaps; leave it out with \"rows\", or say \"gaps\": \"join\" with the maneuver",
+                    stretch.label(),
+                    stretch.first_row()
+                );
+                faults.push(Fault::new(
+                    format!("/maneuvers/{index}"),
+                    "too_few_samples",
+                    message,
+                ));
+            }
+        }
+    }
+}
+
+/// Checks that there is something to estimate, that the data can carry it, and that it fits into memory.
+pub(super) fn check_unknowns(
+    model: &Model,
+    segments: &[Segment],
+    unknowns: &Unknowns,
+    options: &Options,
+) -> Result<(), Vec<Fault>> {
+    let fault = |pointer: &str, code: &'static str, message: String| {
+        Err(vec![Fault::new(pointer, code, message)])
+    };
+    let (count, outputs) = (unknowns.len(), model.outputs.len());
+    if unknowns.is_empty() {
+        let message = "all parameters are fixed: there is nothing to estimate; free one with \"fixed\": false";
+        return fault("/parameters", "nothing_to_estimate", message.to_string());
+    }
+    let samples: usize = segments.iter().map(Segment::len).sum();
+    if samples * outputs <= count {
+        let message = format!(
+            "{} measured values for {count} unknowns; more values than unknowns are needed",
+            samples * outputs
+        );
+        return fault("/maneuvers", "too_few_samples", message);
+    }
+    let full = matches!(
+        options.noise,
+        Noise::Estimated {
+            structure: NoiseStructure::Full
+        }
+    );
+    if full && samples * outputs <= count + outputs * outputs {
+        let message = format!(
+            "{samples} samples are too few for a full covariance of {outputs} outputs beside {count} unknowns; use the structure \"diagonal\""
+        );
+        return fault("/options/noise", "too_few_samples", message);
+    }
+    let pairs = if full {
+        outputs * (outputs + 1) / 2
+    } else {
+        outputs
+    };
+    if count > MOST_UNKNOWNS || count * count * pairs > MOST_ENTRIES {
+        let message = format!(
+            "{count} unknowns over all segments and {outputs} outputs; at most {MOST_UNKNOWNS} unknowns, and {MOST_ENTRIES} for unknowns squared times {}, are allowed; fix parameters, or fit fewer maneuvers at a time",
+            if full { "pairs of outputs" } else { "outputs" }
+        );
+        return fault("/parameters", JOB_TOO_LARGE, message);
+    }
+    Ok(())
+}
