@@ -15,7 +15,7 @@ use trimtab::estimate::{Estimate, ParameterEstimate};
 /// errors) from the optimum that we converge to.
 const WITHIN_STANDARD_ERRORS: f64 = 0.05;
 
-async fn estimate(server: &Server, directory: &Path, case: &Case) -> Estimate {
+async fn estimate(server: &Server, directory: &Path, case: &Case, method: &str) -> Estimate {
     let mut maneuvers = Vec::new();
     for (file, rows) in &case.segments {
         let recording = std::fs::read_to_string(directory.join(file)).unwrap();
@@ -27,6 +27,7 @@ async fn estimate(server: &Server, directory: &Path, case: &Case) -> Estimate {
         "model": case.model,
         "channels": case.channels,
         "maneuvers": maneuvers,
+        "options": {"method": method},
     });
     let id = server.submit(&spec).await;
     let done = server.wait(&id).await;
@@ -45,35 +46,37 @@ async fn reproduces(name: &str) {
     };
     let server = Server::start().await;
     let case = read(&directory, name);
-    let estimate = estimate(&server, &directory, &case).await;
-    let excess = estimate.det_r / case.det_r - 1.0;
-    println!(
-        "{name}: {} iterations, det R {:e} ({excess:+.1e})",
-        estimate.iterations, estimate.det_r
-    );
-    assert!(
-        excess < 1e-6,
-        "{name}: det R {excess:e} above the reference's"
-    );
+    for method in ["levenberg_marquardt", "gauss_newton"] {
+        let estimate = estimate(&server, &directory, &case, method).await;
+        let excess = estimate.det_r / case.det_r - 1.0;
+        println!(
+            "{name} {method}: {} iterations, det R {:e} ({excess:+.1e})",
+            estimate.iterations, estimate.det_r
+        );
+        assert!(
+            excess < 1e-6,
+            "{name}: det R {excess:e} above the reference's"
+        );
 
-    let found: HashMap<&str, &ParameterEstimate> = estimate
-        .parameters
-        .iter()
-        .map(|parameter| (parameter.name.as_str(), parameter))
-        .collect();
-    for (parameter, reference, deviation) in &case.reference {
-        let ours = found[parameter.as_str()];
-        let standard_error = ours.standard_error.expect("the data see it");
-        let distance = (ours.estimate - reference).abs() / standard_error;
-        assert!(
-            distance < WITHIN_STANDARD_ERRORS,
-            "{name} {parameter}: {distance} standard errors"
-        );
-        let ratio = standard_error / deviation;
-        assert!(
-            (ratio - 1.0).abs() < 0.01,
-            "{name} {parameter}: standard errors differ by {ratio}"
-        );
+        let found: HashMap<&str, &ParameterEstimate> = estimate
+            .parameters
+            .iter()
+            .map(|parameter| (parameter.name.as_str(), parameter))
+            .collect();
+        for (parameter, reference, deviation) in &case.reference {
+            let ours = found[parameter.as_str()];
+            let standard_error = ours.standard_error.expect("the data see it");
+            let distance = (ours.estimate - reference).abs() / standard_error;
+            assert!(
+                distance < WITHIN_STANDARD_ERRORS,
+                "{name} {parameter}: {distance} standard errors"
+            );
+            let ratio = standard_error / deviation;
+            assert!(
+                (ratio - 1.0).abs() < 0.01,
+                "{name} {parameter}: standard errors differ by {ratio}"
+            );
+        }
     }
 }
 
