@@ -12,10 +12,10 @@
 //! | x, y, ∂y/∂θ | trajectories and sensitivities | [`simulate`] |
 //! | J, R, F, the estimate | cost, steps, error bounds | [`estimate`] |
 //!
-//! Around them: what a job is ([`job`]), what keeps it (`store`), who runs it (`work`), how it is asked for
-//! (`http`, `cli`). Arrows go one way: `estimate → simulate → model → flight`, `ingest → flight`,
-//! `job → estimate`, `store → job`, `work → store`, `http → store, job, ingest`. `http` and `work` meet only
-//! at the store. From `flight` to `job` all is synchronous and deterministic.
+//! Around them: what a job is ([`job`]), what keeps it ([`store`]), who runs it ([`work`]), how it is asked for
+//! ([`http`], [`cli`]), how its result looks ([`dashboard`]). Arrows go one way: `estimate → simulate → model → flight`, `ingest → flight`,
+//! `job → estimate`, `store → job`, `work → store`, `http → store, job, ingest, dashboard`. `http` and `work` meet
+//! only at the store. From `flight` to `job` all is synchronous and deterministic.
 
 pub mod cli;
 pub mod dashboard;

@@ -14,7 +14,8 @@ pub enum Severity {
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Finding {
-    /// A stable word: `gap`, `uneven_sampling`, `missing_values`, `repeated_values`, `spikes`, `constant`.
+    /// A stable word: `gap`, `uneven_sampling`, `missing_values`, `repeated_values`, `repeated_rows`, `spikes`, `wrap`,
+    /// `constant`.
     #[schema(example = "gap")]
     pub code: String,
     pub severity: Severity,

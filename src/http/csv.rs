@@ -61,7 +61,7 @@ impl From<csv::Error> for Problem {
 }
 
 impl From<serde_json::Error> for Problem {
-    /// Of *writing* JSON; what is wrong with JSON that was read is said by [`super::json`].
+    /// Of *writing* JSON; what is wrong with JSON that was read is said by `json`.
     fn from(error: serde_json::Error) -> Self {
         tracing::error!(%error, "json");
         Self::internal()
