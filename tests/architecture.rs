@@ -169,7 +169,7 @@ fn files_are_of_a_size_to_be_read() {
                 .expect("a source file")
                 .lines()
                 .count();
-            assert!(lines <= 600, "{} has {lines} lines", file.display());
+            assert!(lines <= 400, "{} has {lines} lines", file.display());
         }
     }
 }

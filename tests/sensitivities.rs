@@ -163,20 +163,13 @@ fn agree_on_functions_and_uneven_steps() {
         parameters.b = { start = 1.3 }
         parameters.c = { start = 0.2 }
         parameters.d = { start = 0.4 }
+        parameters.rate = { start = 0.9, unit = "1/s" }
         definitions.w = { equation = "tanh(a*x) + atan2(x + 2, b) + sqrt(1 + x^2)*c + abs(x - 0.1)*d" }
         definitions.v = { equation = "if(x < u, a*x^3, b*x) + exp(-x)*ln(2 + a) + (1 + a^2)^b + min(x, c) + max(x*a, d)" }
-        states.x = { initial = "c + d^2", derivative = "(-a*x + b*sin(u) + c*cos(x)*w + d*tan(0.1*x)*t/(10*1))/1 + 0*t", unit = "" }
+        states.x = { initial = "c + d^2", derivative = "rate*(-a*x + b*sin(u) + c*cos(x)*w + d*tan(0.1*x)*t*rate/10)" }
         outputs.y = { equation = "w + v*asin(0.3*tanh(x)) + acos(0.2*c) + atan(x)*sign(a)" }
     "#;
-    // the equations are pure numbers: a time in seconds would be refused, so t is scaled by a parameter in 1/s
-    let text = text
-        .replace("(-a*x", "rate*(-a*x")
-        .replace("*t/(10*1))/1 + 0*t", "*t*rate/10)");
-    let text = text.replace(
-        "parameters.d",
-        "parameters.rate = { start = 0.9, unit = \"1/s\" }\n        parameters.d",
-    );
-    let document = toml::from_str(&text).expect("a document");
+    let document = toml::from_str(text).expect("a document");
     let model = Model::compile(&document).unwrap_or_else(|faults| panic!("{faults:#?}"));
     let mut segment = segment(&model, 130);
     segment.steps = Steps::Uneven((0..129).map(|k| 0.02 + 0.01 * f64::from(k % 5)).collect());
