@@ -1,8 +1,9 @@
 //! The answer of an estimation, put together at its last iterate.
 
+use super::coloured_residuals::Colour;
 use super::error_bounds::ErrorBounds;
 use super::evaluation::Evaluator;
-use super::fit::{fits, histories};
+use super::fit::fits;
 use super::iterate::Iterate;
 use super::problem::Problem;
 use super::report::{Estimate, Outcome, ParameterEstimate, TimeHistory};
@@ -14,15 +15,30 @@ pub struct Solution {
     pub histories: Vec<TimeHistory>,
 }
 
+/// How an estimation ended.
+pub(super) struct Ending<'e> {
+    pub outcome: Outcome,
+    pub reason: String,
+    pub iterations: usize,
+    pub at: &'e Iterate,
+    pub bounds: &'e ErrorBounds,
+    pub colour: &'e Colour,
+}
+
 pub(super) fn answer(
     problem: &Problem,
-    at: &Iterate,
-    bounds: &ErrorBounds,
+    ending: Ending<'_>,
     evaluator: &Evaluator<'_>,
-    iterations: usize,
-    (outcome, reason): (Outcome, String),
+    histories: Vec<TimeHistory>,
 ) -> Solution {
-    let histories = histories(problem, &at.theta);
+    let Ending {
+        outcome,
+        reason,
+        iterations,
+        at,
+        bounds,
+        colour,
+    } = ending;
     let covariance = &at.weighting.covariance;
     let estimate = Estimate {
         outcome,
@@ -36,8 +52,9 @@ pub(super) fn answer(
             .row_iter()
             .map(|row| row.iter().copied().collect())
             .collect(),
-        outputs: fits(problem, &histories),
+        outputs: fits(problem, &histories, colour),
         parameters: table(problem, at, bounds),
+        error_bounds: bounds.kind,
         correlation: bounds.correlation.clone(),
         collinear: bounds.collinear(problem),
         samples: problem.samples(),
@@ -54,7 +71,10 @@ fn table(problem: &Problem, at: &Iterate, bounds: &ErrorBounds) -> Vec<Parameter
     let row = |(index, unknown): (usize, &Unknown)| {
         let info = &problem.model.parameters[unknown.parameter];
         let place = unknowns.free.iter().position(|&i| i == index);
-        let standard_error = place.and_then(|place| bounds.standard_errors[place]);
+        let in_own_unit = |errors: &[Option<f64>]| {
+            let error = place.and_then(|place| errors[place]);
+            error.map(|error| error / info.unit.scale)
+        };
         ParameterEstimate {
             name: info.name.clone(),
             unit: info.document.unit.clone(),
@@ -65,7 +85,8 @@ fn table(problem: &Problem, at: &Iterate, bounds: &ErrorBounds) -> Vec<Parameter
             estimate: info
                 .unit
                 .from_si(place.map_or(unknown.start, |place| at.theta[place])),
-            standard_error: standard_error.map(|error| error / info.unit.scale),
+            standard_error: in_own_unit(&bounds.standard_errors),
+            conventional_standard_error: in_own_unit(&bounds.conventional),
             fixed: unknown.fixed,
             at_bound: place.and_then(|place| at.held[place]),
         }

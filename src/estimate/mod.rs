@@ -9,6 +9,8 @@
 //! and [`Estimate`] is the answer, with the reason why the solver stopped.
 
 mod answer;
+mod autoregression;
+mod coloured_residuals;
 mod error_bounds;
 mod evaluation;
 mod fit;
@@ -25,6 +27,7 @@ mod sums;
 mod unknowns;
 
 pub use answer::Solution;
+pub use error_bounds::ErrorBoundsKind;
 pub use evaluation::{Evaluator, Unusable};
 pub use likelihood::NormalEquations;
 pub use options::{Method, Noise, NoiseStructure, Options};
@@ -32,6 +35,6 @@ pub use output_error::{Observer, output_error};
 pub use problem::Problem;
 pub use report::{
     Bound, CollinearSet, Estimate, Iteration, Outcome, OutputFit, OutputSeries, ParameterEstimate,
-    Series, TimeHistory, five_digits,
+    Series, TheilShares, TimeHistory, five_digits,
 };
 pub use unknowns::{Unknown, Unknowns};

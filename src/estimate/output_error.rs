@@ -4,9 +4,11 @@ use std::ops::ControlFlow;
 
 use nalgebra::DVector;
 
-use super::answer::{Solution, answer};
+use super::answer::{Ending, Solution, answer};
+use super::coloured_residuals::Colour;
 use super::error_bounds::ErrorBounds;
 use super::evaluation::{Evaluator, Unusable};
+use super::fit::histories;
 use super::iterate::{Iterate, Taken};
 use super::likelihood::Weighting;
 use super::options::Method;
@@ -67,16 +69,19 @@ pub fn output_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
             Err(Nothing { in_range: false }) => break Stopped::Diverged,
         }
     };
-    let bounds = ErrorBounds::new(&current.information, &current.held);
+    let histories = histories(problem, &current.theta);
+    let colour = Colour::of(&histories);
+    let bounds = ErrorBounds::at(problem, &mut evaluator, &current, &colour, &histories);
     let (outcome, reason) = stopped.say(problem, iteration, &current, &bounds);
-    Ok(answer(
-        problem,
-        &current,
-        &bounds,
-        &evaluator,
-        iteration,
-        (outcome, reason),
-    ))
+    let ending = Ending {
+        outcome,
+        reason,
+        iterations: iteration,
+        at: &current,
+        bounds: &bounds,
+        colour: &colour,
+    };
+    Ok(answer(problem, ending, &evaluator, histories))
 }
 
 /// No θ of lower cost was found; was there any that could be simulated?

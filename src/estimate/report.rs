@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::error_bounds::ErrorBoundsKind;
+
 /// Why the solver stopped. A result with a reason, apart from the job's own status.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
@@ -80,6 +82,10 @@ pub struct Estimate {
     pub noise_covariance: Vec<Vec<f64>>,
     pub outputs: Vec<OutputFit>,
     pub parameters: Vec<ParameterEstimate>,
+    /// What `standard_error` and `correlation` are made from. `null` where they are left out because they would
+    /// mean nothing: the model reproduces an output to rounding, which noise is not part of.
+    #[serde(default = "conventional")]
+    pub error_bounds: Option<ErrorBoundsKind>,
     /// Correlation of the free parameters' errors, in the order of the free parameters. Empty when singular.
     pub correlation: Vec<Vec<f64>>,
     /// Sets of parameters that the data cannot tell apart, or cannot see.
@@ -100,9 +106,14 @@ pub struct ParameterEstimate {
     pub start: f64,
     #[schema(example = -4.9176)]
     pub estimate: f64,
-    /// Cramér-Rao bound; absent for fixed parameters, those at a bound, and those the data cannot see.
-    #[schema(example = 0.0200)]
+    /// Standard deviation of the estimate, corrected for coloured residuals unless the job asked otherwise; absent
+    /// for fixed parameters, those at a bound, and those the data cannot see.
+    #[schema(example = 0.0271)]
     pub standard_error: Option<f64>,
+    /// The Cramér-Rao bound: what the standard deviation would be if residuals were white.
+    #[schema(example = 0.0200)]
+    #[serde(default)]
+    pub conventional_standard_error: Option<f64>,
     pub fixed: bool,
     /// The bound at which the parameter is held.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -134,6 +145,31 @@ pub struct OutputFit {
     /// Theil's inequality coefficient: 0 perfect, 1 useless.
     #[serde(deserialize_with = "null_as_nan")]
     pub theil: f64,
+    /// What the mean squared residual is made of.
+    #[serde(default)]
+    pub theil_shares: TheilShares,
+    /// Autocorrelation of the residual at lag 1: near 0 where it is white.
+    #[serde(default)]
+    #[schema(example = 0.31)]
+    pub autocorrelation: f64,
+    /// How many independent values would tell as much of a mean as the residual's samples do.
+    #[serde(default)]
+    #[schema(example = 310.5)]
+    pub effective_samples: f64,
+}
+
+/// Theil's decomposition of the mean squared residual, shares that add up to 1 (all 0 where there is no residual).
+#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
+pub struct TheilShares {
+    /// From different means.
+    #[schema(example = 0.01)]
+    pub bias: f64,
+    /// From different variances: motion that the model has too much or too little of.
+    #[schema(example = 0.04)]
+    pub variance: f64,
+    /// From imperfect correlation; near 1 where only noise is left.
+    #[schema(example = 0.95)]
+    pub covariance: f64,
 }
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
@@ -170,6 +206,11 @@ pub struct OutputSeries {
     pub model: Vec<f64>,
     /// measured - model
     pub residual: Vec<f64>,
+}
+
+/// What estimates were kept with before there was a choice.
+fn conventional() -> Option<ErrorBoundsKind> {
+    Some(ErrorBoundsKind::Conventional)
 }
 
 impl ParameterEstimate {
@@ -216,6 +257,9 @@ mod tests {
             bias: 0.0,
             r_squared: f64::NAN,
             theil: 0.5,
+            theil_shares: TheilShares::default(),
+            autocorrelation: 0.0,
+            effective_samples: 1.0,
         };
         let read: OutputFit = serde_json::from_str(&serde_json::to_string(&fit).unwrap()).unwrap();
         assert!(read.r_squared.is_nan() && read.theil == 0.5);
