@@ -4,6 +4,7 @@ use super::coloured_residuals::Colour;
 use super::error_bounds::ErrorBounds;
 use super::evaluation::Evaluator;
 use super::fit::fits;
+use super::identifiability::{DataInformation, Identifiability};
 use super::iterate::Iterate;
 use super::problem::Problem;
 use super::report::{Estimate, Outcome, ParameterEstimate, TimeHistory};
@@ -20,6 +21,8 @@ pub(super) struct Ending<'e> {
     pub outcome: Outcome,
     pub reason: String,
     pub iterations: usize,
+    /// What the data told at the start.
+    pub before: Option<DataInformation>,
     pub at: &'e Iterate,
     pub bounds: &'e ErrorBounds,
     pub colour: &'e Colour,
@@ -35,11 +38,17 @@ pub(super) fn answer(
         outcome,
         reason,
         iterations,
+        before,
         at,
         bounds,
         colour,
     } = ending;
     let covariance = &at.weighting.covariance;
+    let after = (iterations > 0).then(|| DataInformation::of(problem, &at.information));
+    let identifiability = before.map(|before| Identifiability {
+        before,
+        after: after.flatten(),
+    });
     let estimate = Estimate {
         outcome,
         reason,
@@ -57,6 +66,8 @@ pub(super) fn answer(
         error_bounds: bounds.kind,
         correlation: bounds.correlation.clone(),
         collinear: bounds.collinear(problem),
+        identifiability,
+        prediction: Vec::new(),
         samples: problem.samples(),
     };
     Solution {

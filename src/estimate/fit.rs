@@ -4,6 +4,7 @@ use super::autoregression::Autoregression;
 use super::coloured_residuals::Colour;
 use super::problem::Problem;
 use super::report::{OutputFit, OutputSeries, Series, TheilShares, TimeHistory};
+use super::role::Role;
 use crate::model::Quantity;
 use crate::simulate::simulate;
 
@@ -44,6 +45,7 @@ pub(super) fn histories(problem: &Problem, theta: &[f64]) -> Vec<TimeHistory> {
         });
         TimeHistory {
             segment: segment.label.clone(),
+            role: Role::Estimation,
             time: segment.time.clone(),
             inputs: inputs.collect(),
             outputs: outputs.collect(),

@@ -18,7 +18,8 @@ pub struct Options {
     /// √(gᵀ H⁻¹ g), g the gradient and H the Hessian of the cost that the step is made with.
     #[schema(example = 1e-5, exclusive_minimum = 0.0)]
     pub tolerance: f64,
-    /// The budget of iterations.
+    /// The budget of iterations. With 0 nothing is estimated: the answer is what the data can tell of the parameters
+    /// at the start values, see `identifiability`.
     #[schema(example = 50)]
     pub max_iterations: usize,
 }

@@ -4,6 +4,9 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::error_bounds::ErrorBoundsKind;
+use super::identifiability::Identifiability;
+use super::prediction::Prediction;
+use super::role::Role;
 
 /// Why the solver stopped. A result with a reason, apart from the job's own status.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
@@ -90,6 +93,12 @@ pub struct Estimate {
     pub correlation: Vec<Vec<f64>>,
     /// Sets of parameters that the data cannot tell apart, or cannot see.
     pub collinear: Vec<CollinearSet>,
+    /// What the data can tell of the parameters, before and after.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub identifiability: Option<Identifiability>,
+    /// Of segments that took no part in the estimation.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub prediction: Vec<Prediction>,
     /// Samples used, over all segments.
     pub samples: usize,
 }
@@ -185,6 +194,9 @@ pub struct CollinearSet {
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct TimeHistory {
     pub segment: String,
+    /// Whether the model was fitted to it.
+    #[serde(default)]
+    pub role: Role,
     /// Seconds of the recording.
     pub time: Vec<f64>,
     pub inputs: Vec<Series>,
@@ -213,21 +225,53 @@ fn conventional() -> Option<ErrorBoundsKind> {
     Some(ErrorBoundsKind::Conventional)
 }
 
-impl ParameterEstimate {
-    /// What a reader of the table should know about this row, in words; mostly nothing.
-    pub fn remark(&self) -> &'static str {
-        match (self.fixed, self.at_bound, self.standard_error) {
+impl Estimate {
+    /// What a reader of the tables should know beside them.
+    pub fn remarks(&self) -> Vec<String> {
+        let mut remarks = Vec::new();
+        if self.error_bounds.is_none() {
+            remarks.push(
+                "an output is reproduced to rounding, as data without noise are: error bounds would mean nothing and are left out".to_string(),
+            );
+        }
+        let identifiability = self.identifiability.as_ref();
+        let Some(seen) = identifiability.map(|both| both.after.as_ref().unwrap_or(&both.before))
+        else {
+            return remarks;
+        };
+        for set in &seen.redundant {
+            let names = set.parameters.join(" + ");
+            remarks.push(format!("the data cannot tell apart: {names}"));
+        }
+        if !seen.unseen.is_empty() {
+            remarks.push(format!("the data cannot see: {}", seen.unseen.join(", ")));
+        }
+        for set in &seen.nearly_collinear {
+            remarks.push(format!(
+                "the data hardly tell apart: {} (condition index {:.0})",
+                set.parameters.join(" + "),
+                set.condition_index
+            ));
+        }
+        remarks
+    }
+
+    /// What a reader should know about a row of the parameter table, in words; mostly nothing.
+    pub fn remark(&self, row: &ParameterEstimate) -> &'static str {
+        match (row.fixed, row.at_bound, row.standard_error) {
             (true, ..) => "fixed",
             (_, Some(Bound::Lower), _) => "at its lower bound",
             (_, Some(Bound::Upper), _) => "at its upper bound",
-            (_, _, None) => "not determined by the data",
+            (_, _, None) if self.error_bounds.is_some() => "not determined by the data",
             _ => "",
         }
     }
 }
 
 /// JSON has no word for a number out of range: it is written `null`, and read back as NaN.
-fn null_as_nan<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+pub(super) fn null_as_nan<'de, D: serde::Deserializer<'de>>(
+    deserializer: D,
+) -> Result<f64, D::Error> {
     Option::<f64>::deserialize(deserializer).map(|number| number.unwrap_or(f64::NAN))
 }
 
