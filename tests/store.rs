@@ -98,6 +98,7 @@ fn succeeded() -> EventBody {
 fn prepared() -> EventBody {
     EventBody::Prepared(trimtab::job::Prepared {
         segments: vec!["a".into()],
+        validation: Vec::new(),
         samples: 1,
         outputs: Vec::new(),
         parameters: Vec::new(),

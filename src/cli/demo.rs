@@ -98,10 +98,6 @@ async fn fit(client: &Client, model: &str, maneuvers: &[Bundled]) -> Result<Stri
     println!("\n{model} on {}", names.join(" and "));
     let job = client.submit(&spec).await?.id;
     let estimate = follow(client, &job).await?;
-    println!(
-        "{}\n\n{}",
-        table::parameters(&estimate, Some(&truth)),
-        table::outputs(&estimate)
-    );
+    println!("{}", table::result(&estimate, Some(&truth)));
     Ok(job)
 }

@@ -22,7 +22,7 @@ pub struct Fit {
 impl Fit {
     pub fn run(&self) -> Result<(), Failure> {
         let mut maneuvers = Vec::new();
-        for file in &self.request.files {
+        for file in self.request.recordings() {
             let maneuver = ingest::read(&read_bytes(file)?, format_of(file), &Limits::default())
                 .map_err(|error| Failure::faults(&file.display().to_string(), error.faults()))?;
             maneuvers.push(Arc::new(maneuver));
@@ -46,11 +46,7 @@ impl Fit {
                 .map_err(|error| Failure::new(error.to_string()))?;
             println!("{text}");
         } else {
-            println!(
-                "{}\n\n{}",
-                table::parameters(&result.estimate, None),
-                table::outputs(&result.estimate)
-            );
+            println!("{}", table::result(&result.estimate, None));
         }
         Ok(())
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use indexmap::IndexMap;
 
 use super::Failure;
-use crate::estimate::{Method, Options};
+use crate::estimate::{Method, Options, Role};
 use crate::ingest::Format;
 use crate::job::{Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride};
 use crate::model::{ModelDocument, Start, catalog};
@@ -15,6 +15,9 @@ pub struct Request {
     /// Recordings: CSV with `name[unit]` headers, or JSON. Several are fitted together.
     #[arg(required = true)]
     pub files: Vec<PathBuf>,
+    /// A recording that the model is not fitted to but predicts, to see whether it holds.
+    #[arg(long, value_name = "FILE")]
+    pub validate: Vec<PathBuf>,
     /// A catalog model (short-period, lateral-directional-2, ...) or a model document (.toml, .json).
     #[arg(long, short)]
     pub model: String,
@@ -75,6 +78,11 @@ impl Request {
         }
     }
 
+    /// All recordings: those to fit, then those to predict.
+    pub fn recordings(&self) -> impl Iterator<Item = &PathBuf> {
+        self.files.iter().chain(&self.validate)
+    }
+
     /// The job, for recordings that are known by `ids`.
     pub fn spec(&self, ids: &[String]) -> Result<JobSpec, Failure> {
         let mut parameters: IndexMap<String, ParameterOverride> = IndexMap::new();
@@ -94,15 +102,18 @@ impl Request {
             let (name, formula) = pair(text, "--channel")?;
             Ok((name.to_string(), formula.to_string()))
         });
-        let labels = self.files.iter().map(|file| {
+        let label = |file: &PathBuf| {
             file.file_stem()
                 .map(|stem| stem.to_string_lossy().into_owned())
-        });
+        };
+        let fitted = self.files.iter().map(|file| (file, Role::Estimation));
+        let predicted = self.validate.iter().map(|file| (file, Role::Validation));
         let gaps = if self.join { Gaps::Join } else { Gaps::Split };
-        let usage = |(id, label): (&String, Option<String>)| ManeuverUse {
+        let usage = |(id, (file, role)): (&String, (&PathBuf, Role))| ManeuverUse {
             id: id.clone(),
-            label,
+            label: label(file),
             rows: None,
+            role,
             gaps,
         };
         Ok(JobSpec {
@@ -111,7 +122,7 @@ impl Request {
             tags: Vec::new(),
             model: self.model()?,
             edits: Vec::new(),
-            maneuvers: ids.iter().zip(labels).map(usage).collect(),
+            maneuvers: ids.iter().zip(fitted.chain(predicted)).map(usage).collect(),
             channels: channels.collect::<Result<_, Failure>>()?,
             parameters,
             options: Options {

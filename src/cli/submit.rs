@@ -21,7 +21,7 @@ impl Submit {
     pub async fn run(&self) -> Result<(), Failure> {
         let client = Client::new(&self.server)?;
         let mut ids = Vec::new();
-        for file in &self.request.files {
+        for file in self.request.recordings() {
             let name = file
                 .file_stem()
                 .map_or("recording".into(), |stem| stem.to_string_lossy());
@@ -31,11 +31,7 @@ impl Submit {
         println!("{}", job.id);
         if self.watch {
             let estimate = follow(&client, &job.id).await?;
-            println!(
-                "{}\n\n{}",
-                table::parameters(&estimate, None),
-                table::outputs(&estimate)
-            );
+            println!("{}", table::result(&estimate, None));
         }
         Ok(())
     }

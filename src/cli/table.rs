@@ -4,11 +4,28 @@ use comfy_table::presets::UTF8_BORDERS_ONLY;
 use comfy_table::{CellAlignment, Table};
 use indexmap::IndexMap;
 
-use crate::estimate::{Estimate, ParameterEstimate, five_digits as number};
+use crate::estimate::{Estimate, OutputFit, ParameterEstimate, five_digits as number};
 
-/// The parameter table; beside the truth where that is known.
-pub fn parameters(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) -> String {
-    let mut header = vec!["parameter", "unit", "estimate", "std. error", "%"];
+/// All tables of an estimate, and what to know beside them.
+pub fn result(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) -> String {
+    let mut parts = vec![parameters(estimate, truth), outputs(&estimate.outputs)];
+    for prediction in &estimate.prediction {
+        let segment = &prediction.segment;
+        parts.push(format!(
+            "prediction of {segment}: {}\n{}",
+            prediction.reason,
+            outputs(&prediction.outputs)
+        ));
+    }
+    let remarks = estimate.remarks().into_iter();
+    parts.extend(remarks.map(|remark| format!("note: {remark}")));
+    parts.join("\n\n")
+}
+
+/// The parameter table; beside the truth where that is known. The column `white` has the standard errors that white
+/// residuals would give.
+fn parameters(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) -> String {
+    let mut header = vec!["parameter", "unit", "estimate", "std. error", "%", "white"];
     if truth.is_some() {
         header.extend(["truth", "off by"]);
     }
@@ -26,13 +43,18 @@ pub fn parameters(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) ->
             }
             None => row.extend([String::new(), String::new()]),
         }
+        row.push(
+            parameter
+                .conventional_standard_error
+                .map_or_else(String::new, number),
+        );
         if let Some(truth) = truth {
             match truth.get(&parameter.name) {
                 Some(&truth) => row.extend([number(truth), off_by(parameter, truth)]),
                 None => row.extend([String::new(), String::new()]),
             }
         }
-        row.push(parameter.remark().to_string());
+        row.push(estimate.remark(parameter).to_string());
         row
     });
     let mut table = Table::new();
@@ -48,21 +70,38 @@ pub fn parameters(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) ->
 }
 
 /// How well each output is reproduced.
-pub fn outputs(estimate: &Estimate) -> String {
-    let rows = estimate.outputs.iter().map(|output| {
-        let share = format!("{:.4}", output.r_squared);
+fn outputs(outputs: &[OutputFit]) -> String {
+    let rows = outputs.iter().map(|output| {
+        let shares = output.theil_shares;
         vec![
             output.name.clone(),
             output.unit.clone(),
             number(output.rms),
             number(output.bias),
-            share,
+            format!("{:.4}", output.r_squared),
+            format!("{:.4}", output.theil),
+            format!(
+                "{:.2}/{:.2}/{:.2}",
+                shares.bias, shares.variance, shares.covariance
+            ),
+            format!("{:.2}", output.autocorrelation),
+            format!("{:.0}", output.effective_samples),
         ]
     });
     let mut table = Table::new();
     table.load_style(UTF8_BORDERS_ONLY);
     table
-        .set_header(["output", "unit", "rms residual", "mean residual", "R²"])
+        .set_header([
+            "output",
+            "unit",
+            "rms residual",
+            "mean residual",
+            "R²",
+            "Theil",
+            "bias/var/cov",
+            "lag 1",
+            "eff. samples",
+        ])
         .add_rows(rows);
     for column in table.column_iter_mut().skip(2) {
         column.set_cell_alignment(CellAlignment::Right);

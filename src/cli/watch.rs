@@ -19,11 +19,7 @@ impl Watch {
     pub async fn run(&self) -> Result<(), Failure> {
         let client = Client::new(&self.server)?;
         let estimate = follow(&client, &self.job).await?;
-        println!(
-            "{}\n\n{}",
-            table::parameters(&estimate, None),
-            table::outputs(&estimate)
-        );
+        println!("{}", table::result(&estimate, None));
         Ok(())
     }
 }

@@ -186,6 +186,7 @@ mod tests {
     fn angles_are_shown_in_degrees() {
         let history = TimeHistory {
             segment: "1".into(),
+            role: crate::estimate::Role::default(),
             time: vec![0.0, 1.0],
             inputs: vec![],
             outputs: vec![OutputSeries {

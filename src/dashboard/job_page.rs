@@ -4,7 +4,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::figure::history_svg;
 use super::style::CSS;
-use crate::estimate::{Estimate, TimeHistory, five_digits as number};
+use crate::estimate::{Estimate, OutputFit, Role, TimeHistory, five_digits as number};
 use crate::flight::Finding;
 use crate::job::{Fault, Status};
 
@@ -46,10 +46,15 @@ pub fn job_page(view: &JobView<'_>) -> String {
                     h2 { "Parameters" }
                     div.scroll { (parameter_table(estimate)) }
                     h2 { "Fit" }
-                    div.scroll { (output_table(estimate)) }
+                    div.scroll { (output_table(&estimate.outputs)) }
+                    @for prediction in &estimate.prediction {
+                        h2 { "Prediction of segment " (prediction.segment) }
+                        p { (prediction.reason) }
+                        div.scroll { (output_table(&prediction.outputs)) }
+                    }
                 }
                 @for history in view.histories {
-                    h2 { "Time histories, segment " (history.segment) }
+                    h2 { "Time histories, segment " (history.segment) @if history.role == Role::Validation { " (predicted)" } }
                     figure role="img" aria-label={ "measured and model outputs of segment " (history.segment) } {
                         @match history_svg(history) {
                             Ok(svg) => { (PreEscaped(svg)) }
@@ -73,6 +78,9 @@ fn state(view: &JobView<'_>) -> Markup {
         @if !view.faults.is_empty() {
             ul { @for fault in view.faults { li { code { (fault.pointer) } " " (fault.message) } } }
         }
+        @for remark in view.estimate.map(Estimate::remarks).unwrap_or_default() {
+            p { strong { "Note: " } (remark) }
+        }
         @for finding in view.findings {
             p { strong { "Note: " } (finding.message) "; " (finding.remedy) }
         }
@@ -95,7 +103,7 @@ fn parameter_table(estimate: &Estimate) -> Markup {
         table {
             thead { tr {
                 th { "parameter" } th { "unit" } th.number { "start" } th.number { "estimate" }
-                th.number { "standard error" } th { "" }
+                th.number { "standard error" } th.number { "if residuals were white" } th { "" }
             } }
             tbody {
                 @for parameter in &estimate.parameters {
@@ -105,7 +113,8 @@ fn parameter_table(estimate: &Estimate) -> Markup {
                         td.number.soft { (number(parameter.start)) }
                         td.number { (number(parameter.estimate)) }
                         td.number { @if let Some(error) = parameter.standard_error { (number(error)) } }
-                        td.soft { (parameter.remark()) }
+                        td.number.soft { @if let Some(error) = parameter.conventional_standard_error { (number(error)) } }
+                        td.soft { (estimate.remark(parameter)) }
                     }
                 }
             }
@@ -113,19 +122,26 @@ fn parameter_table(estimate: &Estimate) -> Markup {
     }
 }
 
-fn output_table(estimate: &Estimate) -> Markup {
+fn output_table(outputs: &[OutputFit]) -> Markup {
     html! {
         table {
             thead { tr {
                 th { "output" } th { "unit" } th.number { "rms residual" } th.number { "mean residual" }
-                th.number { "R²" } th.number { "Theil" }
+                th.number { "R²" } th.number { "Theil" } th.number { "of which bias" } th.number { "variance" } th.number { "covariance" }
+                th.number { "lag-1 autocorrelation" } th.number { "effective samples" }
             } }
             tbody {
-                @for output in &estimate.outputs {
+                @for output in outputs {
                     tr {
                         td { (output.name) } td.soft { (output.unit) }
                         td.number { (number(output.rms)) } td.number { (number(output.bias)) }
                         td.number { (format!("{:.4}", output.r_squared)) } td.number { (format!("{:.4}", output.theil)) }
+                        @let shares = output.theil_shares;
+                        @for share in [shares.bias, shares.variance, shares.covariance] {
+                            td.number.soft { (format!("{share:.2}")) }
+                        }
+                        td.number { (format!("{:.2}", output.autocorrelation)) }
+                        td.number { (format!("{:.0}", output.effective_samples)) }
                     }
                 }
             }

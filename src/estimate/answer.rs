@@ -1,8 +1,10 @@
 //! The answer of an estimation, put together at its last iterate.
 
+use super::coloured_residuals::Colour;
 use super::error_bounds::ErrorBounds;
 use super::evaluation::Evaluator;
-use super::fit::{fits, histories};
+use super::fit::fits;
+use super::identifiability::{DataInformation, Identifiability};
 use super::iterate::Iterate;
 use super::problem::Problem;
 use super::report::{Estimate, Outcome, ParameterEstimate, TimeHistory};
@@ -14,16 +16,39 @@ pub struct Solution {
     pub histories: Vec<TimeHistory>,
 }
 
+/// How an estimation ended.
+pub(super) struct Ending<'e> {
+    pub outcome: Outcome,
+    pub reason: String,
+    pub iterations: usize,
+    /// What the data told at the start.
+    pub before: Option<DataInformation>,
+    pub at: &'e Iterate,
+    pub bounds: &'e ErrorBounds,
+    pub colour: &'e Colour,
+}
+
 pub(super) fn answer(
     problem: &Problem,
-    at: &Iterate,
-    bounds: &ErrorBounds,
+    ending: Ending<'_>,
     evaluator: &Evaluator<'_>,
-    iterations: usize,
-    (outcome, reason): (Outcome, String),
+    histories: Vec<TimeHistory>,
 ) -> Solution {
-    let histories = histories(problem, &at.theta);
+    let Ending {
+        outcome,
+        reason,
+        iterations,
+        before,
+        at,
+        bounds,
+        colour,
+    } = ending;
     let covariance = &at.weighting.covariance;
+    let after = (iterations > 0).then(|| DataInformation::of(problem, &at.information));
+    let identifiability = before.map(|before| Identifiability {
+        before,
+        after: after.flatten(),
+    });
     let estimate = Estimate {
         outcome,
         reason,
@@ -36,10 +61,13 @@ pub(super) fn answer(
             .row_iter()
             .map(|row| row.iter().copied().collect())
             .collect(),
-        outputs: fits(problem, &histories),
+        outputs: fits(problem, &histories, colour),
         parameters: table(problem, at, bounds),
+        error_bounds: bounds.kind,
         correlation: bounds.correlation.clone(),
         collinear: bounds.collinear(problem),
+        identifiability,
+        prediction: Vec::new(),
         samples: problem.samples(),
     };
     Solution {
@@ -54,7 +82,10 @@ fn table(problem: &Problem, at: &Iterate, bounds: &ErrorBounds) -> Vec<Parameter
     let row = |(index, unknown): (usize, &Unknown)| {
         let info = &problem.model.parameters[unknown.parameter];
         let place = unknowns.free.iter().position(|&i| i == index);
-        let standard_error = place.and_then(|place| bounds.standard_errors[place]);
+        let in_own_unit = |errors: &[Option<f64>]| {
+            let error = place.and_then(|place| errors[place]);
+            error.map(|error| error / info.unit.scale)
+        };
         ParameterEstimate {
             name: info.name.clone(),
             unit: info.document.unit.clone(),
@@ -65,7 +96,8 @@ fn table(problem: &Problem, at: &Iterate, bounds: &ErrorBounds) -> Vec<Parameter
             estimate: info
                 .unit
                 .from_si(place.map_or(unknown.start, |place| at.theta[place])),
-            standard_error: standard_error.map(|error| error / info.unit.scale),
+            standard_error: in_own_unit(&bounds.standard_errors),
+            conventional_standard_error: in_own_unit(&bounds.conventional),
             fixed: unknown.fixed,
             at_bound: place.and_then(|place| at.held[place]),
         }

@@ -1,15 +1,41 @@
-//! What the data say of the estimate's accuracy: Cramér-Rao bounds, correlations, and what they cannot tell.
+//! What the data say of the estimate's accuracy: standard errors, correlations, and what they cannot tell.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
+use super::coloured_residuals::{Colour, gradient_covariance};
+use super::evaluation::Evaluator;
 use super::information::Spectrum;
+use super::iterate::Iterate;
+use super::options::Noise;
 use super::problem::Problem;
-use super::report::{Bound, CollinearSet};
+use super::report::{Bound, CollinearSet, TimeHistory};
+
+/// What standard errors and correlations are made from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ErrorBoundsKind {
+    /// Corrected for coloured residuals: F⁻¹ B F⁻¹, B from the autocorrelation of the residuals.
+    #[default]
+    Corrected,
+    /// The Cramér-Rao bound F⁻¹, for white residuals. Spares two looks at the data.
+    Conventional,
+}
+
+/// Residuals below this share of what was measured are rounding, not noise: no sensor has ten digits.
+const PERFECT: f64 = 1e-10;
 
 /// Accuracy at an estimate, by place of θ.
 pub(super) struct ErrorBounds {
-    /// Square root of the diagonal of F⁻¹; none where held at a bound or not determined.
+    /// What the standard errors are; none where they would mean nothing.
+    pub kind: Option<ErrorBoundsKind>,
+    /// None where held at a bound or not determined.
     pub standard_errors: Vec<Option<f64>>,
+    /// Square root of the diagonal of F⁻¹.
+    pub conventional: Vec<Option<f64>>,
+    /// Of θ, SI: zero for what is held at a bound, and over the directions that the data see.
+    pub covariance: DMatrix<f64>,
     /// Empty when some unknowns cannot be told apart, or errors are out of the range of numbers.
     pub correlation: Vec<Vec<f64>>,
     /// Sets of places of which the data see only some combinations, with a direction in which nothing changes.
@@ -17,75 +43,152 @@ pub(super) struct ErrorBounds {
 }
 
 impl ErrorBounds {
-    /// From the information matrix; places held at a bound count as known.
-    pub fn new(information: &DMatrix<f64>, held: &[Option<Bound>]) -> Self {
-        let unknowns = held.len();
-        let moving: Vec<usize> = (0..unknowns).filter(|&i| held[i].is_none()).collect();
-        let own = information.select_rows(&moving).select_columns(&moving);
-        let mut bounds = Self {
-            standard_errors: vec![None; unknowns],
-            correlation: Vec::new(),
-            collinear: Vec::new(),
-        };
-        let Some(spectrum) = Spectrum::of(&own, &own.diagonal()) else {
-            return bounds;
-        };
-        let in_places = |set: Vec<(usize, f64)>| {
-            set.into_iter()
-                .map(|(i, component)| (moving[i], component))
-                .collect()
-        };
-        bounds.collinear = spectrum.collinear().into_iter().map(in_places).collect();
-        let covariance = spectrum.inverse();
-        let error = |i: usize| covariance[(i, i)].sqrt();
-        for (i, &place) in moving.iter().enumerate() {
-            let undetermined = bounds
-                .collinear
-                .iter()
-                .flatten()
-                .any(|&(member, _)| member == place);
-            bounds.standard_errors[place] =
-                Some(error(i)).filter(|e| !undetermined && e.is_finite());
-        }
-        if bounds.collinear.is_empty() {
-            bounds.correlation = vec![vec![0.0; unknowns]; unknowns];
-            (0..unknowns).for_each(|i| bounds.correlation[i][i] = 1.0);
-            for (a, &i) in moving.iter().enumerate() {
-                for (b, &j) in moving.iter().enumerate().filter(|&(b, _)| b != a) {
-                    bounds.correlation[i][j] = covariance[(a, b)] / (error(a) * error(b));
-                }
+    /// At an iterate, whose time histories have the residuals.
+    pub fn at(
+        problem: &Problem,
+        evaluator: &mut Evaluator<'_>,
+        iterate: &Iterate,
+        colour: &Colour,
+        histories: &[TimeHistory],
+    ) -> Self {
+        let mut bounds = Self::conventional(&iterate.information, &iterate.held);
+        let given = matches!(problem.options.noise, Noise::Given { .. });
+        if is_perfect(problem, histories) {
+            // a variance that was given still means what it says
+            if !given {
+                bounds.mean_nothing();
             }
-        }
-        if bounds
-            .correlation
-            .iter()
-            .flatten()
-            .any(|value| !value.is_finite())
-        {
-            bounds.correlation.clear();
+        } else if problem.options.error_bounds == ErrorBoundsKind::Corrected {
+            bounds.correct(evaluator, iterate, colour);
         }
         bounds
     }
 
+    /// From the information matrix; places held at a bound count as known.
+    fn conventional(information: &DMatrix<f64>, held: &[Option<Bound>]) -> Self {
+        let unknowns = held.len();
+        let moving: Vec<usize> = (0..unknowns).filter(|&i| held[i].is_none()).collect();
+        let own = information.select_rows(&moving).select_columns(&moving);
+        let mut bounds = Self {
+            kind: Some(ErrorBoundsKind::Conventional),
+            standard_errors: Vec::new(),
+            conventional: vec![None; unknowns],
+            covariance: DMatrix::zeros(unknowns, unknowns),
+            correlation: Vec::new(),
+            collinear: Vec::new(),
+        };
+        if let Some(spectrum) = Spectrum::of(&own, &own.diagonal()) {
+            let in_places = |set: Vec<(usize, f64)>| {
+                set.into_iter()
+                    .map(|(i, component)| (moving[i], component))
+                    .collect()
+            };
+            bounds.collinear = spectrum.collinear().into_iter().map(in_places).collect();
+            let inverse = spectrum.inverse();
+            for (a, &i) in moving.iter().enumerate() {
+                for (b, &j) in moving.iter().enumerate() {
+                    bounds.covariance[(i, j)] = inverse[(a, b)];
+                }
+            }
+            bounds.conventional = bounds.errors(&moving);
+        }
+        bounds.standard_errors.clone_from(&bounds.conventional);
+        bounds.correlation = bounds.correlations();
+        bounds
+    }
+
+    /// F⁻¹ becomes F⁻¹ B F⁻¹.
+    fn correct(&mut self, evaluator: &mut Evaluator<'_>, iterate: &Iterate, colour: &Colour) {
+        let inverse = &iterate.weighting.inverse;
+        let Ok(scatter) = gradient_covariance(evaluator, &iterate.theta, inverse, colour) else {
+            return;
+        };
+        let corrected = &self.covariance * scatter * &self.covariance;
+        if corrected.iter().any(|v| !v.is_finite()) {
+            return;
+        }
+        let determined = |i: &usize| self.conventional[*i].is_some();
+        let places: Vec<usize> = (0..self.conventional.len()).filter(determined).collect();
+        self.covariance = (&corrected + corrected.transpose()) * 0.5;
+        self.standard_errors = self.errors(&places);
+        self.correlation = self.correlations();
+        self.kind = Some(ErrorBoundsKind::Corrected);
+    }
+
+    fn mean_nothing(&mut self) {
+        let unknowns = self.conventional.len();
+        self.kind = None;
+        self.standard_errors = vec![None; unknowns];
+        self.conventional = vec![None; unknowns];
+        self.correlation = Vec::new();
+    }
+
+    /// Square roots of the covariance's diagonal at `places`, but for members of a collinear set.
+    fn errors(&self, places: &[usize]) -> Vec<Option<f64>> {
+        let is_member = |place: usize| self.collinear.iter().flatten().any(|m| m.0 == place);
+        let mut errors = vec![None; self.conventional.len()];
+        for &place in places.iter().filter(|&&place| !is_member(place)) {
+            errors[place] = Some(self.covariance[(place, place)].sqrt()).filter(|e| e.is_finite());
+        }
+        errors
+    }
+
+    fn correlations(&self) -> Vec<Vec<f64>> {
+        if !self.collinear.is_empty() {
+            return Vec::new();
+        }
+        let deviation: DVector<f64> = self.covariance.diagonal().map(f64::sqrt);
+        let unknowns = deviation.len();
+        let correlation = |i: usize, j: usize| match (i == j, self.covariance[(i, j)]) {
+            (true, _) => 1.0,
+            (false, 0.0) => 0.0,
+            (false, covariance) => covariance / (deviation[i] * deviation[j]),
+        };
+        let row = |i: usize| (0..unknowns).map(|j| correlation(i, j)).collect();
+        let rows: Vec<Vec<f64>> = (0..unknowns).map(row).collect();
+        if rows.iter().flatten().all(|value| value.is_finite()) {
+            rows
+        } else {
+            Vec::new()
+        }
+    }
+
     /// The collinear sets by name, in the parameters' own units.
     pub fn collinear(&self, problem: &Problem) -> Vec<CollinearSet> {
-        let named = |members: &Vec<(usize, f64)>| {
-            let own = |&(place, component): &(usize, f64)| {
-                (problem.name(place), component / problem.unit(place).scale)
-            };
-            let (parameters, mut direction): (Vec<String>, Vec<f64>) =
-                members.iter().map(own).unzip();
-            let largest = direction
-                .iter()
-                .fold(0.0, |a: f64, b| if b.abs() > a.abs() { *b } else { a });
-            direction
-                .iter_mut()
-                .for_each(|component| *component /= largest);
-            CollinearSet {
-                parameters,
-                direction,
-            }
-        };
-        self.collinear.iter().map(named).collect()
+        (self.collinear.iter())
+            .map(|members| CollinearSet::named(problem, members))
+            .collect()
     }
+}
+
+impl CollinearSet {
+    /// From places of θ and the direction, SI, in which nothing changes.
+    pub(super) fn named(problem: &Problem, members: &[(usize, f64)]) -> Self {
+        let own = |&(place, component): &(usize, f64)| {
+            (problem.name(place), component / problem.unit(place).scale)
+        };
+        let (parameters, mut direction): (Vec<String>, Vec<f64>) = members.iter().map(own).unzip();
+        let largest = direction
+            .iter()
+            .fold(0.0, |a: f64, b| if b.abs() > a.abs() { *b } else { a });
+        direction
+            .iter_mut()
+            .for_each(|component| *component /= largest);
+        Self {
+            parameters,
+            direction,
+        }
+    }
+}
+
+/// Whether the model reproduces an output that tells of parameters to rounding, as simulated data without noise
+/// are: R then is rounding, and so is every error bound.
+fn is_perfect(problem: &Problem, histories: &[TimeHistory]) -> bool {
+    let power = |output: usize, pick: fn(&super::report::OutputSeries) -> &Vec<f64>| {
+        let all = histories.iter().flat_map(|h| pick(&h.outputs[output]));
+        all.filter(|v| v.is_finite()).map(|v| v * v).sum::<f64>()
+    };
+    (0..problem.model.outputs.len())
+        .filter(|&output| !problem.columns.of_output(output).is_empty())
+        .any(|i| power(i, |s| &s.residual) <= PERFECT * PERFECT * power(i, |s| &s.measured))
 }

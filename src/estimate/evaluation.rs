@@ -6,7 +6,7 @@ use super::local_sums::LocalSums;
 use super::options::{Noise, NoiseStructure};
 use super::problem::Problem;
 use super::sums::{ResidualSums, Sums, mirror};
-use crate::simulate::{Sensitivities, simulate};
+use crate::simulate::{Block, Sensitivities, simulate};
 
 /// Why a θ gives no cost.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -95,6 +95,23 @@ impl<'p> Evaluator<'p> {
         } else {
             Err(Unusable::NotFinite)
         }
+    }
+
+    /// Runs along one segment and hands outputs and sensitivities to `sink`.
+    pub(super) fn sweep(
+        &mut self,
+        theta: &[f64],
+        segment: usize,
+        sink: impl FnMut(&Block<'_>),
+    ) -> Result<(), Unusable> {
+        let problem = self.problem;
+        (problem.unknowns).parameters(segment, theta, &mut self.parameters);
+        self.machinery
+            .run(&problem.segments[segment], &self.parameters, sink)
+            .map_err(|diverged| Unusable::LeftRange {
+                segment,
+                sample: diverged.sample,
+            })
     }
 
     /// Residuals and the sums of their sensitivities.

@@ -1,7 +1,11 @@
 //! How well each output is reproduced, and the time histories to look at.
 
+use super::autoregression::Autoregression;
+use super::coloured_residuals::Colour;
 use super::problem::Problem;
-use super::report::{OutputFit, OutputSeries, Series, TimeHistory};
+use super::report::{OutputFit, OutputSeries, Series, TheilShares, TimeHistory};
+use super::role::Role;
+use crate::model::Quantity;
 use crate::simulate::simulate;
 
 /// Measured and modelled time histories of all segments for θ.
@@ -41,6 +45,7 @@ pub(super) fn histories(problem: &Problem, theta: &[f64]) -> Vec<TimeHistory> {
         });
         TimeHistory {
             segment: segment.label.clone(),
+            role: Role::Estimation,
             time: segment.time.clone(),
             inputs: inputs.collect(),
             outputs: outputs.collect(),
@@ -49,42 +54,54 @@ pub(super) fn histories(problem: &Problem, theta: &[f64]) -> Vec<TimeHistory> {
     problem.segments.iter().enumerate().map(history).collect()
 }
 
-/// The fit of each output over all segments.
-pub(super) fn fits(problem: &Problem, histories: &[TimeHistory]) -> Vec<OutputFit> {
-    let fit = |(i, output): (usize, &crate::model::Quantity)| {
-        let all = |pick: fn(&OutputSeries) -> &Vec<f64>| -> Vec<f64> {
-            histories
-                .iter()
-                .flat_map(|history| pick(&history.outputs[i]).iter().copied())
-                .collect()
-        };
-        let (measured, model, residual) = (
-            all(|s| &s.measured),
-            all(|s| &s.model),
-            all(|s| &s.residual),
-        );
-        let n = measured.len() as f64;
-        let mean = |values: &[f64]| values.iter().sum::<f64>() / n;
-        let rms = |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / n).sqrt();
-        let middle = mean(&measured);
-        let spread = rms(&measured.iter().map(|z| z - middle).collect::<Vec<_>>());
-        let error = rms(&residual);
-        OutputFit {
-            name: output.name.clone(),
-            unit: output.si.clone(),
-            rms: error,
-            bias: mean(&residual),
-            r_squared: if spread > 0.0 {
-                1.0 - (error / spread).powi(2)
-            } else {
-                0.0
-            },
-            theil: if error > 0.0 {
-                error / (rms(&measured) + rms(&model))
-            } else {
-                0.0
-            },
-        }
+/// The fit of each output over all segments; missing samples (NaN) do not count.
+pub(super) fn fits(
+    problem: &Problem,
+    histories: &[TimeHistory],
+    colour: &Colour,
+) -> Vec<OutputFit> {
+    let fit = |(i, output): (usize, &Quantity)| {
+        let series = histories.iter().map(|history| &history.outputs[i]);
+        let pairs = series.flat_map(|s| s.measured.iter().copied().zip(s.model.iter().copied()));
+        let pairs: Vec<(f64, f64)> = pairs.filter(|(z, y)| (z - y).is_finite()).collect();
+        output_fit(output, &pairs, &colour.models[i])
     };
     problem.model.outputs.iter().enumerate().map(fit).collect()
+}
+
+/// From pairs of measured and modelled values.
+fn output_fit(output: &Quantity, pairs: &[(f64, f64)], colour: &Autoregression) -> OutputFit {
+    let n = pairs.len().max(1) as f64;
+    let mean =
+        |value: &dyn Fn(f64, f64) -> f64| pairs.iter().map(|&(z, y)| value(z, y)).sum::<f64>() / n;
+    let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
+    let error = mean(&|z, y| (z - y).powi(2));
+    let (measured, model) = (mean(&|z, _| z), mean(&|_, y| y));
+    let spread = mean(&|z, _| (z - measured).powi(2));
+    let model_spread = mean(&|_, y| (y - model).powi(2));
+    let common = mean(&|z, y| (z - measured) * (y - model));
+    let spreads = (spread * model_spread).sqrt();
+    let bias = mean(&|z, y| z - y);
+    OutputFit {
+        name: output.name.clone(),
+        unit: output.si.clone(),
+        rms: error.sqrt(),
+        bias,
+        r_squared: if spread > 0.0 {
+            1.0 - error / spread
+        } else {
+            0.0
+        },
+        theil: share(
+            error.sqrt(),
+            mean(&|z, _| z * z).sqrt() + mean(&|_, y| y * y).sqrt(),
+        ),
+        theil_shares: TheilShares {
+            bias: share(bias * bias, error),
+            variance: share((spread.sqrt() - model_spread.sqrt()).powi(2), error),
+            covariance: share(2.0 * (spreads - common), error),
+        },
+        autocorrelation: colour.lag_one,
+        effective_samples: (pairs.len() as f64 * colour.effective_share()).max(1.0),
+    }
 }

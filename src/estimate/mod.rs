@@ -9,29 +9,38 @@
 //! and [`Estimate`] is the answer, with the reason why the solver stopped.
 
 mod answer;
+mod autoregression;
+mod coloured_residuals;
 mod error_bounds;
 mod evaluation;
 mod fit;
+mod identifiability;
 mod information;
 mod iterate;
 mod likelihood;
 mod local_sums;
 mod options;
 mod output_error;
+mod prediction;
 mod problem;
 mod report;
+mod role;
 mod step;
 mod sums;
 mod unknowns;
 
 pub use answer::Solution;
+pub use error_bounds::ErrorBoundsKind;
 pub use evaluation::{Evaluator, Unusable};
+pub use identifiability::{CorrelatedPair, DataInformation, Identifiability, NearlyCollinearSet};
 pub use likelihood::NormalEquations;
 pub use options::{Method, Noise, NoiseStructure, Options};
 pub use output_error::{Observer, output_error};
+pub use prediction::{Prediction, Validation, predict};
 pub use problem::Problem;
 pub use report::{
     Bound, CollinearSet, Estimate, Iteration, Outcome, OutputFit, OutputSeries, ParameterEstimate,
-    Series, TimeHistory, five_digits,
+    Series, TheilShares, TimeHistory, five_digits,
 };
+pub use role::Role;
 pub use unknowns::{Unknown, Unknowns};

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::error_bounds::ErrorBoundsKind;
 use crate::simulate::{InputInterpolation, Integrator};
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
@@ -12,11 +13,13 @@ pub struct Options {
     pub integrator: Integrator,
     pub input_interpolation: InputInterpolation,
     pub noise: Noise,
+    pub error_bounds: ErrorBoundsKind,
     /// Converged when a full step would move the estimate by less than this many standard errors:
     /// √(gᵀ H⁻¹ g), g the gradient and H the Hessian of the cost that the step is made with.
     #[schema(example = 1e-5, exclusive_minimum = 0.0)]
     pub tolerance: f64,
-    /// The budget of iterations.
+    /// The budget of iterations. With 0 nothing is estimated: the answer is what the data can tell of the parameters
+    /// at the start values, see `identifiability`.
     #[schema(example = 50)]
     pub max_iterations: usize,
 }
@@ -28,6 +31,7 @@ impl Default for Options {
             integrator: Integrator::default(),
             input_interpolation: InputInterpolation::default(),
             noise: Noise::default(),
+            error_bounds: ErrorBoundsKind::default(),
             tolerance: 1e-5,
             max_iterations: 50,
         }

@@ -4,9 +4,12 @@ use std::ops::ControlFlow;
 
 use nalgebra::DVector;
 
-use super::answer::{Solution, answer};
+use super::answer::{Ending, Solution, answer};
+use super::coloured_residuals::Colour;
 use super::error_bounds::ErrorBounds;
 use super::evaluation::{Evaluator, Unusable};
+use super::fit::histories;
+use super::identifiability::DataInformation;
 use super::iterate::{Iterate, Taken};
 use super::likelihood::Weighting;
 use super::options::Method;
@@ -36,6 +39,7 @@ const ROUNDING: f64 = 1e-13;
 pub fn output_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<Solution, Unusable> {
     let mut evaluator = Evaluator::new(problem);
     let mut current = Iterate::at(problem, &mut evaluator, problem.unknowns.start())?;
+    let before = DataInformation::of(problem, &current.information);
     let mut taken = Taken::default();
     let mut damping = match problem.options.method {
         Method::LevenbergMarquardt => DAMPING_START,
@@ -67,16 +71,20 @@ pub fn output_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
             Err(Nothing { in_range: false }) => break Stopped::Diverged,
         }
     };
-    let bounds = ErrorBounds::new(&current.information, &current.held);
+    let histories = histories(problem, &current.theta);
+    let colour = Colour::of(&histories);
+    let bounds = ErrorBounds::at(problem, &mut evaluator, &current, &colour, &histories);
     let (outcome, reason) = stopped.say(problem, iteration, &current, &bounds);
-    Ok(answer(
-        problem,
-        &current,
-        &bounds,
-        &evaluator,
-        iteration,
-        (outcome, reason),
-    ))
+    let ending = Ending {
+        outcome,
+        reason,
+        iterations: iteration,
+        before,
+        at: &current,
+        bounds: &bounds,
+        colour: &colour,
+    };
+    Ok(answer(problem, ending, &evaluator, histories))
 }
 
 /// No θ of lower cost was found; was there any that could be simulated?
@@ -153,6 +161,11 @@ impl Stopped {
     ) -> (Outcome, String) {
         match self {
             Self::Minimum { distance } => minimum(problem, at, bounds, distance),
+            Self::Budget { .. } if iterations == 0 => {
+                let reason =
+                    "no iteration was asked for: this is what the data say at the start values";
+                (Outcome::Budget, reason.to_string())
+            }
             Self::Budget { distance } => {
                 let reason = format!(
                     "the budget of {iterations} iterations is used up; a further step would move the estimate by {distance:.1e} standard errors"

@@ -3,6 +3,11 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::error_bounds::ErrorBoundsKind;
+use super::identifiability::Identifiability;
+use super::prediction::Prediction;
+use super::role::Role;
+
 /// Why the solver stopped. A result with a reason, apart from the job's own status.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
@@ -80,10 +85,20 @@ pub struct Estimate {
     pub noise_covariance: Vec<Vec<f64>>,
     pub outputs: Vec<OutputFit>,
     pub parameters: Vec<ParameterEstimate>,
+    /// What `standard_error` and `correlation` are made from. `null` where they are left out because they would
+    /// mean nothing: the model reproduces an output to rounding, which noise is not part of.
+    #[serde(default = "conventional")]
+    pub error_bounds: Option<ErrorBoundsKind>,
     /// Correlation of the free parameters' errors, in the order of the free parameters. Empty when singular.
     pub correlation: Vec<Vec<f64>>,
     /// Sets of parameters that the data cannot tell apart, or cannot see.
     pub collinear: Vec<CollinearSet>,
+    /// What the data can tell of the parameters, before and after.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub identifiability: Option<Identifiability>,
+    /// Of segments that took no part in the estimation.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub prediction: Vec<Prediction>,
     /// Samples used, over all segments.
     pub samples: usize,
 }
@@ -100,9 +115,14 @@ pub struct ParameterEstimate {
     pub start: f64,
     #[schema(example = -4.9176)]
     pub estimate: f64,
-    /// Cramér-Rao bound; absent for fixed parameters, those at a bound, and those the data cannot see.
-    #[schema(example = 0.0200)]
+    /// Standard deviation of the estimate, corrected for coloured residuals unless the job asked otherwise; absent
+    /// for fixed parameters, those at a bound, and those the data cannot see.
+    #[schema(example = 0.0271)]
     pub standard_error: Option<f64>,
+    /// The Cramér-Rao bound: what the standard deviation would be if residuals were white.
+    #[schema(example = 0.0200)]
+    #[serde(default)]
+    pub conventional_standard_error: Option<f64>,
     pub fixed: bool,
     /// The bound at which the parameter is held.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -134,6 +154,31 @@ pub struct OutputFit {
     /// Theil's inequality coefficient: 0 perfect, 1 useless.
     #[serde(deserialize_with = "null_as_nan")]
     pub theil: f64,
+    /// What the mean squared residual is made of.
+    #[serde(default)]
+    pub theil_shares: TheilShares,
+    /// Autocorrelation of the residual at lag 1: near 0 where it is white.
+    #[serde(default)]
+    #[schema(example = 0.31)]
+    pub autocorrelation: f64,
+    /// How many independent values would tell as much of a mean as the residual's samples do.
+    #[serde(default)]
+    #[schema(example = 310.5)]
+    pub effective_samples: f64,
+}
+
+/// Theil's decomposition of the mean squared residual, shares that add up to 1 (all 0 where there is no residual).
+#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
+pub struct TheilShares {
+    /// From different means.
+    #[schema(example = 0.01)]
+    pub bias: f64,
+    /// From different variances: motion that the model has too much or too little of.
+    #[schema(example = 0.04)]
+    pub variance: f64,
+    /// From imperfect correlation; near 1 where only noise is left.
+    #[schema(example = 0.95)]
+    pub covariance: f64,
 }
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
@@ -149,6 +194,9 @@ pub struct CollinearSet {
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct TimeHistory {
     pub segment: String,
+    /// Whether the model was fitted to it.
+    #[serde(default)]
+    pub role: Role,
     /// Seconds of the recording.
     pub time: Vec<f64>,
     pub inputs: Vec<Series>,
@@ -172,21 +220,58 @@ pub struct OutputSeries {
     pub residual: Vec<f64>,
 }
 
-impl ParameterEstimate {
-    /// What a reader of the table should know about this row, in words; mostly nothing.
-    pub fn remark(&self) -> &'static str {
-        match (self.fixed, self.at_bound, self.standard_error) {
+/// What estimates were kept with before there was a choice.
+fn conventional() -> Option<ErrorBoundsKind> {
+    Some(ErrorBoundsKind::Conventional)
+}
+
+impl Estimate {
+    /// What a reader of the tables should know beside them.
+    pub fn remarks(&self) -> Vec<String> {
+        let mut remarks = Vec::new();
+        if self.error_bounds.is_none() {
+            remarks.push(
+                "an output is reproduced to rounding, as data without noise are: error bounds would mean nothing and are left out".to_string(),
+            );
+        }
+        let identifiability = self.identifiability.as_ref();
+        let Some(seen) = identifiability.map(|both| both.after.as_ref().unwrap_or(&both.before))
+        else {
+            return remarks;
+        };
+        for set in &seen.redundant {
+            let names = set.parameters.join(" + ");
+            remarks.push(format!("the data cannot tell apart: {names}"));
+        }
+        if !seen.unseen.is_empty() {
+            remarks.push(format!("the data cannot see: {}", seen.unseen.join(", ")));
+        }
+        for set in &seen.nearly_collinear {
+            remarks.push(format!(
+                "the data hardly tell apart: {} (condition index {:.0})",
+                set.parameters.join(" + "),
+                set.condition_index
+            ));
+        }
+        remarks
+    }
+
+    /// What a reader should know about a row of the parameter table, in words; mostly nothing.
+    pub fn remark(&self, row: &ParameterEstimate) -> &'static str {
+        match (row.fixed, row.at_bound, row.standard_error) {
             (true, ..) => "fixed",
             (_, Some(Bound::Lower), _) => "at its lower bound",
             (_, Some(Bound::Upper), _) => "at its upper bound",
-            (_, _, None) => "not determined by the data",
+            (_, _, None) if self.error_bounds.is_some() => "not determined by the data",
             _ => "",
         }
     }
 }
 
 /// JSON has no word for a number out of range: it is written `null`, and read back as NaN.
-fn null_as_nan<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+pub(super) fn null_as_nan<'de, D: serde::Deserializer<'de>>(
+    deserializer: D,
+) -> Result<f64, D::Error> {
     Option::<f64>::deserialize(deserializer).map(|number| number.unwrap_or(f64::NAN))
 }
 
@@ -216,6 +301,9 @@ mod tests {
             bias: 0.0,
             r_squared: f64::NAN,
             theil: 0.5,
+            theil_shares: TheilShares::default(),
+            autocorrelation: 0.0,
+            effective_samples: 1.0,
         };
         let read: OutputFit = serde_json::from_str(&serde_json::to_string(&fit).unwrap()).unwrap();
         assert!(read.r_squared.is_nan() && read.theil == 0.5);

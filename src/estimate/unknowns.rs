@@ -59,17 +59,34 @@ impl Unknowns {
                 places[parameter] = all.len() - 1;
             }
         }
+        Ok(Self::of(all, places))
+    }
+
+    fn of(all: Vec<Unknown>, places: Vec<Vec<usize>>) -> Self {
         let free: Vec<usize> = (0..all.len()).filter(|&i| !all[i].fixed).collect();
         let mut place_in_theta = vec![None; all.len()];
         free.iter()
             .enumerate()
             .for_each(|(place, &i)| place_in_theta[i] = Some(place));
-        Ok(Self {
+        Self {
             all,
             free,
             places,
             place_in_theta,
-        })
+        }
+    }
+
+    /// The same, with parameters that `value` knows held there.
+    pub fn with_shared_held(&self, value: impl Fn(usize) -> Option<f64>) -> Self {
+        let hold = |unknown: &Unknown| match value(unknown.parameter) {
+            Some(value) => Unknown {
+                start: value,
+                fixed: true,
+                ..unknown.clone()
+            },
+            None => unknown.clone(),
+        };
+        Self::of(self.all.iter().map(hold).collect(), self.places.clone())
     }
 
     /// Start values of the free unknowns.

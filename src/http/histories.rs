@@ -15,7 +15,7 @@ use super::format::{Format, cacheable, choose};
 use super::problem::{Problem, ProblemDocument};
 use super::query::{JobId, Parameters};
 use super::{Service, jobs, results};
-use crate::estimate::{OutputSeries, Series, TimeHistory};
+use crate::estimate::{OutputSeries, Role, Series, TimeHistory};
 
 pub fn router() -> OpenApiRouter<Service> {
     OpenApiRouter::new()
@@ -47,6 +47,8 @@ pub struct Residuals {
 struct SegmentResiduals {
     #[schema(example = "elevator")]
     segment: String,
+    /// Whether the model was fitted to it.
+    role: Role,
     /// Samples of the segment, before `max_points`.
     #[schema(example = 751)]
     samples: usize,
@@ -198,6 +200,7 @@ fn residuals_as_json(segments: Vec<SegmentHistory>) -> Result<Vec<u8>, Problem> 
             let outputs = outputs.map(residual).collect();
             SegmentResiduals {
                 segment: history.segment,
+                role: history.role,
                 samples,
                 time: history.time,
                 outputs,
@@ -274,6 +277,7 @@ mod tests {
         };
         TimeHistory {
             segment: "a".into(),
+            role: crate::estimate::Role::default(),
             time: vec![0.0, 0.1, 0.2],
             inputs: vec![Series {
                 name: "de".into(),

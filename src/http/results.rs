@@ -16,7 +16,7 @@ use super::format::{Format, cacheable, choose};
 use super::problem::{Problem, ProblemDocument};
 use super::query::{JobId, Parameters};
 use super::{Service, jobs, models};
-use crate::estimate::{Bound, CollinearSet, Estimate, Outcome, ParameterEstimate};
+use crate::estimate::{Bound, CollinearSet, ErrorBoundsKind, Estimate, Outcome, ParameterEstimate};
 use crate::job::EventBody;
 use crate::model::ModelDocument;
 use crate::store::{JobRecord, Part};
@@ -78,6 +78,9 @@ pub struct ParameterTable {
     outcome: Outcome,
     reason: String,
     parameters: Vec<ParameterEstimate>,
+    /// What `standard_error` and `correlation` are made from; `null` where they would mean nothing.
+    #[serde(default)]
+    error_bounds: Option<ErrorBoundsKind>,
     /// Correlation of the free parameters' errors, in the order of the free parameters. Empty when singular.
     correlation: Vec<Vec<Option<f64>>>,
     /// Sets of parameters that the data cannot tell apart, or cannot see.
@@ -128,6 +131,7 @@ fn parameters_as_csv(parameters: &[ParameterEstimate]) -> csv::Result<Vec<u8>> {
         "standard_error",
         "fixed",
         "at_bound",
+        "conventional_standard_error",
     ];
     let mut csv = Csv::with_header(header)?;
     for parameter in parameters {
@@ -143,6 +147,7 @@ fn parameters_as_csv(parameters: &[ParameterEstimate]) -> csv::Result<Vec<u8>> {
             Some(Bound::Upper) => "upper",
             None => "",
         })?;
+        csv.number(parameter.conventional_standard_error)?;
         csv.end_row()?;
     }
     csv.into_bytes()

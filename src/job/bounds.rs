@@ -118,3 +118,22 @@ pub(super) fn check_unknowns(
     }
     Ok(())
 }
+
+/// Checks that a segment to be predicted can carry the unknowns of its own.
+pub(super) fn check_validation(
+    model: &Model,
+    segment: &Segment,
+    unknowns: &Unknowns,
+) -> Result<(), Vec<Fault>> {
+    let is_own = |place: &usize| unknowns.at(*place).segment.is_some();
+    let count = (0..unknowns.len()).filter(is_own).count();
+    let values = segment.len() * model.outputs.len();
+    if values > count {
+        return Ok(());
+    }
+    let message = format!(
+        "segment {} has {values} measured values for its own {count} unknowns; more values than unknowns are needed",
+        segment.label
+    );
+    Err(vec![Fault::new("/maneuvers", "too_few_samples", message)])
+}

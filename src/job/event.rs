@@ -47,7 +47,11 @@ pub enum EventBody {
 pub struct Prepared {
     #[schema(example = json!(["elevator"]))]
     pub segments: Vec<String>,
-    /// Samples over all segments.
+    /// Segments that take no part in the estimation and are predicted with its result.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(example = json!(["doublet"]))]
+    pub validation: Vec<String>,
+    /// Samples over all segments of the estimation.
     pub samples: usize,
     pub outputs: Vec<String>,
     /// Free parameters, in the order of the iterations' `parameters`.

@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::bounds;
-use super::resolve::{self, Named};
+use super::resolve::{self, Named, Stretch};
 use super::{Fault, JobSpec, ModelSource, Prepared};
 use crate::estimate::{
-    Estimate, Iteration, Noise, Options, Problem, Solution, TimeHistory, Unknowns, Unusable,
-    output_error,
+    Estimate, Iteration, Noise, Options, Outcome, Problem, Role, Solution, TimeHistory, Unknowns,
+    Unusable, Validation, output_error, predict,
 };
 use crate::flight::{Maneuver, escape};
 use crate::model::{ChannelFormula, Model, ModelDocument, Start};
@@ -23,6 +23,8 @@ pub struct Plan {
     /// The model as estimated: the declared one with the job's edits and parameter overrides in it.
     pub model: ModelDocument,
     pub problem: Problem,
+    /// What is predicted with the estimate.
+    pub validation: Vec<Validation>,
 }
 
 /// Everything a finished job answers.
@@ -78,44 +80,38 @@ pub fn prepare(
     {
         return Err(faults);
     }
-    let mut resolved = Vec::new();
+    let (mut fitted, mut predicted) = (Vec::new(), Vec::new());
     for (index, stretches) in stretches.iter().enumerate() {
         for stretch in stretches {
-            resolved.push((
-                resolve::segment(spec, &model, stretch, index, &mut faults),
-                stretch,
-            ));
+            let segment = resolve::segment(spec, &model, stretch, index, &mut faults);
+            match spec.maneuvers[index].role {
+                Role::Estimation => fitted.push((segment, stretch)),
+                Role::Validation => predicted.push((segment, stretch)),
+            }
         }
     }
     if !faults.is_empty() {
         return Err(faults);
     }
-    let start = |parameter: usize, segment: usize| {
-        let info = &model.parameters[parameter];
-        let (segment, stretch) = &resolved[segment];
-        match &info.document.start {
-            Start::Value(value) => Ok(info.unit.to_si(*value)),
-            Start::FromData(text) => start_from_data(
-                text,
-                &Named {
-                    model: &model,
-                    stretch,
-                    segment,
-                },
-                info.unit.dimension,
-            )
-            .map_err(|(code, message)| Fault::new(start_pointer(spec, &info.name), code, message)),
-        }
-    };
-    let unknowns = Unknowns::new(&model, resolved.len(), start).map_err(|fault| vec![fault])?;
-    let segments: Vec<Segment> = resolved.into_iter().map(|(segment, _)| segment).collect();
+    let unknowns = unknowns(spec, &model, &fitted)?;
+    let segments: Vec<Segment> = fitted.into_iter().map(|(segment, _)| segment).collect();
     bounds::check_unknowns(&model, &segments, &unknowns, &spec.options)?;
+    let mut validation = Vec::new();
+    for resolved in predicted {
+        let unknowns = self::unknowns(spec, &model, std::slice::from_ref(&resolved))?;
+        let (segment, _) = resolved;
+        bounds::check_validation(&model, &segment, &unknowns)?;
+        validation.push(Validation { segment, unknowns });
+    }
     let problem = Problem::new(model, segments, unknowns, spec.options.clone());
     let prepared = Prepared {
         segments: problem
             .segments
             .iter()
             .map(|segment| segment.label.clone())
+            .collect(),
+        validation: (validation.iter())
+            .map(|validation| validation.segment.label.clone())
             .collect(),
         samples: problem.samples(),
         outputs: problem
@@ -133,7 +129,32 @@ pub fn prepare(
         prepared,
         model: document,
         problem,
+        validation,
     })
+}
+
+/// The unknowns over segments, with start values from the recordings where the model asks for that.
+fn unknowns(
+    spec: &JobSpec,
+    model: &Model,
+    resolved: &[(Segment, &Stretch<'_>)],
+) -> Result<Unknowns, Vec<Fault>> {
+    let start = |parameter: usize, segment: usize| {
+        let info = &model.parameters[parameter];
+        let (segment, stretch) = &resolved[segment];
+        let text = match &info.document.start {
+            Start::Value(value) => return Ok(info.unit.to_si(*value)),
+            Start::FromData(text) => text,
+        };
+        let on = Named {
+            model,
+            stretch,
+            segment,
+        };
+        start_from_data(text, &on, info.unit.dimension)
+            .map_err(|(code, message)| Fault::new(start_pointer(spec, &info.name), code, message))
+    };
+    Unknowns::new(model, resolved.len(), start).map_err(|fault| vec![fault])
 }
 
 /// Runs a plan; `observer` is told of each iteration and may stop it.
@@ -146,9 +167,16 @@ pub fn run(
 ) -> Result<JobResult, Vec<Fault>> {
     let problem = &plan.problem;
     let Solution {
-        estimate,
-        histories,
+        mut estimate,
+        mut histories,
     } = output_error(problem, observer).map_err(|why| vec![no_start(problem, why)])?;
+    if estimate.outcome != Outcome::Cancelled {
+        for validation in &plan.validation {
+            let (prediction, history) = predict(problem, &estimate, validation);
+            estimate.prediction.push(prediction);
+            histories.extend(history);
+        }
+    }
     Ok(JobResult {
         estimate,
         histories,
@@ -238,6 +266,11 @@ fn check_shape(spec: &JobSpec, maneuvers: usize, faults: &mut Vec<Fault>) {
             "a job needs at least one maneuver",
         ));
     }
+    let uses = &spec.maneuvers;
+    if !uses.is_empty() && uses.iter().all(|usage| usage.role == Role::Validation) {
+        let message = "all maneuvers are there for validation; at least one must have the role \"estimation\"";
+        faults.push(Fault::new("/maneuvers", "no_maneuvers", message));
+    }
     if maneuvers > MOST_MANEUVERS {
         let message =
             format!("{maneuvers} maneuvers; at most {MOST_MANEUVERS} are allowed in one job");
@@ -262,8 +295,8 @@ fn check_options(options: &Options, model: &Model, faults: &mut Vec<Fault>) {
             "tolerance must be above 0 and at most 1 standard error",
         ));
     }
-    if !(1..=MOST_ITERATIONS).contains(&options.max_iterations) {
-        let message = format!("max_iterations must be from 1 to {MOST_ITERATIONS}");
+    if options.max_iterations > MOST_ITERATIONS {
+        let message = format!("max_iterations must be from 0 to {MOST_ITERATIONS}");
         faults.push(Fault::new("/options/max_iterations", "bad_option", message));
     }
     if let Noise::Given { variance } = &options.noise {

@@ -8,7 +8,7 @@ use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use utoipa::ToSchema;
 
-use crate::estimate::Options;
+use crate::estimate::{Options, Role};
 use crate::model::{Edit, ModelDocument, Start};
 
 /// A job: a kind, a model, maneuvers, and how the one meets the others.
@@ -119,6 +119,9 @@ pub struct ManeuverUse {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = json!([1, 751]))]
     pub rows: Option<[usize; 2]>,
+    /// Whether the model is fitted to it, or predicts it.
+    #[serde(default)]
+    pub role: Role,
     /// What to do where the recording has gaps.
     #[serde(default)]
     pub gaps: Gaps,

@@ -3,10 +3,10 @@
 use indexmap::IndexMap;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 
 use super::input_design::InputDesign;
+use super::noise::NoiseColour;
 use super::{InputInterpolation, Integrator, Segment, Steps, simulate};
 use crate::flight::{Channel, Maneuver, Unit};
 use crate::model::{Model, Start};
@@ -48,8 +48,11 @@ pub struct ScenarioInput {
 #[serde(deny_unknown_fields)]
 pub struct ScenarioOutput {
     pub unit: String,
-    /// Standard deviation of white measurement noise.
+    /// Standard deviation of the measurement noise.
     pub noise: f64,
+    /// White, where it does not say otherwise.
+    #[serde(default)]
+    pub colour: NoiseColour,
 }
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -116,10 +119,6 @@ impl Scenario {
         }
 
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
-        let mut noisy = |value: f64, deviation: f64| {
-            let unit: f64 = StandardNormal.sample(&mut random);
-            value + deviation * unit
-        };
         let mut channels = IndexMap::new();
         for (input, values) in model.inputs.iter().zip(inputs) {
             let unit = &self.inputs[&input.name].unit;
@@ -134,18 +133,23 @@ impl Scenario {
                 ));
             };
             let unit = unit_like(&recorded.unit, output.unit, &format!("{what}.unit"))?;
-            let values = values
-                .into_iter()
-                .map(|y| noisy(y, recorded.noise * unit.scale))
-                .collect();
+            if let Some(message) = recorded.colour.fault(self.step, count) {
+                return Err(unfit(&format!("{what}.colour"), message));
+            }
+            let deviation = recorded.noise * unit.scale;
+            let noise = recorded.colour.samples(self.step, count, &mut random);
+            let noisy = values.iter().zip(noise).map(|(y, e)| y + deviation * e);
+            let values = noisy.collect();
             channels.insert(output.name.clone(), channel(&recorded.unit, values)?);
         }
         for (name, recorded) in &self.channels {
             let unit = Unit::parse(&recorded.unit)
                 .map_err(|e| unfit(&format!("channels.{name}.unit"), e.to_string()))?;
-            let values = (0..count)
-                .map(|_| unit.to_si(noisy(recorded.value, recorded.noise)))
-                .collect();
+            let noise = NoiseColour::White.samples(self.step, count, &mut random);
+            let noisy = noise
+                .iter()
+                .map(|e| unit.to_si(recorded.value + recorded.noise * e));
+            let values = noisy.collect();
             channels.insert(name.clone(), channel(&recorded.unit, values)?);
         }
         let time = (0..count).map(|k| k as f64 * self.step).collect();

@@ -5,7 +5,7 @@ use sqlx::{Any, Row, Transaction};
 use uuid::Uuid;
 
 use super::{Store, StoreError, columns, off_reactor};
-use crate::estimate::{OutputSeries, Series, TimeHistory};
+use crate::estimate::{OutputSeries, Role, Series, TimeHistory};
 use crate::job::JobResult;
 
 /// A part that is kept as JSON.
@@ -67,6 +67,8 @@ fn history_part(number: usize) -> String {
 #[derive(Serialize, Deserialize)]
 struct HistoryHeader {
     segment: String,
+    #[serde(default)]
+    role: Role,
     inputs: Vec<SeriesHeader>,
     outputs: Vec<SeriesHeader>,
 }
@@ -90,6 +92,7 @@ impl SeriesHeader {
 fn encode_history(history: &TimeHistory) -> serde_json::Result<Vec<u8>> {
     let header = HistoryHeader {
         segment: history.segment.clone(),
+        role: history.role,
         inputs: history
             .inputs
             .iter()
@@ -147,6 +150,7 @@ fn decode_history(bytes: &[u8]) -> Result<TimeHistory, StoreError> {
     let outputs = outputs.collect();
     Ok(TimeHistory {
         segment: header.segment,
+        role: header.role,
         time,
         inputs,
         outputs,
@@ -227,6 +231,7 @@ mod tests {
         };
         let history = TimeHistory {
             segment: "a".into(),
+            role: crate::estimate::Role::default(),
             time: vec![0.0, 0.1],
             inputs: vec![Series {
                 name: "de".into(),

@@ -1,0 +1,14 @@
+//! What a maneuver is there for.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// The model is fitted to it.
+    #[default]
+    Estimation,
+    /// It takes no part in the fit and is predicted with its result.
+    Validation,
+}
