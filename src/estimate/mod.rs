@@ -9,6 +9,7 @@
 //! and [`Estimate`] is the answer, with the reason why the solver stopped.
 
 mod answer;
+pub mod derivatives;
 mod error_bounds;
 mod evaluation;
 mod fit;
@@ -19,12 +20,15 @@ mod local_sums;
 mod options;
 mod output_error;
 mod problem;
+pub mod quasi_newton;
 mod report;
 mod step;
+pub mod study;
 mod sums;
 mod unknowns;
 
 pub use answer::Solution;
+pub use derivatives::{Derivatives, Scaling};
 pub use evaluation::{Evaluator, Unusable};
 pub use likelihood::NormalEquations;
 pub use options::{Method, Noise, NoiseStructure, Options};

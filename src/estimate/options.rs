@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::derivatives::Derivatives;
 use crate::simulate::{InputInterpolation, Integrator};
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
@@ -12,6 +13,7 @@ pub struct Options {
     pub integrator: Integrator,
     pub input_interpolation: InputInterpolation,
     pub noise: Noise,
+    pub derivatives: Derivatives,
     /// Converged when a full step would move the estimate by less than this many standard errors:
     /// √(gᵀ H⁻¹ g), g the gradient and H the Hessian of the cost that the step is made with.
     #[schema(example = 1e-5, exclusive_minimum = 0.0)]
@@ -28,6 +30,7 @@ impl Default for Options {
             integrator: Integrator::default(),
             input_interpolation: InputInterpolation::default(),
             noise: Noise::default(),
+            derivatives: Derivatives::default(),
             tolerance: 1e-5,
             max_iterations: 50,
         }
@@ -58,6 +61,14 @@ pub enum Noise {
     },
     /// R is known: the variance of each output, in SI units squared, in the order of the model's outputs.
     Given { variance: Vec<f64> },
+}
+
+impl Noise {
+    /// Whether the noises of the outputs are correlated, so that all pairs of outputs count.
+    pub fn is_full(&self) -> bool {
+        let full = NoiseStructure::Full;
+        matches!(self, Self::Estimated { structure } if *structure == full)
+    }
 }
 
 impl Default for Noise {

@@ -1,16 +1,19 @@
 //! The output-error method: Gauss-Newton or Levenberg-Marquardt on the likelihood concentrated in R.
+//! (With the adjoint's gradient alone: `quasi_newton`.)
 
 use std::ops::ControlFlow;
 
 use nalgebra::DVector;
 
 use super::answer::{Solution, answer};
+use super::derivatives::Derivatives;
 use super::error_bounds::ErrorBounds;
 use super::evaluation::{Evaluator, Unusable};
 use super::iterate::{Iterate, Taken};
 use super::likelihood::Weighting;
 use super::options::Method;
 use super::problem::Problem;
+use super::quasi_newton;
 use super::report::{Iteration, Outcome};
 use super::step::advanced;
 
@@ -34,6 +37,9 @@ const ROUNDING: f64 = 1e-13;
 /// # Errors
 /// The start values give no cost, so that there is nothing to begin with.
 pub fn output_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<Solution, Unusable> {
+    if let Derivatives::Adjoint { scaling } = problem.options.derivatives {
+        return quasi_newton::solve(problem, scaling, observer);
+    }
     let mut evaluator = Evaluator::new(problem);
     let mut current = Iterate::at(problem, &mut evaluator, problem.unknowns.start())?;
     let mut taken = Taken::default();
@@ -133,7 +139,7 @@ fn search(
 }
 
 /// Why the loop ended.
-enum Stopped {
+pub(super) enum Stopped {
     Minimum { distance: f64 },
     Budget { distance: f64 },
     Stalled { distance: f64 },
@@ -144,7 +150,7 @@ enum Stopped {
 
 impl Stopped {
     /// The outcome, and what to say of it.
-    fn say(
+    pub fn say(
         self,
         problem: &Problem,
         iterations: usize,

@@ -165,7 +165,9 @@ impl<'m> Adjoint<'m> {
         initial.program.set_parameters(&mut workspace, parameters);
         initial.program.run(&mut workspace);
         for (i, &(row, parameter)) in initial.by_parameter.iter().enumerate() {
-            let entry = initial.program.result(&workspace, initial.by_state.len() + i);
+            let entry = initial
+                .program
+                .result(&workspace, initial.by_state.len() + i);
             gradient[parameter] += entry * self.state[row];
         }
     }
@@ -256,7 +258,11 @@ impl<'m> Adjoint<'m> {
     fn evaluate(&mut self, segment: &Segment, first: usize, len: usize, jacobians: bool) {
         let n = self.model.states.len();
         let last = segment.len() - 1;
-        let stages = if jacobians { self.stages } else { &self.stages[..1] };
+        let stages = if jacobians {
+            self.stages
+        } else {
+            &self.stages[..1]
+        };
         for group in (0..len).step_by(LANES) {
             // lanes behind the end repeat the last sample
             let own = |lane: usize| (group + lane).min(len - 1);

@@ -22,6 +22,12 @@ pub struct Standing<T> {
     state: Vec<T>,
 }
 
+impl Standing<f64> {
+    pub fn is_finite(&self) -> bool {
+        self.state.iter().all(|x| x.is_finite())
+    }
+}
+
 impl<'m, T: Scalar> March<'m, T> {
     pub fn new(
         model: &'m Model,
