@@ -3,11 +3,12 @@
 use super::coloured_residuals::Colour;
 use super::error_bounds::ErrorBounds;
 use super::evaluation::Evaluator;
-use super::fit::fits;
+use super::fit::{fits, histories};
 use super::identifiability::{DataInformation, Identifiability};
 use super::iterate::Iterate;
 use super::problem::Problem;
-use super::report::{Estimate, Outcome, ParameterEstimate, TimeHistory};
+use super::report::{Estimate, ParameterEstimate, TimeHistory};
+use super::stopped::Stopped;
 use super::unknowns::Unknown;
 
 /// The estimate, and the time histories that go with it.
@@ -18,31 +19,28 @@ pub struct Solution {
 
 /// How an estimation ended.
 pub(super) struct Ending<'e> {
-    pub outcome: Outcome,
-    pub reason: String,
+    pub stopped: Stopped,
     pub iterations: usize,
     /// What the data told at the start.
     pub before: Option<DataInformation>,
     pub at: &'e Iterate,
-    pub bounds: &'e ErrorBounds,
-    pub colour: &'e Colour,
 }
 
 pub(super) fn answer(
     problem: &Problem,
     ending: Ending<'_>,
-    evaluator: &Evaluator<'_>,
-    histories: Vec<TimeHistory>,
+    evaluator: &mut Evaluator<'_>,
 ) -> Solution {
     let Ending {
-        outcome,
-        reason,
+        stopped,
         iterations,
         before,
         at,
-        bounds,
-        colour,
     } = ending;
+    let histories = histories(problem, &at.theta);
+    let colour = Colour::of(&histories);
+    let bounds = ErrorBounds::at(problem, evaluator, at, &colour, &histories);
+    let (outcome, reason) = stopped.say(problem, iterations, at, &bounds);
     let covariance = &at.weighting.covariance;
     let after = (iterations > 0).then(|| DataInformation::of(problem, &at.information));
     let identifiability = before.map(|before| Identifiability {
@@ -61,8 +59,8 @@ pub(super) fn answer(
             .row_iter()
             .map(|row| row.iter().copied().collect())
             .collect(),
-        outputs: fits(problem, &histories, colour),
-        parameters: table(problem, at, bounds),
+        outputs: fits(problem, &histories, &colour),
+        parameters: table(problem, at, &bounds),
         error_bounds: bounds.kind,
         correlation: bounds.correlation.clone(),
         collinear: bounds.collinear(problem),

@@ -1,7 +1,8 @@
 //! One look at the data for a θ: residuals, and with sensitivities the sums that a step is made of.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
+use super::derivatives::{self, CentralDifference, ComplexStep, Derivatives, ForwardDifference};
 use super::local_sums::LocalSums;
 use super::options::{Noise, NoiseStructure};
 use super::problem::Problem;
@@ -120,19 +121,21 @@ impl<'p> Evaluator<'p> {
         let problem = self.problem;
         let outputs = problem.model.outputs.len();
         let unknowns = problem.unknowns.len();
-        let pairs = if self.full {
-            outputs * (outputs + 1) / 2
-        } else {
-            outputs
-        };
-        let mut total = Sums {
-            residuals: DMatrix::zeros(outputs, outputs),
-            products: vec![DMatrix::zeros(unknowns, unknowns); pairs],
-            gradients: vec![
-                vec![DVector::zeros(unknowns); if self.full { outputs } else { 1 }];
-                outputs
-            ],
-        };
+        let full = self.full;
+        match problem.options.derivatives {
+            Derivatives::ForwardDifference { step } => {
+                return derivatives::sums(&ForwardDifference { step }, problem, theta, full);
+            }
+            Derivatives::CentralDifference { step } => {
+                return derivatives::sums(&CentralDifference { step }, problem, theta, full);
+            }
+            Derivatives::ComplexStep { step } => {
+                return derivatives::sums(&ComplexStep { step }, problem, theta, full);
+            }
+            // the adjoint has no rows of its own: where they are needed, these are
+            Derivatives::ForwardSensitivities {} | Derivatives::Adjoint { .. } => {}
+        }
+        let mut total = Sums::zeros(outputs, unknowns, full);
         for (index, segment) in problem.segments.iter().enumerate() {
             problem
                 .unknowns
@@ -147,15 +150,6 @@ impl<'p> Evaluator<'p> {
             local.scatter(problem, index, &mut total);
         }
         mirror(&mut total.residuals);
-        let finite = total.residuals.iter().all(|v| v.is_finite())
-            && total
-                .products
-                .iter()
-                .all(|product| product.iter().all(|v| v.is_finite()));
-        if finite {
-            Ok(total)
-        } else {
-            Err(Unusable::NotFinite)
-        }
+        total.finite()
     }
 }

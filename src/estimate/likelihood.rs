@@ -56,6 +56,7 @@ impl NormalEquations {
 pub(super) struct Weighting {
     pub covariance: DMatrix<f64>,
     pub inverse: DMatrix<f64>,
+    diagonal: bool,
     pub ln_det: f64,
     /// -ln L
     pub cost: f64,
@@ -92,6 +93,7 @@ impl Weighting {
             Ok(Self {
                 covariance,
                 inverse,
+                diagonal: !noise.is_full(),
                 ln_det,
                 cost,
             })
@@ -102,6 +104,19 @@ impl Weighting {
 
     pub fn det(&self) -> f64 {
         self.ln_det.exp()
+    }
+
+    /// R⁻¹ e
+    pub fn weighted(&self, residual: &[f64], to: &mut [f64]) {
+        if self.diagonal {
+            for (i, (to, e)) in to.iter_mut().zip(residual).enumerate() {
+                *to = self.inverse[(i, i)] * e;
+            }
+            return;
+        }
+        for (to, row) in to.iter_mut().zip(self.inverse.row_iter()) {
+            *to = row.iter().zip(residual).map(|(r, e)| r * e).sum();
+        }
     }
 
     /// The information matrix F = Σ Sᵀ R⁻¹ S.

@@ -11,6 +11,7 @@
 mod answer;
 mod autoregression;
 mod coloured_residuals;
+pub mod derivatives;
 mod error_bounds;
 mod evaluation;
 mod fit;
@@ -23,13 +24,17 @@ mod options;
 mod output_error;
 mod prediction;
 mod problem;
+pub mod quasi_newton;
 mod report;
 mod role;
 mod step;
+mod stopped;
+pub mod study;
 mod sums;
 mod unknowns;
 
 pub use answer::Solution;
+pub use derivatives::{Derivatives, Scaling};
 pub use error_bounds::ErrorBoundsKind;
 pub use evaluation::{Evaluator, Unusable};
 pub use identifiability::{CorrelatedPair, DataInformation, Identifiability, NearlyCollinearSet};

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::derivatives::Derivatives;
 use super::error_bounds::ErrorBoundsKind;
 use crate::simulate::{InputInterpolation, Integrator};
 
@@ -14,6 +15,7 @@ pub struct Options {
     pub input_interpolation: InputInterpolation,
     pub noise: Noise,
     pub error_bounds: ErrorBoundsKind,
+    pub derivatives: Derivatives,
     /// Converged when a full step would move the estimate by less than this many standard errors:
     /// √(gᵀ H⁻¹ g), g the gradient and H the Hessian of the cost that the step is made with.
     #[schema(example = 1e-5, exclusive_minimum = 0.0)]
@@ -32,6 +34,7 @@ impl Default for Options {
             input_interpolation: InputInterpolation::default(),
             noise: Noise::default(),
             error_bounds: ErrorBoundsKind::default(),
+            derivatives: Derivatives::default(),
             tolerance: 1e-5,
             max_iterations: 50,
         }
@@ -62,6 +65,14 @@ pub enum Noise {
     },
     /// R is known: the variance of each output, in SI units squared, in the order of the model's outputs.
     Given { variance: Vec<f64> },
+}
+
+impl Noise {
+    /// Whether the noises of the outputs are correlated, so that all pairs of outputs count.
+    pub fn is_full(&self) -> bool {
+        let full = NoiseStructure::Full;
+        matches!(self, Self::Estimated { structure } if *structure == full)
+    }
 }
 
 impl Default for Noise {

@@ -1,21 +1,22 @@
 //! The output-error method: Gauss-Newton or Levenberg-Marquardt on the likelihood concentrated in R.
+//! (With the adjoint's gradient alone: `quasi_newton`.)
 
 use std::ops::ControlFlow;
 
 use nalgebra::DVector;
 
 use super::answer::{Ending, Solution, answer};
-use super::coloured_residuals::Colour;
-use super::error_bounds::ErrorBounds;
+use super::derivatives::Derivatives;
 use super::evaluation::{Evaluator, Unusable};
-use super::fit::histories;
 use super::identifiability::DataInformation;
 use super::iterate::{Iterate, Taken};
 use super::likelihood::Weighting;
 use super::options::Method;
 use super::problem::Problem;
-use super::report::{Iteration, Outcome};
+use super::quasi_newton;
+use super::report::Iteration;
 use super::step::advanced;
+use super::stopped::Stopped;
 
 /// Told of each iteration; may stop the solver.
 pub type Observer<'o> = dyn FnMut(&Iteration) -> ControlFlow<()> + 'o;
@@ -37,6 +38,9 @@ const ROUNDING: f64 = 1e-13;
 /// # Errors
 /// The start values give no cost, so that there is nothing to begin with.
 pub fn output_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<Solution, Unusable> {
+    if let Derivatives::Adjoint { scaling } = problem.options.derivatives {
+        return quasi_newton::solve(problem, scaling, observer);
+    }
     let mut evaluator = Evaluator::new(problem);
     let mut current = Iterate::at(problem, &mut evaluator, problem.unknowns.start())?;
     let before = DataInformation::of(problem, &current.information);
@@ -71,20 +75,13 @@ pub fn output_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
             Err(Nothing { in_range: false }) => break Stopped::Diverged,
         }
     };
-    let histories = histories(problem, &current.theta);
-    let colour = Colour::of(&histories);
-    let bounds = ErrorBounds::at(problem, &mut evaluator, &current, &colour, &histories);
-    let (outcome, reason) = stopped.say(problem, iteration, &current, &bounds);
     let ending = Ending {
-        outcome,
-        reason,
+        stopped,
         iterations: iteration,
         before,
         at: &current,
-        bounds: &bounds,
-        colour: &colour,
     };
-    Ok(answer(problem, ending, &evaluator, histories))
+    Ok(answer(problem, ending, &mut evaluator))
 }
 
 /// No θ of lower cost was found; was there any that could be simulated?
@@ -138,100 +135,4 @@ fn search(
         }
     }
     Err(Nothing { in_range })
-}
-
-/// Why the loop ended.
-enum Stopped {
-    Minimum { distance: f64 },
-    Budget { distance: f64 },
-    Stalled { distance: f64 },
-    Diverged,
-    NoDirection,
-    OnRequest,
-}
-
-impl Stopped {
-    /// The outcome, and what to say of it.
-    fn say(
-        self,
-        problem: &Problem,
-        iterations: usize,
-        at: &Iterate,
-        bounds: &ErrorBounds,
-    ) -> (Outcome, String) {
-        match self {
-            Self::Minimum { distance } => minimum(problem, at, bounds, distance),
-            Self::Budget { .. } if iterations == 0 => {
-                let reason =
-                    "no iteration was asked for: this is what the data say at the start values";
-                (Outcome::Budget, reason.to_string())
-            }
-            Self::Budget { distance } => {
-                let reason = format!(
-                    "the budget of {iterations} iterations is used up; a further step would move the estimate by {distance:.1e} standard errors"
-                );
-                (Outcome::Budget, reason)
-            }
-            Self::Stalled { distance } => {
-                let remedy = match problem.options.method {
-                    Method::GaussNewton => {
-                        "; try the method levenberg_marquardt, or other start values"
-                    }
-                    Method::LevenbergMarquardt => "; try other start values",
-                };
-                let reason = format!(
-                    "no step lowers the cost any more, though the next one would be {distance:.1e} standard errors long{remedy}"
-                );
-                (Outcome::Stalled, reason)
-            }
-            Self::Diverged => {
-                let reason = "every step tried leads to a simulation that leaves the range of numbers; start closer, or set bounds";
-                (Outcome::Diverged, reason.to_string())
-            }
-            Self::NoDirection => (
-                Outcome::Stalled,
-                "the information matrix gives no direction to go on in".to_string(),
-            ),
-            Self::OnRequest => (
-                Outcome::Cancelled,
-                format!("stopped on request after {iterations} iteration(s)"),
-            ),
-        }
-    }
-}
-
-/// A point from which no step of any length leads further down: what kind of one.
-fn minimum(
-    problem: &Problem,
-    at: &Iterate,
-    bounds: &ErrorBounds,
-    distance: f64,
-) -> (Outcome, String) {
-    let collinear = bounds.collinear(problem);
-    if !collinear.is_empty() {
-        let sets: Vec<String> = collinear
-            .iter()
-            .map(|set| set.parameters.join(" + "))
-            .collect();
-        let reason = format!(
-            "the data cannot tell apart, or cannot see: {}; fix one of each set, or fly a maneuver that separates them",
-            sets.join("; ")
-        );
-        return (Outcome::Singular, reason);
-    }
-    let held: Vec<String> = (0..at.held.len())
-        .filter(|&place| at.held[place].is_some())
-        .map(|place| problem.name(place))
-        .collect();
-    let reason = format!(
-        "converged: a further step would move the estimate by {distance:.1e} standard errors"
-    );
-    if held.is_empty() {
-        (Outcome::Converged, reason)
-    } else {
-        (
-            Outcome::AtBound,
-            format!("{reason}; held at a bound: {}", held.join(", ")),
-        )
-    }
 }

@@ -29,6 +29,19 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// As it is written in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Converged => "converged",
+            Self::AtBound => "at_bound",
+            Self::Singular => "singular",
+            Self::Stalled => "stalled",
+            Self::Diverged => "diverged",
+            Self::Budget => "budget",
+            Self::Cancelled => "cancelled",
+        }
+    }
+
     /// Whether the estimate is the minimum that was asked for.
     pub fn is_minimum(self) -> bool {
         matches!(self, Self::Converged | Self::AtBound)

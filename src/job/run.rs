@@ -299,6 +299,10 @@ fn check_options(options: &Options, model: &Model, faults: &mut Vec<Fault>) {
         let message = format!("max_iterations must be from 0 to {MOST_ITERATIONS}");
         faults.push(Fault::new("/options/max_iterations", "bad_option", message));
     }
+    if let Some(message) = options.derivatives.fault() {
+        let pointer = "/options/derivatives/step";
+        faults.push(Fault::new(pointer, "bad_option", message));
+    }
     if let Noise::Given { variance } = &options.noise {
         let outputs: Vec<&str> = model
             .outputs

@@ -54,6 +54,11 @@ const RK4: [Stage; 4] = [
 ];
 
 impl Integrator {
+    /// Evaluations of f in a step.
+    pub fn stage_count(self) -> usize {
+        self.stages().len()
+    }
+
     pub(super) fn stages(self) -> &'static [Stage] {
         match self {
             Self::Euler => &EULER,

@@ -1,12 +1,14 @@
 //! Outputs of a model for parameters and a maneuver, and their sensitivities.
 //!
 //! dx/dt = f(x, u, θ), x(0) = x0(θ), y_k = g(x_k, u_k, θ), stepped once a sample by an explicit method.
-//! [`simulate`] gives y for any kind of number; [`Sensitivities`] gives y and ∂y/∂θ. A [`Scenario`] makes a
-//! maneuver of known truth.
+//! [`simulate`] gives y for any kind of number; [`Sensitivities`] gives y and ∂y/∂θ, [`Adjoint`] the
+//! product (∂y/∂θ)ᵀ ȳ alone. A [`Scenario`] makes a maneuver of known truth.
 
+mod adjoint;
 mod columns;
 mod input_design;
 mod linearised;
+mod march;
 mod method;
 mod noise;
 mod pack;
@@ -14,11 +16,14 @@ mod recursion;
 mod scenario;
 mod segment;
 mod sensitivity;
+mod side_by_side;
 mod stepper;
 mod trajectory;
 
+pub use adjoint::{Adjoint, Checkpoints};
 pub use columns::Columns;
 pub use input_design::InputDesign;
+pub use march::{March, Standing};
 pub use method::{InputInterpolation, Integrator};
 pub use noise::NoiseColour;
 pub use pack::{PACK, Pack, add_scaled, packs, plus, scaled};

@@ -1,0 +1,131 @@
+//! What a derivative study answers.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::super::derivatives::Scaling;
+
+/// Derivative techniques compared on one problem, at its start values.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct DerivativeStudy {
+    pub size: ProblemSize,
+    /// Error of the gradient against the step, for each technique that has one.
+    pub error_curves: Vec<ErrorCurve>,
+    pub techniques: Vec<TechniqueResult>,
+    /// Cost of one gradient, direct and adjoint, with only some of the parameters free.
+    pub costs: Vec<CostPoint>,
+    /// Operations by the formulas of Machado 2022, table 11: Euler scheme, every Jacobian full.
+    pub formula: FormulaOperations,
+    /// How far the same exact gradient gets with one optimiser and another.
+    pub descents: Vec<DescentResult>,
+}
+
+/// What the cost of a gradient depends on.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct ProblemSize {
+    /// Samples N over all segments.
+    #[schema(example = 751)]
+    pub samples: usize,
+    pub states: usize,
+    pub outputs: usize,
+    /// Free unknowns n_θ.
+    pub unknowns: usize,
+    /// Stages of the integration scheme.
+    pub stages: usize,
+}
+
+/// Error of the gradient of one technique by its step.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct ErrorCurve {
+    #[schema(example = "central_difference")]
+    pub technique: String,
+    /// From the largest step to the smallest.
+    pub points: Vec<ErrorPoint>,
+}
+
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct ErrorPoint {
+    /// Relative to each parameter's size.
+    #[schema(example = 1e-6)]
+    pub step: f64,
+    /// Norm of the error over the norm of the gradient, each component in standard errors that its parameter
+    /// alone would have; forward sensitivities are the reference. Absent: a simulation left the range of numbers.
+    #[schema(example = 3.2e-11)]
+    pub error: Option<f64>,
+}
+
+/// One technique with its usual step.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct TechniqueResult {
+    #[schema(example = "adjoint")]
+    pub technique: String,
+    /// As in the curves; of forward sensitivities absent, since they are the reference.
+    pub gradient_error: Option<f64>,
+    /// Operations of one gradient: instructions of the compiled equations, and the products and sums around them.
+    pub operations: u64,
+    /// Simulations of one gradient, complex ones included.
+    pub simulations: usize,
+    /// Bytes that the technique works in, beside the recording.
+    pub bytes: usize,
+    /// Time of one gradient, s; the least of several.
+    pub cpu_seconds: f64,
+    pub wall_seconds: f64,
+    /// Of an estimation with this technique: Levenberg-Marquardt where it gives ∂y/∂θ, else BFGS.
+    pub iterations: usize,
+    #[schema(example = "converged")]
+    pub outcome: String,
+    /// The estimation's own time, s.
+    pub estimation_wall_seconds: f64,
+    pub estimation_cpu_seconds: f64,
+    /// How much higher than the lowest cost of all techniques it ended; 0.5e-10 is 1e-5 standard errors.
+    pub cost_excess: f64,
+}
+
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct CostPoint {
+    /// Free unknowns.
+    pub unknowns: usize,
+    pub direct_operations: u64,
+    pub adjoint_operations: u64,
+    pub direct_wall_seconds: f64,
+    pub adjoint_wall_seconds: f64,
+}
+
+/// Machado 2022, table 11.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct FormulaOperations {
+    pub direct_multiplications: u64,
+    pub direct_additions: u64,
+    pub reverse_multiplications: u64,
+    pub reverse_additions: u64,
+}
+
+/// One descent from the start values until 0.01 standard errors from the minimum, in cost.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct DescentResult {
+    #[schema(example = "BFGS")]
+    pub optimiser: String,
+    /// What it knew of the Hessian at the start; absent where the optimiser has it at every step.
+    pub scaling: Option<Scaling>,
+    pub iterations: usize,
+    /// Gradients evaluated.
+    pub gradients: usize,
+    /// Whether it came there within the budget.
+    pub reached: bool,
+    /// How much higher than the minimum it ended.
+    pub cost_excess: f64,
+}
+
+/// How far the study is.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct StudyStep {
+    #[schema(example = 7)]
+    pub number: usize,
+    #[schema(example = 19)]
+    pub of: usize,
+    /// What was found, in a sentence.
+    #[schema(
+        example = "complex_step: gradient error at most 2.1e-14 for steps from 1e-300 to 1e-8"
+    )]
+    pub finding: String,
+}

@@ -1,0 +1,85 @@
+//! A simulation taken along a segment stretch by stretch, for any kind of number.
+
+use super::method::{InputInterpolation, Integrator};
+use super::segment::Segment;
+use super::stepper::Stepper;
+use super::trajectory::initial_state;
+use crate::model::{Model, Scalar, Workspace};
+
+/// The machinery, shared by any number of simulations that go along side by side.
+pub struct March<'m, T> {
+    model: &'m Model,
+    stepper: Stepper<'m, T>,
+    observation: Workspace<T>,
+    outputs: Vec<T>,
+}
+
+/// How far one simulation has come: the sample that is next, and the state there.
+#[derive(Clone, Debug)]
+pub struct Standing<T> {
+    next: usize,
+    elapsed: f64,
+    state: Vec<T>,
+}
+
+impl Standing<f64> {
+    pub fn is_finite(&self) -> bool {
+        self.state.iter().all(|x| x.is_finite())
+    }
+}
+
+impl<'m, T: Scalar> March<'m, T> {
+    pub fn new(
+        model: &'m Model,
+        integrator: Integrator,
+        interpolation: InputInterpolation,
+    ) -> Self {
+        Self {
+            model,
+            stepper: Stepper::new(model, integrator, interpolation),
+            observation: model.observation.workspace(),
+            outputs: vec![T::from_f64(0.0); model.outputs.len()],
+        }
+    }
+
+    /// The start of a simulation with `parameters`, all of the model's, SI.
+    pub fn start(&self, parameters: &[T]) -> Standing<T> {
+        Standing {
+            next: 0,
+            elapsed: 0.0,
+            state: initial_state(self.model, parameters),
+        }
+    }
+
+    /// Goes on to sample `until` (not included) and hands the outputs of each sample to `sink`.
+    /// `parameters` are those that the simulation was started with.
+    pub fn advance(
+        &mut self,
+        standing: &mut Standing<T>,
+        segment: &Segment,
+        parameters: &[T],
+        until: usize,
+        mut sink: impl FnMut(usize, &[T]),
+    ) {
+        self.stepper.set_parameters(parameters);
+        let program = &self.model.observation;
+        program.set_parameters(&mut self.observation, parameters);
+        for k in standing.next..until.min(segment.len()) {
+            let workspace = &mut self.observation;
+            program.states(workspace).copy_from_slice(&standing.state);
+            for (to, samples) in program.inputs(workspace).iter_mut().zip(&segment.inputs) {
+                *to = T::from_f64(samples[k]);
+            }
+            *program.time(workspace) = T::from_f64(standing.elapsed);
+            program.run(workspace);
+            program.results(workspace, &mut self.outputs);
+            sink(k, &self.outputs);
+            if k + 1 < segment.len() {
+                let state = &mut standing.state;
+                self.stepper.step(segment, k, standing.elapsed, state);
+                standing.elapsed += segment.steps.length(k);
+            }
+        }
+        standing.next = until;
+    }
+}

@@ -1,0 +1,256 @@
+//! All derivative techniques give the same gradient, each to its own accuracy, on every catalog model.
+
+use std::ops::ControlFlow;
+
+use nalgebra::DVector;
+use trimtab::estimate::derivatives::CostAndGradient;
+use trimtab::estimate::{
+    Derivatives, Evaluator, Noise, NoiseStructure, NormalEquations, Options, Problem, Scaling,
+    Unknowns, output_error,
+};
+use trimtab::model::{Model, Start, catalog};
+use trimtab::simulate::{InputInterpolation, Integrator, Segment, Steps, simulate};
+
+/// A segment in which every input moves, deterministic; what is measured is still to be made.
+fn segment(model: &Model, samples: usize, uneven: bool) -> Segment {
+    let step = 0.04;
+    let wave = |channel: usize, k: usize| {
+        let pulse = if (k / 37).is_multiple_of(2) {
+            0.03
+        } else {
+            -0.02
+        };
+        0.05 * ((1.3 + channel as f64) * k as f64 * step).sin() + pulse
+    };
+    let inputs = |channel| (0..samples).map(|k| wave(channel, k)).collect();
+    let length = |k: usize| step * (1.0 + 0.3 * (k % 5) as f64);
+    Segment {
+        label: "1".into(),
+        time: (0..samples).map(|k| k as f64 * step).collect(),
+        steps: if uneven {
+            Steps::Uneven((0..samples - 1).map(length).collect())
+        } else {
+            Steps::Even(step)
+        },
+        inputs: (0..model.inputs.len()).map(inputs).collect(),
+        measured: Vec::new(),
+    }
+}
+
+/// A problem whose data are the model's own for other parameters, with something added that no model makes.
+fn problem(model: &Model, options: Options, samples: usize, uneven: bool) -> Problem {
+    let mut segment = segment(model, samples, uneven);
+    let start = |parameter: usize, _: usize| {
+        let info = &model.parameters[parameter];
+        let start = match info.document.start {
+            Start::Value(value) => info.unit.to_si(value),
+            Start::FromData(_) if info.name == "V_e" => 130.0,
+            Start::FromData(_) => 0.04,
+        };
+        Ok::<_, std::convert::Infallible>(start * 1.1 + 0.01 * (1.0 + parameter as f64 / 7.0))
+    };
+    let Ok(unknowns) = Unknowns::new(model, 1, start);
+    let (mut parameters, mut measured) = (Vec::new(), vec![Vec::new(); model.outputs.len()]);
+    unknowns.parameters(0, &unknowns.start(), &mut parameters);
+    let truth: Vec<f64> = parameters.iter().map(|value| value * 1.02).collect();
+    let (integrator, interpolation) = (options.integrator, options.input_interpolation);
+    simulate(
+        model,
+        integrator,
+        interpolation,
+        &segment,
+        &truth,
+        |k, y| {
+            for (i, (series, y)) in measured.iter_mut().zip(y).enumerate() {
+                series.push(y + 1e-3 * (0.7 * k as f64 + i as f64).sin());
+            }
+        },
+    );
+    segment.measured = measured;
+    Problem::new(model.clone(), vec![segment], unknowns, options)
+}
+
+fn gradient(problem: &Problem, derivatives: Derivatives) -> DVector<f64> {
+    let mut problem = problem.clone();
+    problem.options.derivatives = derivatives;
+    let theta = problem.unknowns.start();
+    if let Derivatives::Adjoint { .. } = derivatives {
+        let (_, gradient) = CostAndGradient::new(&problem)
+            .at(&theta)
+            .expect("a gradient");
+        return gradient;
+    }
+    -NormalEquations::at(&mut Evaluator::new(&problem), &theta)
+        .expect("a gradient")
+        .descent
+}
+
+/// Error relative to the gradient, each component times what its parameter's standard error would be alone.
+fn error(problem: &Problem, found: &DVector<f64>) -> f64 {
+    let theta = problem.unknowns.start();
+    let exact = NormalEquations::at(&mut Evaluator::new(problem), &theta).expect("a gradient");
+    let scale = exact.information.diagonal().map(|f| f.sqrt().recip());
+    let (size, error) = (exact.descent.component_mul(&scale), found + &exact.descent);
+    assert!(size.norm() > 1.0, "there is no gradient to compare");
+    error.component_mul(&scale).norm() / size.norm()
+}
+
+fn models() -> impl Iterator<Item = Model> {
+    catalog::all()
+        .into_iter()
+        .map(|document| Model::compile(&document).expect("a model"))
+}
+
+/// Rounding, ε = 2.2e-16, is amplified by what cancels in Σ Sᵀ R⁻¹ e: the sum is here down to some hundredths of
+/// its terms, and samples are some hundreds. A factor of a thousand covers it, and still leaves no room for a
+/// wrong term.
+const ROUNDING: f64 = 1e3 * f64::EPSILON;
+
+/// The usual steps balance the cut-off series and rounding, each about √ε or ε^(2/3) *if* second and third
+/// derivatives are of the size of the first and y is of the size of its derivatives times θ. Neither is so: a
+/// pole that moves by 1 % over ten of its time constants changes y by 10 %, and R⁻¹ weighs an output by what it
+/// is off, not by what it is. Measured are factors up to 30; a factor of 100 is allowed.
+const OF_A_DIFFERENCE: f64 = 100.0;
+
+fn tolerance(derivatives: &Derivatives) -> f64 {
+    match derivatives {
+        Derivatives::ForwardDifference { .. } => OF_A_DIFFERENCE * f64::EPSILON.sqrt(),
+        Derivatives::CentralDifference { .. } => OF_A_DIFFERENCE * f64::EPSILON.powf(2.0 / 3.0),
+        _ => ROUNDING,
+    }
+}
+
+#[test]
+fn every_technique_on_every_model() {
+    for model in models() {
+        let problem = problem(&model, Options::default(), 300, false);
+        for technique in Derivatives::all() {
+            let error = error(&problem, &gradient(&problem, technique));
+            println!(
+                "{:24} {:24} {error:.1e}",
+                model.document.name,
+                technique.name()
+            );
+            let most = tolerance(&technique);
+            assert!(
+                error <= most,
+                "{} {}: {error:.1e}",
+                model.document.name,
+                technique.name()
+            );
+        }
+    }
+}
+
+#[test]
+fn the_adjoint_of_every_scheme() {
+    for model in models() {
+        for integrator in [Integrator::Euler, Integrator::Rk2, Integrator::Rk4] {
+            for input_interpolation in [InputInterpolation::Linear, InputInterpolation::Hold] {
+                // 64 samples are a block: less than one, whole ones, one sample more, uneven steps
+                for (samples, uneven) in [(40, false), (128, true), (193, false)] {
+                    let options = Options {
+                        integrator,
+                        input_interpolation,
+                        ..Options::default()
+                    };
+                    let problem = problem(&model, options, samples, uneven);
+                    let error = error(&problem, &gradient(&problem, adjoint()));
+                    assert!(error <= ROUNDING, "{integrator:?} {samples}: {error:.1e}");
+                }
+            }
+        }
+    }
+}
+
+fn adjoint() -> Derivatives {
+    Derivatives::Adjoint {
+        scaling: Scaling::default(),
+    }
+}
+
+#[test]
+fn correlated_and_given_noise() {
+    for model in models() {
+        let full = Noise::Estimated {
+            structure: NoiseStructure::Full,
+        };
+        let given = Noise::Given {
+            variance: (0..model.outputs.len())
+                .map(|i| 1e-4 * (1.0 + i as f64))
+                .collect(),
+        };
+        for noise in [full, given] {
+            let options = Options {
+                noise,
+                ..Options::default()
+            };
+            let problem = problem(&model, options, 200, false);
+            for technique in Derivatives::all() {
+                let error = error(&problem, &gradient(&problem, technique));
+                // R⁻¹ of correlated residuals amplifies by its condition, some tens
+                let most = 30.0 * tolerance(&technique);
+                assert!(error <= most, "{}: {error:.1e}", technique.name());
+            }
+        }
+    }
+}
+
+#[test]
+fn the_complex_step_may_be_as_small_as_numbers_go() {
+    for model in models() {
+        let problem = problem(&model, Options::default(), 200, false);
+        for step in [1e-8, 1e-20, 1e-100, 1e-200, 1e-300] {
+            let error = error(
+                &problem,
+                &gradient(&problem, Derivatives::ComplexStep { step }),
+            );
+            // below 1e-308 numbers lose digits: of 1e-300, slopes of 1e-4 and less do
+            let most = if step < 1e-299 { 1e-9 } else { ROUNDING };
+            assert!(
+                error <= most,
+                "{} {step:e}: {error:.1e}",
+                model.document.name
+            );
+        }
+    }
+}
+
+#[test]
+fn every_technique_finds_the_same_estimate() {
+    let document = catalog::find("short-period").expect("in the catalog");
+    let model = Model::compile(&document).expect("a model");
+    let mut costs = Vec::new();
+    for derivatives in Derivatives::all() {
+        let mut problem = problem(&model, Options::default(), 300, false);
+        problem.options.derivatives = derivatives;
+        let solution = output_error(&problem, &mut |_| ControlFlow::Continue(()));
+        let estimate = solution.expect("an estimate").estimate;
+        println!(
+            "{:24} {:3} {}",
+            derivatives.name(),
+            estimate.iterations,
+            estimate.reason
+        );
+        assert!(
+            estimate.outcome.is_minimum(),
+            "{}: {}",
+            derivatives.name(),
+            estimate.reason
+        );
+        assert!(
+            estimate
+                .parameters
+                .iter()
+                .all(|p| p.fixed || p.standard_error.is_some())
+        );
+        costs.push(estimate.cost);
+    }
+    let (least, most) = (
+        costs.iter().copied().fold(f64::MAX, f64::min),
+        costs.iter().copied().fold(f64::MIN, f64::max),
+    );
+    // each stops 1e-5 standard errors from the minimum: half the square of that above it, and rounding of a
+    // cost of some thousands
+    assert!(most - least < 1e-9, "{costs:?}");
+}
