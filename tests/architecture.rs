@@ -28,7 +28,16 @@ const ROOMS: [(&str, &[&str]); 11] = [
     (
         "cli",
         &[
-            "http", "work", "store", "job", "ingest", "simulate", "estimate", "model", "flight",
+            "http",
+            "work",
+            "store",
+            "job",
+            "ingest",
+            "simulate",
+            "estimate",
+            "model",
+            "flight",
+            "dashboard",
         ],
     ),
 ];

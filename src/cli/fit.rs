@@ -1,12 +1,10 @@
 //! `trimtab fit`: an estimation here and now, without a server.
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
 use super::progress::Progress;
-use super::request::{Request, format_of, read_bytes};
+use super::request::Request;
 use super::{Failure, table};
-use crate::ingest::{self, Limits};
 use crate::job;
 
 /// Fits a model to recordings and prints the parameter table.
@@ -21,12 +19,7 @@ pub struct Fit {
 
 impl Fit {
     pub fn run(&self) -> Result<(), Failure> {
-        let mut maneuvers = Vec::new();
-        for file in self.request.recordings() {
-            let maneuver = ingest::read(&read_bytes(file)?, format_of(file), &Limits::default())
-                .map_err(|error| Failure::faults(&file.display().to_string(), error.faults()))?;
-            maneuvers.push(Arc::new(maneuver));
-        }
+        let maneuvers = self.request.recordings()?;
         let ids: Vec<String> = maneuvers.iter().map(|maneuver| maneuver.digest()).collect();
         let spec = self.request.spec(&ids)?;
         let plan = job::prepare(&spec, &self.request.document()?, &maneuvers)

@@ -10,6 +10,7 @@ mod progress;
 mod request;
 mod serve;
 mod simulate;
+mod study;
 mod submit;
 mod table;
 mod watch;
@@ -37,6 +38,7 @@ enum Command {
     Serve(serve::Serve),
     Demo(demo::Demo),
     Fit(fit::Fit),
+    Study(study::Study),
     Submit(submit::Submit),
     Watch(watch::Watch),
     Simulate(simulate::Simulate),
@@ -54,6 +56,7 @@ pub fn main() -> ExitCode {
         Command::Serve(serve) => serve.run(),
         Command::Demo(demo) => block_on(demo.run()),
         Command::Fit(fit) => fit.run(),
+        Command::Study(study) => study.run(),
         Command::Submit(submit) => block_on(submit.run()),
         Command::Watch(watch) => block_on(watch.run()),
         Command::Simulate(simulate) => simulate.run(),

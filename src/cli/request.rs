@@ -1,12 +1,14 @@
 //! The options by which `fit` and `submit` describe a job: files, a model, and how they meet.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use indexmap::IndexMap;
 
 use super::Failure;
-use crate::estimate::{Method, Options, Role};
-use crate::ingest::Format;
+use crate::estimate::{Derivatives, Method, Options, Role};
+use crate::flight::Maneuver;
+use crate::ingest::{self, Format, Limits};
 use crate::job::{Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride};
 use crate::model::{ModelDocument, Start, catalog};
 
@@ -42,11 +44,29 @@ pub struct Request {
     /// Stop when a step is shorter than this many standard errors.
     #[arg(long, default_value_t = Options::default().tolerance)]
     pub tolerance: f64,
+    /// forward_sensitivities, forward_difference, central_difference, complex_step or adjoint.
+    #[arg(long, value_name = "TECHNIQUE", default_value = Options::default().derivatives.name())]
+    derivatives: String,
     #[arg(long, default_value_t = Options::default().max_iterations)]
     max_iterations: usize,
 }
 
 impl Request {
+    /// All files: those to fit, then those to predict.
+    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        self.files.iter().chain(&self.validate)
+    }
+
+    /// The recordings in all files.
+    pub fn recordings(&self) -> Result<Vec<Arc<Maneuver>>, Failure> {
+        let read = |file: &PathBuf| {
+            ingest::read(&read_bytes(file)?, format_of(file), &Limits::default())
+                .map(Arc::new)
+                .map_err(|error| Failure::faults(&file.display().to_string(), error.faults()))
+        };
+        self.files().map(read).collect()
+    }
+
     /// The model: a name that the catalog (or the server) knows, or the document in a file.
     pub fn model(&self) -> Result<ModelSource, Failure> {
         let path = Path::new(&self.model);
@@ -78,9 +98,17 @@ impl Request {
         }
     }
 
-    /// All recordings: those to fit, then those to predict.
-    pub fn recordings(&self) -> impl Iterator<Item = &PathBuf> {
-        self.files.iter().chain(&self.validate)
+    fn derivatives(&self) -> Result<Derivatives, Failure> {
+        let of_this_name = |technique: &Derivatives| technique.name() == self.derivatives;
+        let found = Derivatives::all().into_iter().find(of_this_name);
+        found.ok_or_else(|| {
+            let known = Derivatives::all().map(|technique| technique.name());
+            let name = &self.derivatives;
+            Failure::new(format!(
+                "there is no technique '{name}'; known are {}",
+                known.join(", ")
+            ))
+        })
     }
 
     /// The job, for recordings that are known by `ids`.
@@ -133,6 +161,7 @@ impl Request {
                 },
                 tolerance: self.tolerance,
                 max_iterations: self.max_iterations,
+                derivatives: self.derivatives()?,
                 ..Options::default()
             },
         })

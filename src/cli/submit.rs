@@ -21,7 +21,7 @@ impl Submit {
     pub async fn run(&self) -> Result<(), Failure> {
         let client = Client::new(&self.server)?;
         let mut ids = Vec::new();
-        for file in self.request.recordings() {
+        for file in self.request.files() {
             let name = file
                 .file_stem()
                 .map_or("recording".into(), |stem| stem.to_string_lossy());

@@ -49,6 +49,7 @@ pub async fn follow(client: &Client, job: &str) -> Result<Estimate, Failure> {
                 }
             }
             EventBody::Iteration(iteration) => progress.iteration(iteration),
+            EventBody::Finding(step) => progress.say(&step.finding),
             EventBody::CancelRequested => progress.say("asked to stop"),
             EventBody::Succeeded { reason, .. } => {
                 progress.finish(reason);

@@ -3,7 +3,9 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::figure::history_svg;
+use super::study::study_section;
 use super::style::CSS;
+use crate::estimate::study::DerivativeStudy;
 use crate::estimate::{Estimate, OutputFit, Role, TimeHistory, five_digits as number};
 use crate::flight::Finding;
 use crate::job::{Fault, Status};
@@ -19,6 +21,8 @@ pub struct JobView<'a> {
     /// What is odd about the data in use.
     pub findings: &'a [Finding],
     pub estimate: Option<&'a Estimate>,
+    /// Of a derivative study.
+    pub study: Option<&'a DerivativeStudy>,
     pub histories: &'a [TimeHistory],
 }
 
@@ -53,6 +57,7 @@ pub fn job_page(view: &JobView<'_>) -> String {
                         div.scroll { (output_table(&prediction.outputs)) }
                     }
                 }
+                @if let Some(study) = view.study { (study_section(study)) }
                 @for history in view.histories {
                     h2 { "Time histories, segment " (history.segment) @if history.role == Role::Validation { " (predicted)" } }
                     figure role="img" aria-label={ "measured and model outputs of segment " (history.segment) } {
@@ -91,6 +96,7 @@ fn state(view: &JobView<'_>) -> Markup {
                  const show = event => {{ const i = JSON.parse(event.data);\
                    document.getElementById('state').textContent = 'iteration ' + i.number + ', -ln L ' + i.cost; }};\
                  log.addEventListener('iteration', show);\
+                 log.addEventListener('finding', event => {{ document.getElementById('state').textContent = JSON.parse(event.data).finding; }});\
                  for (const end of ['succeeded', 'failed', 'cancelled']) log.addEventListener(end, () => {{ log.close(); location.reload(); }});",
                 view.id
             ))) }
@@ -158,6 +164,7 @@ fn links(view: &JobView<'_>) -> Markup {
             li { a href={ (base) "/time-histories?format=csv" } { "time histories (CSV)" } }
             li { a href={ (base) "/estimate" } { "estimate (JSON)" } }
             li { a href={ (base) "/model" } { "model" } }
+            @if view.study.is_some() { li { a href={ (base) "/derivative-study" } { "derivative study (JSON)" } } }
             li { a href="/docs" { "API" } }
         }
     }

@@ -5,7 +5,10 @@
 
 mod figure;
 mod job_page;
+mod study;
+mod study_figure;
 mod style;
 
 pub use figure::history_svg;
 pub use job_page::{JobView, job_page};
+pub use study_figure::{cost_figure, error_figure};

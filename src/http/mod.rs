@@ -25,6 +25,7 @@ mod query;
 mod results;
 mod routes;
 mod serve;
+mod study;
 mod submit;
 
 use std::sync::Arc;

@@ -27,6 +27,10 @@ async fn get_job_page(
         Some(json) => Some(serde_json::from_str(&json)?),
         None => None,
     };
+    let study = match service.store.result_part(id, Part::Study).await? {
+        Some(json) => Some(serde_json::from_str(&json)?),
+        None => None,
+    };
     let histories = service.store.histories(id).await?.unwrap_or_default();
     let model = match service.store.job_spec(id).await? {
         Some(spec) => serde_json::from_str::<JobSpec>(&spec)?
@@ -55,6 +59,7 @@ async fn get_job_page(
             faults,
             findings: &findings,
             estimate: estimate.as_ref(),
+            study: study.as_ref(),
             histories: &histories,
         })
     };

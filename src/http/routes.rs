@@ -19,7 +19,7 @@ use utoipa_swagger_ui::SwaggerUi;
 use super::code::Code;
 use super::problem::{self, Problem};
 use super::{
-    Service, events, health, histories, jobs, maneuvers, models, problems, results, submit,
+    Service, events, health, histories, jobs, maneuvers, models, problems, results, study, submit,
 };
 
 /// Every resource.
@@ -31,6 +31,7 @@ pub(super) fn api() -> OpenApiRouter<Service> {
         .merge(jobs::router())
         .merge(events::router())
         .merge(results::router())
+        .merge(study::router())
         .merge(histories::router())
         .merge(problems::router())
         .merge(health::router())

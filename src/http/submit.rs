@@ -78,6 +78,7 @@ async fn submit_job(
 pub fn kind_name(kind: JobKind) -> &'static str {
     match kind {
         JobKind::Estimate => "estimate",
+        JobKind::DerivativeStudy => "derivative_study",
     }
 }
 

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::Fault;
+use crate::estimate::study::StudyStep;
 use crate::estimate::{Iteration, Outcome};
 use crate::flight::Finding;
 
@@ -32,6 +33,8 @@ pub enum EventBody {
     Prepared(Prepared),
     /// The solver finished an iteration (number 0: the start value).
     Iteration(Iteration),
+    /// A derivative study found something.
+    Finding(StudyStep),
     /// Somebody asked to cancel.
     CancelRequested,
     /// The solver ended and its result is stored; `outcome` says how good it is.
@@ -69,6 +72,7 @@ impl EventBody {
             Self::Released { .. } => "released",
             Self::Prepared(_) => "prepared",
             Self::Iteration(_) => "iteration",
+            Self::Finding(_) => "finding",
             Self::CancelRequested => "cancel_requested",
             Self::Succeeded { .. } => "succeeded",
             Self::Failed { .. } => "failed",

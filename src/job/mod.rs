@@ -7,9 +7,11 @@ mod resolve;
 mod run;
 mod spec;
 mod status;
+mod study;
 
 pub use crate::flight::Fault;
 pub use event::{Event, EventBody, Prepared};
 pub use run::{JobResult, MOST_MANEUVERS, Plan, prepare, run};
 pub use spec::{Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride};
 pub use status::Status;
+pub use study::{Progress, run_study};

@@ -8,7 +8,8 @@ use utoipa::ToSchema;
 
 use super::bounds;
 use super::resolve::{self, Named, Stretch};
-use super::{Fault, JobSpec, ModelSource, Prepared};
+use super::{Fault, JobKind, JobSpec, ModelSource, Prepared, study};
+use crate::estimate::study::DerivativeStudy;
 use crate::estimate::{
     Estimate, Iteration, Noise, Options, Outcome, Problem, Role, Solution, TimeHistory, Unknowns,
     Unusable, Validation, output_error, predict,
@@ -33,6 +34,9 @@ pub struct JobResult {
     pub estimate: Estimate,
     pub model: ModelDocument,
     pub histories: Vec<TimeHistory>,
+    /// Of a derivative study.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub study: Option<DerivativeStudy>,
 }
 
 /// Variances of noise that leave the likelihood a number.
@@ -104,6 +108,9 @@ pub fn prepare(
         validation.push(Validation { segment, unknowns });
     }
     let problem = Problem::new(model, segments, unknowns, spec.options.clone());
+    if spec.kind == JobKind::DerivativeStudy {
+        study::check(&problem)?;
+    }
     let prepared = Prepared {
         segments: problem
             .segments
@@ -181,11 +188,12 @@ pub fn run(
         estimate,
         histories,
         model: plan.model.clone(),
+        study: None,
     })
 }
 
 /// Why the start values lead nowhere.
-fn no_start(problem: &Problem, why: Unusable) -> Fault {
+pub(super) fn no_start(problem: &Problem, why: Unusable) -> Fault {
     match why {
         Unusable::LeftRange { segment, sample } => {
             let segment = &problem.segments[segment];

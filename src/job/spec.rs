@@ -56,6 +56,9 @@ pub enum JobKind {
     /// Output-error estimation.
     #[default]
     Estimate,
+    /// Output-error estimation, and then all derivative techniques compared on the same problem: errors, costs,
+    /// iterations. The result has a `derivative-study` beside the estimate.
+    DerivativeStudy,
 }
 
 /// A model by name or id, or written out.

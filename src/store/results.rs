@@ -15,6 +15,8 @@ pub enum Part {
     Estimate,
     /// [`crate::model::ModelDocument`], as estimated.
     Model,
+    /// [`crate::estimate::study::DerivativeStudy`]; only of jobs of that kind.
+    Study,
 }
 
 impl Part {
@@ -22,6 +24,7 @@ impl Part {
         match self {
             Self::Estimate => "estimate",
             Self::Model => "model",
+            Self::Study => "study",
         }
     }
 }
@@ -49,6 +52,10 @@ impl ResultParts {
                 serde_json::to_vec(&result.model),
             ),
         ];
+        if let Some(study) = &result.study {
+            let study = serde_json::to_vec(study);
+            parts.push((Part::Study.name().to_string(), study));
+        }
         for (number, history) in result.histories.iter().enumerate() {
             parts.push((history_part(number), encode_history(history)));
         }

@@ -4,10 +4,13 @@
 //! same. Solver runs never block the reactor; there are as many workers as cores by default, and so as
 //! many solver threads.
 
+mod clock;
 mod persist;
 mod run;
 mod solve;
 mod stop;
+
+pub use clock::ThreadClock;
 
 use std::panic::AssertUnwindSafe;
 use std::time::Duration;

@@ -6,10 +6,11 @@ use std::sync::Arc;
 use tokio::sync::mpsc;
 use tokio::task::JoinError;
 
+use super::clock::ThreadClock;
 use super::stop::Stop;
 use crate::estimate::Outcome;
 use crate::flight::Maneuver;
-use crate::job::{self, EventBody, Fault, JobSpec};
+use crate::job::{self, EventBody, Fault, JobKind, JobSpec, Progress};
 use crate::model::ModelDocument;
 use crate::store::{ResultParts, StoreError};
 
@@ -61,13 +62,25 @@ pub fn solve(
     let plan = job::prepare(spec, model, maneuvers).map_err(Unanswered::Refused)?;
     // a log that nobody reads any more means that the job was abandoned: the observer stops then
     let _ = log.blocking_send(EventBody::Prepared(plan.prepared.clone()));
-    let result = job::run(&plan, &mut |iteration| {
-        let told = log.blocking_send(EventBody::Iteration(iteration.clone()));
+    let tell = |event: Option<EventBody>| {
+        let told = event.map_or(Ok(()), |event| log.blocking_send(event));
         if told.is_err() || stop.asked().is_some() {
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
-    });
+    };
+    let result = match spec.kind {
+        JobKind::Estimate => job::run(&plan, &mut |iteration| {
+            tell(Some(EventBody::Iteration(iteration.clone())))
+        }),
+        JobKind::DerivativeStudy => job::run_study(&plan, &ThreadClock::start(), &mut |progress| {
+            tell(match progress {
+                Progress::Iteration(iteration) => Some(EventBody::Iteration(iteration.clone())),
+                Progress::Finding(step) => Some(EventBody::Finding(step.clone())),
+                Progress::Underway => None,
+            })
+        }),
+    };
     let result = result.map_err(Unanswered::Refused)?;
     let parts = ResultParts::encode(&result)?;
     let (outcome, reason) = (result.estimate.outcome, result.estimate.reason);

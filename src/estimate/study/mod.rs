@@ -48,7 +48,7 @@ impl From<Unusable> for NoStudy {
 const MOST_FOLLOWED: usize = 24;
 
 /// Most operations that a central-difference gradient may take, for a study of the problem to be made.
-pub const MOST_OPERATIONS: u64 = 1_000_000_000_000;
+pub const MOST_OPERATIONS: u64 = 20_000_000_000;
 
 struct Study<'a, 'o> {
     problem: Problem,
