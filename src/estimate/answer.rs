@@ -1,11 +1,13 @@
 //! The answer of an estimation, put together at its last iterate.
 
+use nalgebra::DMatrix;
+
 use super::error_bounds::ErrorBounds;
 use super::evaluation::Evaluator;
 use super::fit::{fits, histories};
 use super::iterate::Iterate;
 use super::problem::Problem;
-use super::report::{Estimate, Outcome, ParameterEstimate, TimeHistory};
+use super::report::{Bound, Estimate, Outcome, ParameterEstimate, TimeHistory};
 use super::unknowns::Unknown;
 
 /// The estimate, and the time histories that go with it.
@@ -23,7 +25,6 @@ pub(super) fn answer(
     (outcome, reason): (Outcome, String),
 ) -> Solution {
     let histories = histories(problem, &at.theta);
-    let covariance = &at.weighting.covariance;
     let estimate = Estimate {
         outcome,
         reason,
@@ -32,14 +33,12 @@ pub(super) fn answer(
         simulations: evaluator.simulations,
         cost: at.weighting.cost,
         det_r: at.weighting.det(),
-        noise_covariance: covariance
-            .row_iter()
-            .map(|row| row.iter().copied().collect())
-            .collect(),
+        noise_covariance: rows(&at.weighting.covariance),
         outputs: fits(problem, &histories),
-        parameters: table(problem, at, bounds),
+        parameters: table(problem, &at.theta, &at.held, bounds),
         correlation: bounds.correlation.clone(),
-        collinear: bounds.collinear(problem),
+        collinear: bounds.collinear(|place| problem.name_and_scale(place)),
+        filter: None,
         samples: problem.samples(),
     };
     Solution {
@@ -48,8 +47,20 @@ pub(super) fn answer(
     }
 }
 
+pub(super) fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    matrix
+        .row_iter()
+        .map(|row| row.iter().copied().collect())
+        .collect()
+}
+
 /// All parameters, fixed ones too, in the order of the document.
-fn table(problem: &Problem, at: &Iterate, bounds: &ErrorBounds) -> Vec<ParameterEstimate> {
+pub(super) fn table(
+    problem: &Problem,
+    theta: &[f64],
+    held: &[Option<Bound>],
+    bounds: &ErrorBounds,
+) -> Vec<ParameterEstimate> {
     let unknowns = &problem.unknowns;
     let row = |(index, unknown): (usize, &Unknown)| {
         let info = &problem.model.parameters[unknown.parameter];
@@ -64,10 +75,10 @@ fn table(problem: &Problem, at: &Iterate, bounds: &ErrorBounds) -> Vec<Parameter
             start: info.unit.from_si(unknown.start),
             estimate: info
                 .unit
-                .from_si(place.map_or(unknown.start, |place| at.theta[place])),
+                .from_si(place.map_or(unknown.start, |place| theta[place])),
             standard_error: standard_error.map(|error| error / info.unit.scale),
             fixed: unknown.fixed,
-            at_bound: place.and_then(|place| at.held[place]),
+            at_bound: place.and_then(|place| held[place]),
         }
     };
     unknowns.all.iter().enumerate().map(row).collect()

@@ -3,7 +3,6 @@
 use nalgebra::DMatrix;
 
 use super::information::Spectrum;
-use super::problem::Problem;
 use super::report::{Bound, CollinearSet};
 
 /// Accuracy at an estimate, by place of θ.
@@ -67,11 +66,12 @@ impl ErrorBounds {
         bounds
     }
 
-    /// The collinear sets by name, in the parameters' own units.
-    pub fn collinear(&self, problem: &Problem) -> Vec<CollinearSet> {
+    /// The collinear sets by name; `name` gives an unknown's name and the SI value of its unit.
+    pub fn collinear(&self, name: impl Fn(usize) -> (String, f64)) -> Vec<CollinearSet> {
         let named = |members: &Vec<(usize, f64)>| {
             let own = |&(place, component): &(usize, f64)| {
-                (problem.name(place), component / problem.unit(place).scale)
+                let (name, scale) = name(place);
+                (name, component / scale)
             };
             let (parameters, mut direction): (Vec<String>, Vec<f64>) =
                 members.iter().map(own).unzip();

@@ -1,4 +1,4 @@
-//! Estimation by the output-error method: cost, steps, iterations, error bounds.
+//! Estimation by the output-error and filter-error methods: cost, steps, iterations, error bounds.
 //!
 //! [`Problem`] is a model with its data, [`output_error`] finds the θ of least negative log-likelihood
 //!
@@ -6,11 +6,14 @@
 //! J(θ, R) = ½ Σ_k (z_k − y_k)ᵀ R⁻¹ (z_k − y_k) + (N/2) ln|R| + (N n_y/2) ln 2π
 //! ```
 //!
+//! [`filter_error`] does so with one-step predictions in place of the simulation, for states that are disturbed,
 //! and [`Estimate`] is the answer, with the reason why the solver stopped.
 
 mod answer;
 mod error_bounds;
+mod estimator;
 mod evaluation;
+mod filter_error;
 mod fit;
 mod information;
 mod iterate;
@@ -19,17 +22,25 @@ mod local_sums;
 mod options;
 mod output_error;
 mod problem;
+mod process_noise;
 mod report;
 mod step;
+mod stopped;
 mod sums;
 mod unknowns;
 
 pub use answer::Solution;
+pub use estimator::Estimator;
 pub use evaluation::{Evaluator, Unusable};
+pub use filter_error::{
+    FilterEquations, FilterEstimate, FilterEvaluator, Pole, ProcessNoiseEstimate, SegmentGain,
+    filter_error, process_noise_names,
+};
 pub use likelihood::NormalEquations;
 pub use options::{Method, Noise, NoiseStructure, Options};
 pub use output_error::{Observer, output_error};
 pub use problem::Problem;
+pub use process_noise::ProcessNoise;
 pub use report::{
     Bound, CollinearSet, Estimate, Iteration, Outcome, OutputFit, OutputSeries, ParameterEstimate,
     Series, TimeHistory, five_digits,

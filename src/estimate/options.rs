@@ -1,8 +1,11 @@
 //! What a user may choose about an estimation.
 
+use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::estimator::Estimator;
+use super::process_noise::ProcessNoise;
 use crate::simulate::{InputInterpolation, Integrator};
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
@@ -12,6 +15,15 @@ pub struct Options {
     pub integrator: Integrator,
     pub input_interpolation: InputInterpolation,
     pub noise: Noise,
+    pub estimator: Estimator,
+    /// By state, for the filter-error estimator; a state that is not named has noise whose intensity is estimated from
+    /// a start value of its own.
+    #[serde(
+        deserialize_with = "crate::model::unique",
+        skip_serializing_if = "IndexMap::is_empty"
+    )]
+    #[schema(example = json!({"theta": {"start": 0.0, "fixed": true}}))]
+    pub process_noise: IndexMap<String, ProcessNoise>,
     /// Converged when a full step would move the estimate by less than this many standard errors:
     /// √(gᵀ H⁻¹ g), g the gradient and H the Hessian of the cost that the step is made with.
     #[schema(example = 1e-5, exclusive_minimum = 0.0)]
@@ -28,6 +40,8 @@ impl Default for Options {
             integrator: Integrator::default(),
             input_interpolation: InputInterpolation::default(),
             noise: Noise::default(),
+            estimator: Estimator::default(),
+            process_noise: IndexMap::new(),
             tolerance: 1e-5,
             max_iterations: 50,
         }

@@ -11,23 +11,24 @@ use super::iterate::{Iterate, Taken};
 use super::likelihood::Weighting;
 use super::options::Method;
 use super::problem::Problem;
-use super::report::{Iteration, Outcome};
+use super::report::Iteration;
 use super::step::advanced;
+use super::stopped::Stopped;
 
 /// Told of each iteration; may stop the solver.
 pub type Observer<'o> = dyn FnMut(&Iteration) -> ControlFlow<()> + 'o;
 
 /// Damping: where it starts, what success and failure make of it, and below what it is none.
-const DAMPING_START: f64 = 1e-3;
-const DAMPING_EASED: f64 = 1e-2;
-const DAMPING_RAISED: f64 = 10.0;
-const DAMPING_NONE: f64 = 1e-10;
+pub(super) const DAMPING_START: f64 = 1e-3;
+pub(super) const DAMPING_EASED: f64 = 1e-2;
+pub(super) const DAMPING_RAISED: f64 = 10.0;
+pub(super) const DAMPING_NONE: f64 = 1e-10;
 
 /// How often a step may be shortened, or the damping raised, within one iteration.
-const MOST_TRIALS: usize = 16;
+pub(super) const MOST_TRIALS: usize = 16;
 
 /// The cost is a sum over all samples: differences below this share of it are rounding.
-const ROUNDING: f64 = 1e-13;
+pub(super) const ROUNDING: f64 = 1e-13;
 
 /// Estimates θ from the start values of the problem.
 ///
@@ -68,7 +69,12 @@ pub fn output_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
         }
     };
     let bounds = ErrorBounds::new(&current.information, &current.held);
-    let (outcome, reason) = stopped.say(problem, iteration, &current, &bounds);
+    let held: Vec<String> = (0..current.held.len())
+        .filter(|&place| current.held[place].is_some())
+        .map(|place| problem.name(place))
+        .collect();
+    let collinear = bounds.collinear(|place| problem.name_and_scale(place));
+    let (outcome, reason) = stopped.say(problem.options.method, iteration, &held, &collinear);
     Ok(answer(
         problem,
         &current,
@@ -130,95 +136,4 @@ fn search(
         }
     }
     Err(Nothing { in_range })
-}
-
-/// Why the loop ended.
-enum Stopped {
-    Minimum { distance: f64 },
-    Budget { distance: f64 },
-    Stalled { distance: f64 },
-    Diverged,
-    NoDirection,
-    OnRequest,
-}
-
-impl Stopped {
-    /// The outcome, and what to say of it.
-    fn say(
-        self,
-        problem: &Problem,
-        iterations: usize,
-        at: &Iterate,
-        bounds: &ErrorBounds,
-    ) -> (Outcome, String) {
-        match self {
-            Self::Minimum { distance } => minimum(problem, at, bounds, distance),
-            Self::Budget { distance } => {
-                let reason = format!(
-                    "the budget of {iterations} iterations is used up; a further step would move the estimate by {distance:.1e} standard errors"
-                );
-                (Outcome::Budget, reason)
-            }
-            Self::Stalled { distance } => {
-                let remedy = match problem.options.method {
-                    Method::GaussNewton => {
-                        "; try the method levenberg_marquardt, or other start values"
-                    }
-                    Method::LevenbergMarquardt => "; try other start values",
-                };
-                let reason = format!(
-                    "no step lowers the cost any more, though the next one would be {distance:.1e} standard errors long{remedy}"
-                );
-                (Outcome::Stalled, reason)
-            }
-            Self::Diverged => {
-                let reason = "every step tried leads to a simulation that leaves the range of numbers; start closer, or set bounds";
-                (Outcome::Diverged, reason.to_string())
-            }
-            Self::NoDirection => (
-                Outcome::Stalled,
-                "the information matrix gives no direction to go on in".to_string(),
-            ),
-            Self::OnRequest => (
-                Outcome::Cancelled,
-                format!("stopped on request after {iterations} iteration(s)"),
-            ),
-        }
-    }
-}
-
-/// A point from which no step of any length leads further down: what kind of one.
-fn minimum(
-    problem: &Problem,
-    at: &Iterate,
-    bounds: &ErrorBounds,
-    distance: f64,
-) -> (Outcome, String) {
-    let collinear = bounds.collinear(problem);
-    if !collinear.is_empty() {
-        let sets: Vec<String> = collinear
-            .iter()
-            .map(|set| set.parameters.join(" + "))
-            .collect();
-        let reason = format!(
-            "the data cannot tell apart, or cannot see: {}; fix one of each set, or fly a maneuver that separates them",
-            sets.join("; ")
-        );
-        return (Outcome::Singular, reason);
-    }
-    let held: Vec<String> = (0..at.held.len())
-        .filter(|&place| at.held[place].is_some())
-        .map(|place| problem.name(place))
-        .collect();
-    let reason = format!(
-        "converged: a further step would move the estimate by {distance:.1e} standard errors"
-    );
-    if held.is_empty() {
-        (Outcome::Converged, reason)
-    } else {
-        (
-            Outcome::AtBound,
-            format!("{reason}; held at a bound: {}", held.join(", ")),
-        )
-    }
 }

@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::filter_error::FilterEstimate;
+
 /// Why the solver stopped. A result with a reason, apart from the job's own status.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
@@ -45,7 +47,8 @@ pub struct Iteration {
     pub det_r: f64,
     /// Variance of each output's residual, SI units squared (the diagonal of R).
     pub variance: Vec<f64>,
-    /// All free parameters in the order of the parameter table, each in its own unit.
+    /// All free parameters in the order of the parameter table, each in its own unit; with filter error the free
+    /// process noises follow, in the order of the states.
     pub parameters: Vec<f64>,
     /// Length of the gradient of the cost, each component times the standard error that the parameter
     /// would have if it were the only one.
@@ -80,12 +83,15 @@ pub struct Estimate {
     pub noise_covariance: Vec<Vec<f64>>,
     pub outputs: Vec<OutputFit>,
     pub parameters: Vec<ParameterEstimate>,
-    /// Correlation of the free parameters' errors, in the order of the free parameters. Empty when singular.
+    /// Correlation of the free parameters' errors, in the order of the iterations' `parameters`. Empty when singular.
     pub correlation: Vec<Vec<f64>>,
     /// Sets of parameters that the data cannot tell apart, or cannot see.
     pub collinear: Vec<CollinearSet>,
     /// Samples used, over all segments.
     pub samples: usize,
+    /// What the filter-error estimator adds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub filter: Option<FilterEstimate>,
 }
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]

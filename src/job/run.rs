@@ -7,11 +7,12 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::bounds;
+use super::filter;
 use super::resolve::{self, Named};
 use super::{Fault, JobSpec, ModelSource, Prepared};
 use crate::estimate::{
-    Estimate, Iteration, Noise, Options, Problem, Solution, TimeHistory, Unknowns, Unusable,
-    output_error,
+    Estimate, Estimator, Iteration, Noise, Options, Problem, Solution, TimeHistory, Unknowns,
+    Unusable, filter_error, output_error,
 };
 use crate::flight::{Maneuver, escape};
 use crate::model::{ChannelFormula, Model, ModelDocument, Start};
@@ -66,6 +67,7 @@ pub fn prepare(
         }
     };
     check_options(&spec.options, &model, &mut faults);
+    filter::check_options(&spec.options, &model, &mut faults);
     check_names(spec, &model, &mut faults);
 
     let mut findings = Vec::new();
@@ -110,6 +112,7 @@ pub fn prepare(
     let unknowns = Unknowns::new(&model, resolved.len(), start).map_err(|fault| vec![fault])?;
     let segments: Vec<Segment> = resolved.into_iter().map(|(segment, _)| segment).collect();
     bounds::check_unknowns(&model, &segments, &unknowns, &spec.options)?;
+    filter::check_data(&model, &segments, &unknowns, &spec.options)?;
     let problem = Problem::new(model, segments, unknowns, spec.options.clone());
     let prepared = Prepared {
         segments: problem
@@ -126,6 +129,7 @@ pub fn prepare(
             .collect(),
         parameters: (0..problem.unknowns.len())
             .map(|place| problem.name(place))
+            .chain(filter::process_noise(&problem))
             .collect(),
         findings,
     };
@@ -148,7 +152,11 @@ pub fn run(
     let Solution {
         estimate,
         histories,
-    } = output_error(problem, observer).map_err(|why| vec![no_start(problem, why)])?;
+    } = match problem.options.estimator {
+        Estimator::OutputError => output_error(problem, observer),
+        Estimator::FilterError => filter_error(problem, observer),
+    }
+    .map_err(|why| vec![no_start(problem, why)])?;
     Ok(JobResult {
         estimate,
         histories,
@@ -173,6 +181,7 @@ fn no_start(problem: &Problem, why: Unusable) -> Fault {
             let message = "with the start values an output or its derivative by a parameter is not a finite number at some sample (a root, logarithm, power or quotient at zero?); give other \"start\" values, or guard the expression with if(...)";
             Fault::new("/parameters", "diverged_at_start", message)
         }
+        Unusable::NoSteadyGain { segment } => filter::no_gain(problem, segment),
         Unusable::SingularNoise => {
             let message = "the residuals of some outputs are not independent, so that their full covariance is singular; use the structure \"diagonal\", or leave one of these outputs out";
             Fault::new("/options/noise", "singular_noise", message)

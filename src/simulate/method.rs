@@ -30,7 +30,7 @@ pub enum InputInterpolation {
 /// The stages of an explicit Runge-Kutta method in which each stage builds on the one before it:
 /// X_s = x + h advance_s K_(s-1), K_s = f(X_s, u(t + h node_s)), x' = x + h Σ weight_s K_s.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Stage {
+pub struct Stage {
     pub advance: f64,
     pub node: f64,
     pub weight: f64,
@@ -54,6 +54,11 @@ const RK4: [Stage; 4] = [
 ];
 
 impl Integrator {
+    /// How many terms of its Taylor series a step of a linear system has.
+    pub fn order(self) -> usize {
+        self.stages().len()
+    }
+
     pub(super) fn stages(self) -> &'static [Stage] {
         match self {
             Self::Euler => &EULER,
@@ -65,7 +70,7 @@ impl Integrator {
 
 impl InputInterpolation {
     /// The share of the later sample at the fraction `node` of a step.
-    pub(super) fn share_of_next(self, node: f64) -> f64 {
+    pub fn share_of_next(self, node: f64) -> f64 {
         match self {
             Self::Linear => node,
             Self::Hold => 0.0,

@@ -18,9 +18,10 @@ mod trajectory;
 
 pub use columns::Columns;
 pub use input_design::InputDesign;
-pub use method::{InputInterpolation, Integrator};
+pub use method::{InputInterpolation, Integrator, Stage};
 pub use pack::{PACK, Pack, add_scaled, packs, plus, scaled};
 pub use scenario::{Scenario, ScenarioError};
 pub use segment::{Segment, Steps};
 pub use sensitivity::{Block, Sensitivities};
-pub use trajectory::{Diverged, simulate};
+pub use stepper::{Stepper, between};
+pub use trajectory::{Diverged, initial_state, simulate};
