@@ -38,7 +38,12 @@ pub fn read(directory: &Path, name: &str) -> FilterCase {
     let reference = &case["reference_results"]["filter_error"];
     let number = |value: &Value| value.as_f64().expect("a number");
     let numbers = |value: &Value| -> Vec<f64> {
-        value.as_array().expect("numbers").iter().map(number).collect()
+        value
+            .as_array()
+            .expect("numbers")
+            .iter()
+            .map(number)
+            .collect()
     };
     let estimates = reference["estimates"].as_array().expect("estimates").iter();
     let estimate = |e: &Value| {
@@ -46,16 +51,22 @@ pub fn read(directory: &Path, name: &str) -> FilterCase {
         (name, number(&e["value"]), number(&e["std_dev"]))
     };
     FilterCase {
-        file: case["segments"][0]["file"].as_str().expect("a file").to_string(),
+        file: case["segments"][0]["file"]
+            .as_str()
+            .expect("a file")
+            .to_string(),
         rows: case["segments"][0]["rows"].clone(),
         model,
         channels: channels(&case),
         process_noise: process_noise.into(),
         det_r: number(&reference["det_R"]),
         reference: estimates.map(estimate).collect(),
-        gain: (reference["kalman_gain_states_by_outputs"].as_array().expect("a matrix").iter())
-            .map(numbers)
-            .collect(),
+        gain: (reference["kalman_gain_states_by_outputs"]
+            .as_array()
+            .expect("a matrix")
+            .iter())
+        .map(numbers)
+        .collect(),
         gain_variance: numbers(&reference["R_used_for_gain"]),
     }
 }
