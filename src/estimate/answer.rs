@@ -1,5 +1,7 @@
 //! The answer of an estimation, put together at its last iterate.
 
+use nalgebra::DMatrix;
+
 use super::coloured_residuals::Colour;
 use super::error_bounds::ErrorBounds;
 use super::evaluation::Evaluator;
@@ -7,7 +9,7 @@ use super::fit::{fits, histories};
 use super::identifiability::{DataInformation, Identifiability};
 use super::iterate::Iterate;
 use super::problem::Problem;
-use super::report::{Estimate, ParameterEstimate, TimeHistory};
+use super::report::{Bound, Estimate, ParameterEstimate, TimeHistory};
 use super::stopped::Stopped;
 use super::unknowns::Unknown;
 
@@ -40,8 +42,12 @@ pub(super) fn answer(
     let histories = histories(problem, &at.theta);
     let colour = Colour::of(&histories);
     let bounds = ErrorBounds::at(problem, evaluator, at, &colour, &histories);
-    let (outcome, reason) = stopped.say(problem, iterations, at, &bounds);
-    let covariance = &at.weighting.covariance;
+    let held: Vec<String> = (0..at.held.len())
+        .filter(|&place| at.held[place].is_some())
+        .map(|place| problem.name(place))
+        .collect();
+    let collinear = bounds.collinear(|place| problem.name_and_scale(place));
+    let (outcome, reason) = stopped.say(problem.options.method, iterations, &held, &collinear);
     let after = (iterations > 0).then(|| DataInformation::of(problem, &at.information));
     let identifiability = before.map(|before| Identifiability {
         before,
@@ -55,17 +61,15 @@ pub(super) fn answer(
         simulations: evaluator.simulations,
         cost: at.weighting.cost,
         det_r: at.weighting.det(),
-        noise_covariance: covariance
-            .row_iter()
-            .map(|row| row.iter().copied().collect())
-            .collect(),
+        noise_covariance: rows(&at.weighting.covariance),
         outputs: fits(problem, &histories, &colour),
-        parameters: table(problem, at, &bounds),
+        parameters: table(problem, &at.theta, &at.held, &bounds),
         error_bounds: bounds.kind,
         correlation: bounds.correlation.clone(),
-        collinear: bounds.collinear(problem),
+        collinear,
         identifiability,
         prediction: Vec::new(),
+        filter: None,
         samples: problem.samples(),
     };
     Solution {
@@ -74,8 +78,20 @@ pub(super) fn answer(
     }
 }
 
+pub(super) fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    matrix
+        .row_iter()
+        .map(|row| row.iter().copied().collect())
+        .collect()
+}
+
 /// All parameters, fixed ones too, in the order of the document.
-fn table(problem: &Problem, at: &Iterate, bounds: &ErrorBounds) -> Vec<ParameterEstimate> {
+pub(super) fn table(
+    problem: &Problem,
+    theta: &[f64],
+    held: &[Option<Bound>],
+    bounds: &ErrorBounds,
+) -> Vec<ParameterEstimate> {
     let unknowns = &problem.unknowns;
     let row = |(index, unknown): (usize, &Unknown)| {
         let info = &problem.model.parameters[unknown.parameter];
@@ -93,11 +109,11 @@ fn table(problem: &Problem, at: &Iterate, bounds: &ErrorBounds) -> Vec<Parameter
             start: info.unit.from_si(unknown.start),
             estimate: info
                 .unit
-                .from_si(place.map_or(unknown.start, |place| at.theta[place])),
+                .from_si(place.map_or(unknown.start, |place| theta[place])),
             standard_error: in_own_unit(&bounds.standard_errors),
             conventional_standard_error: in_own_unit(&bounds.conventional),
             fixed: unknown.fixed,
-            at_bound: place.and_then(|place| at.held[place]),
+            at_bound: place.and_then(|place| held[place]),
         }
     };
     unknowns.all.iter().enumerate().map(row).collect()

@@ -65,7 +65,7 @@ impl ErrorBounds {
     }
 
     /// From the information matrix; places held at a bound count as known.
-    fn conventional(information: &DMatrix<f64>, held: &[Option<Bound>]) -> Self {
+    pub fn conventional(information: &DMatrix<f64>, held: &[Option<Bound>]) -> Self {
         let unknowns = held.len();
         let moving: Vec<usize> = (0..unknowns).filter(|&i| held[i].is_none()).collect();
         let own = information.select_rows(&moving).select_columns(&moving);
@@ -153,19 +153,20 @@ impl ErrorBounds {
         }
     }
 
-    /// The collinear sets by name, in the parameters' own units.
-    pub fn collinear(&self, problem: &Problem) -> Vec<CollinearSet> {
+    /// The collinear sets by name; `name` gives what the unknown at a place is called, and the SI value of its unit.
+    pub fn collinear(&self, name: impl Fn(usize) -> (String, f64)) -> Vec<CollinearSet> {
         (self.collinear.iter())
-            .map(|members| CollinearSet::named(problem, members))
+            .map(|members| CollinearSet::named(members, &name))
             .collect()
     }
 }
 
 impl CollinearSet {
     /// From places of θ and the direction, SI, in which nothing changes.
-    pub(super) fn named(problem: &Problem, members: &[(usize, f64)]) -> Self {
+    pub(super) fn named(members: &[(usize, f64)], name: impl Fn(usize) -> (String, f64)) -> Self {
         let own = |&(place, component): &(usize, f64)| {
-            (problem.name(place), component / problem.unit(place).scale)
+            let (name, scale) = name(place);
+            (name, component / scale)
         };
         let (parameters, mut direction): (Vec<String>, Vec<f64>) = members.iter().map(own).unzip();
         let largest = direction

@@ -16,6 +16,8 @@ pub enum Unusable {
     LeftRange { segment: usize, sample: usize },
     /// Outputs are finite, but the cost or a derivative of an output is not.
     NotFinite,
+    /// The Riccati equation of the Kalman filter has no solution with which the filter is stable.
+    NoSteadyGain { segment: usize },
     /// The covariance of the residuals is singular: some outputs' residuals are not independent.
     SingularNoise,
 }

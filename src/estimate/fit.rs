@@ -6,14 +6,14 @@ use super::problem::Problem;
 use super::report::{OutputFit, OutputSeries, Series, TheilShares, TimeHistory};
 use super::role::Role;
 use crate::model::Quantity;
-use crate::simulate::simulate;
+use crate::simulate::{Segment, simulate};
 
 /// Measured and modelled time histories of all segments for θ.
 pub(super) fn histories(problem: &Problem, theta: &[f64]) -> Vec<TimeHistory> {
     let model = &problem.model;
     let options = &problem.options;
     let mut parameters = Vec::new();
-    let history = |(index, segment): (usize, &crate::simulate::Segment)| {
+    let simulated = |index: usize, segment: &Segment| {
         problem.unknowns.parameters(index, theta, &mut parameters);
         let mut modelled = vec![Vec::with_capacity(segment.len()); model.outputs.len()];
         simulate(
@@ -29,6 +29,19 @@ pub(super) fn histories(problem: &Problem, theta: &[f64]) -> Vec<TimeHistory> {
                     .for_each(|(series, &value)| series.push(value));
             },
         );
+        modelled
+    };
+    histories_of(problem, simulated)
+}
+
+/// Time histories of all segments, `modelled` giving the outputs of each: by output, then sample.
+pub(super) fn histories_of(
+    problem: &Problem,
+    mut modelled: impl FnMut(usize, &Segment) -> Vec<Vec<f64>>,
+) -> Vec<TimeHistory> {
+    let model = &problem.model;
+    let history = |(index, segment): (usize, &Segment)| {
+        let modelled = modelled(index, segment);
         let inputs = model.inputs.iter().zip(&segment.inputs);
         let inputs = inputs.map(|(input, values)| Series {
             name: input.name.clone(),

@@ -92,7 +92,7 @@ impl DataInformation {
             unseen: single.iter().map(|set| problem.name(set[0].0)).collect(),
             redundant: redundant
                 .iter()
-                .map(|set| CollinearSet::named(problem, set))
+                .map(|set| CollinearSet::named(set, |place| problem.name_and_scale(place)))
                 .collect(),
             nearly_collinear: nearly_collinear(problem, &spectrum),
             highly_correlated: highly_correlated(problem, &spectrum),

@@ -1,4 +1,4 @@
-//! Estimation by the output-error method: cost, steps, iterations, error bounds.
+//! Estimation by the output-error and filter-error methods: cost, steps, iterations, error bounds.
 //!
 //! [`Problem`] is a model with its data, [`output_error`] finds the θ of least negative log-likelihood
 //!
@@ -6,6 +6,7 @@
 //! J(θ, R) = ½ Σ_k (z_k − y_k)ᵀ R⁻¹ (z_k − y_k) + (N/2) ln|R| + (N n_y/2) ln 2π
 //! ```
 //!
+//! [`filter_error`] does so with one-step predictions in place of the simulation, for states that are disturbed,
 //! and [`Estimate`] is the answer, with the reason why the solver stopped.
 
 mod answer;
@@ -13,7 +14,9 @@ mod autoregression;
 mod coloured_residuals;
 pub mod derivatives;
 mod error_bounds;
+mod estimator;
 mod evaluation;
+mod filter_error;
 mod fit;
 mod identifiability;
 mod information;
@@ -24,6 +27,7 @@ mod options;
 mod output_error;
 mod prediction;
 mod problem;
+mod process_noise;
 pub mod quasi_newton;
 mod report;
 mod role;
@@ -36,13 +40,19 @@ mod unknowns;
 pub use answer::Solution;
 pub use derivatives::{Derivatives, Scaling};
 pub use error_bounds::ErrorBoundsKind;
+pub use estimator::Estimator;
 pub use evaluation::{Evaluator, Unusable};
+pub use filter_error::{
+    FilterEquations, FilterEstimate, FilterEvaluator, Pole, ProcessNoiseEstimate, SegmentGain,
+    filter_error, process_noise_names,
+};
 pub use identifiability::{CorrelatedPair, DataInformation, Identifiability, NearlyCollinearSet};
 pub use likelihood::NormalEquations;
 pub use options::{Method, Noise, NoiseStructure, Options};
 pub use output_error::{Observer, output_error};
 pub use prediction::{Prediction, Validation, predict};
 pub use problem::Problem;
+pub use process_noise::ProcessNoise;
 pub use report::{
     Bound, CollinearSet, Estimate, Iteration, Outcome, OutputFit, OutputSeries, ParameterEstimate,
     Series, TheilShares, TimeHistory, five_digits,

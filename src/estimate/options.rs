@@ -1,10 +1,13 @@
 //! What a user may choose about an estimation.
 
+use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::derivatives::Derivatives;
 use super::error_bounds::ErrorBoundsKind;
+use super::estimator::Estimator;
+use super::process_noise::ProcessNoise;
 use crate::simulate::{InputInterpolation, Integrator};
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
@@ -16,6 +19,15 @@ pub struct Options {
     pub noise: Noise,
     pub error_bounds: ErrorBoundsKind,
     pub derivatives: Derivatives,
+    pub estimator: Estimator,
+    /// By state, for the filter-error estimator; a state that is not named has noise whose intensity is estimated from
+    /// a start value of its own.
+    #[serde(
+        deserialize_with = "crate::model::unique",
+        skip_serializing_if = "IndexMap::is_empty"
+    )]
+    #[schema(example = json!({"theta": {"start": 0.0, "fixed": true}}))]
+    pub process_noise: IndexMap<String, ProcessNoise>,
     /// Converged when a full step would move the estimate by less than this many standard errors:
     /// √(gᵀ H⁻¹ g), g the gradient and H the Hessian of the cost that the step is made with.
     #[schema(example = 1e-5, exclusive_minimum = 0.0)]
@@ -35,6 +47,8 @@ impl Default for Options {
             noise: Noise::default(),
             error_bounds: ErrorBoundsKind::default(),
             derivatives: Derivatives::default(),
+            estimator: Estimator::default(),
+            process_noise: IndexMap::new(),
             tolerance: 1e-5,
             max_iterations: 50,
         }

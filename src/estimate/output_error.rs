@@ -22,16 +22,16 @@ use super::stopped::Stopped;
 pub type Observer<'o> = dyn FnMut(&Iteration) -> ControlFlow<()> + 'o;
 
 /// Damping: where it starts, what success and failure make of it, and below what it is none.
-const DAMPING_START: f64 = 1e-3;
-const DAMPING_EASED: f64 = 1e-2;
-const DAMPING_RAISED: f64 = 10.0;
-const DAMPING_NONE: f64 = 1e-10;
+pub(super) const DAMPING_START: f64 = 1e-3;
+pub(super) const DAMPING_EASED: f64 = 1e-2;
+pub(super) const DAMPING_RAISED: f64 = 10.0;
+pub(super) const DAMPING_NONE: f64 = 1e-10;
 
 /// How often a step may be shortened, or the damping raised, within one iteration.
-const MOST_TRIALS: usize = 16;
+pub(super) const MOST_TRIALS: usize = 16;
 
 /// The cost is a sum over all samples: differences below this share of it are rounding.
-const ROUNDING: f64 = 1e-13;
+pub(super) const ROUNDING: f64 = 1e-13;
 
 /// Estimates θ from the start values of the problem.
 ///

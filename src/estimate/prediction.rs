@@ -88,7 +88,8 @@ pub fn predict(
                     "with the estimate the simulation leaves the range of numbers at sample {}",
                     sample + 1
                 ),
-                Unusable::NotFinite | Unusable::SingularNoise => {
+                // it is simulated without a filter
+                Unusable::NotFinite | Unusable::SingularNoise | Unusable::NoSteadyGain { .. } => {
                     "with the estimate an output is not a finite number at some sample".to_string()
                 }
             };

@@ -52,6 +52,11 @@ impl Problem {
         }
     }
 
+    /// As [`Self::name`], with the SI value of the unknown's unit.
+    pub(super) fn name_and_scale(&self, place: usize) -> (String, f64) {
+        (self.name(place), self.unit(place).scale)
+    }
+
     /// The unit of the unknown at a place of θ.
     pub fn unit(&self, place: usize) -> Unit {
         self.model.parameters[self.unknowns.at(place).parameter].unit

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::error_bounds::ErrorBoundsKind;
+use super::filter_error::FilterEstimate;
 use super::identifiability::Identifiability;
 use super::prediction::Prediction;
 use super::role::Role;
@@ -63,7 +64,8 @@ pub struct Iteration {
     pub det_r: f64,
     /// Variance of each output's residual, SI units squared (the diagonal of R).
     pub variance: Vec<f64>,
-    /// All free parameters in the order of the parameter table, each in its own unit.
+    /// All free parameters in the order of the parameter table, each in its own unit; with filter error the free
+    /// process noises follow, in the order of the states.
     pub parameters: Vec<f64>,
     /// Length of the gradient of the cost, each component times the standard error that the parameter
     /// would have if it were the only one.
@@ -102,7 +104,7 @@ pub struct Estimate {
     /// mean nothing: the model reproduces an output to rounding, which noise is not part of.
     #[serde(default = "conventional")]
     pub error_bounds: Option<ErrorBoundsKind>,
-    /// Correlation of the free parameters' errors, in the order of the free parameters. Empty when singular.
+    /// Correlation of the free parameters' errors, in the order of the iterations' `parameters`. Empty when singular.
     pub correlation: Vec<Vec<f64>>,
     /// Sets of parameters that the data cannot tell apart, or cannot see.
     pub collinear: Vec<CollinearSet>,
@@ -114,6 +116,9 @@ pub struct Estimate {
     pub prediction: Vec<Prediction>,
     /// Samples used, over all segments.
     pub samples: usize,
+    /// What the filter-error estimator adds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub filter: Option<FilterEstimate>,
 }
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]

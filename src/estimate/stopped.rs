@@ -1,10 +1,7 @@
-//! Why an iteration ended, and what to say of it.
+//! Why a solver ended, and what to say of it.
 
-use super::error_bounds::ErrorBounds;
-use super::iterate::Iterate;
 use super::options::Method;
-use super::problem::Problem;
-use super::report::Outcome;
+use super::report::{CollinearSet, Outcome};
 
 /// Why the loop ended.
 pub(super) enum Stopped {
@@ -19,14 +16,14 @@ pub(super) enum Stopped {
 impl Stopped {
     /// The outcome, and what to say of it.
     pub fn say(
-        self,
-        problem: &Problem,
+        &self,
+        method: Method,
         iterations: usize,
-        at: &Iterate,
-        bounds: &ErrorBounds,
+        held: &[String],
+        collinear: &[CollinearSet],
     ) -> (Outcome, String) {
-        match self {
-            Self::Minimum { distance } => minimum(problem, at, bounds, distance),
+        match *self {
+            Self::Minimum { distance } => minimum(held, collinear, distance),
             Self::Budget { .. } if iterations == 0 => {
                 let reason =
                     "no iteration was asked for: this is what the data say at the start values";
@@ -39,7 +36,7 @@ impl Stopped {
                 (Outcome::Budget, reason)
             }
             Self::Stalled { distance } => {
-                let remedy = match problem.options.method {
+                let remedy = match method {
                     Method::GaussNewton => {
                         "; try the method levenberg_marquardt, or other start values"
                     }
@@ -67,13 +64,7 @@ impl Stopped {
 }
 
 /// A point from which no step of any length leads further down: what kind of one.
-fn minimum(
-    problem: &Problem,
-    at: &Iterate,
-    bounds: &ErrorBounds,
-    distance: f64,
-) -> (Outcome, String) {
-    let collinear = bounds.collinear(problem);
+fn minimum(held: &[String], collinear: &[CollinearSet], distance: f64) -> (Outcome, String) {
     if !collinear.is_empty() {
         let sets: Vec<String> = collinear
             .iter()
@@ -85,10 +76,6 @@ fn minimum(
         );
         return (Outcome::Singular, reason);
     }
-    let held: Vec<String> = (0..at.held.len())
-        .filter(|&place| at.held[place].is_some())
-        .map(|place| problem.name(place))
-        .collect();
     let reason = format!(
         "converged: a further step would move the estimate by {distance:.1e} standard errors"
     );

@@ -57,7 +57,7 @@ pub struct Prepared {
     /// Samples over all segments of the estimation.
     pub samples: usize,
     pub outputs: Vec<String>,
-    /// Free parameters, in the order of the iterations' `parameters`.
+    /// Free parameters, and with filter error the free process noises, in the order of the iterations' `parameters`.
     pub parameters: Vec<String>,
     /// What is odd about the data in use.
     pub findings: Vec<Finding>,

@@ -3,6 +3,7 @@
 
 mod bounds;
 mod event;
+mod filter;
 mod resolve;
 mod run;
 mod spec;

@@ -6,13 +6,13 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::bounds;
 use super::resolve::{self, Named, Stretch};
 use super::{Fault, JobKind, JobSpec, ModelSource, Prepared, study};
+use super::{bounds, filter};
 use crate::estimate::study::DerivativeStudy;
 use crate::estimate::{
-    Estimate, Iteration, Noise, Options, Outcome, Problem, Role, Solution, TimeHistory, Unknowns,
-    Unusable, Validation, output_error, predict,
+    Estimate, Estimator, Iteration, Noise, Options, Outcome, Problem, Role, Solution, TimeHistory,
+    Unknowns, Unusable, Validation, filter_error, output_error, predict,
 };
 use crate::flight::{Maneuver, escape};
 use crate::model::{ChannelFormula, Model, ModelDocument, Start};
@@ -72,6 +72,7 @@ pub fn prepare(
         }
     };
     check_options(&spec.options, &model, &mut faults);
+    filter::check_options(&spec.options, &model, &mut faults);
     check_names(spec, &model, &mut faults);
 
     let mut findings = Vec::new();
@@ -107,6 +108,7 @@ pub fn prepare(
         bounds::check_validation(&model, &segment, &unknowns)?;
         validation.push(Validation { segment, unknowns });
     }
+    filter::check_data(&model, &segments, &unknowns, &spec.options)?;
     let problem = Problem::new(model, segments, unknowns, spec.options.clone());
     if spec.kind == JobKind::DerivativeStudy {
         study::check(&problem)?;
@@ -129,6 +131,7 @@ pub fn prepare(
             .collect(),
         parameters: (0..problem.unknowns.len())
             .map(|place| problem.name(place))
+            .chain(filter::process_noise(&problem))
             .collect(),
         findings,
     };
@@ -176,7 +179,11 @@ pub fn run(
     let Solution {
         mut estimate,
         mut histories,
-    } = output_error(problem, observer).map_err(|why| vec![no_start(problem, why)])?;
+    } = match problem.options.estimator {
+        Estimator::OutputError => output_error(problem, observer),
+        Estimator::FilterError => filter_error(problem, observer),
+    }
+    .map_err(|why| vec![no_start(problem, why)])?;
     if estimate.outcome != Outcome::Cancelled {
         for validation in &plan.validation {
             let (prediction, history) = predict(problem, &estimate, validation);
@@ -209,6 +216,7 @@ pub(super) fn no_start(problem: &Problem, why: Unusable) -> Fault {
             let message = "with the start values an output or its derivative by a parameter is not a finite number at some sample (a root, logarithm, power or quotient at zero?); give other \"start\" values, or guard the expression with if(...)";
             Fault::new("/parameters", "diverged_at_start", message)
         }
+        Unusable::NoSteadyGain { segment } => filter::no_gain(problem, segment),
         Unusable::SingularNoise => {
             let message = "the residuals of some outputs are not independent, so that their full covariance is singular; use the structure \"diagonal\", or leave one of these outputs out";
             Fault::new("/options/noise", "singular_noise", message)

@@ -30,7 +30,7 @@ pub enum InputInterpolation {
 /// The stages of an explicit Runge-Kutta method in which each stage builds on the one before it:
 /// X_s = x + h advance_s K_(s-1), K_s = f(X_s, u(t + h node_s)), x' = x + h Σ weight_s K_s.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Stage {
+pub struct Stage {
     pub advance: f64,
     pub node: f64,
     pub weight: f64,
@@ -54,7 +54,8 @@ const RK4: [Stage; 4] = [
 ];
 
 impl Integrator {
-    /// Evaluations of f in a step.
+    /// Evaluations of f in a step; for these methods also its order, the terms of the Taylor series that a step
+    /// of a linear system has.
     pub fn stage_count(self) -> usize {
         self.stages().len()
     }
@@ -70,7 +71,7 @@ impl Integrator {
 
 impl InputInterpolation {
     /// The share of the later sample at the fraction `node` of a step.
-    pub(super) fn share_of_next(self, node: f64) -> f64 {
+    pub fn share_of_next(self, node: f64) -> f64 {
         match self {
             Self::Linear => node,
             Self::Hold => 0.0,

@@ -5,11 +5,11 @@ use super::segment::Segment;
 use crate::model::{Model, Program, Scalar, Workspace};
 
 /// Steps the state of a model along a segment and keeps the states at which f was evaluated.
-pub(super) struct Stepper<'m, T> {
+pub struct Stepper<'m, T> {
     dynamics: &'m Program,
     workspace: Workspace<T>,
     pub stages: &'static [Stage],
-    interpolation: InputInterpolation,
+    pub interpolation: InputInterpolation,
     /// Stage states X_s of the last step, stage by stage.
     pub stage_states: Vec<T>,
     slope: Vec<T>,
@@ -84,7 +84,7 @@ impl<'m, T: Scalar> Stepper<'m, T> {
 
 /// The value between two samples, `share` of the way to the later one.
 #[inline(always)]
-pub(super) fn between(now: f64, next: f64, share: f64) -> f64 {
+pub fn between(now: f64, next: f64, share: f64) -> f64 {
     // written so that the ends and the middle are exact
     if share == 0.0 {
         now

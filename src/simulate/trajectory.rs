@@ -58,7 +58,8 @@ pub fn simulate<T: Scalar>(
     }
 }
 
-pub(super) fn initial_state<T: Scalar>(model: &Model, parameters: &[T]) -> Vec<T> {
+/// x0(θ)
+pub fn initial_state<T: Scalar>(model: &Model, parameters: &[T]) -> Vec<T> {
     let mut workspace = model.initial.workspace();
     model.initial.set_parameters(&mut workspace, parameters);
     model.initial.run(&mut workspace);

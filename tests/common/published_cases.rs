@@ -22,14 +22,7 @@ pub struct Case {
 
 /// Reads a case from the directory of flight data.
 pub fn read(directory: &Path, name: &str) -> Case {
-    let text = std::fs::read_to_string(directory.join("published_cases.json"))
-        .expect("published_cases.json");
-    let all: Value = serde_json::from_str(&text).expect("valid JSON");
-    let cases = all["cases"].as_array().expect("cases");
-    let case = cases
-        .iter()
-        .find(|case| case["case"] == name)
-        .unwrap_or_else(|| panic!("no case {name}"));
+    let case = &find(directory, name);
     let reference = &case["reference_results"]["gauss_newton"];
     let number = |value: &Value| value.as_f64().expect("a number");
     Case {
@@ -63,6 +56,16 @@ pub fn read(directory: &Path, name: &str) -> Case {
     }
 }
 
+/// A case as the file has it.
+pub fn find(directory: &Path, name: &str) -> Value {
+    let text = std::fs::read_to_string(directory.join("published_cases.json"))
+        .expect("published_cases.json");
+    let all: Value = serde_json::from_str(&text).expect("valid JSON");
+    let cases = all["cases"].as_array().expect("cases");
+    let case = cases.iter().find(|case| case["case"] == name);
+    case.unwrap_or_else(|| panic!("no case {name}")).clone()
+}
+
 fn list(value: &Value) -> impl Iterator<Item = &Value> {
     value.as_array().expect("a list").iter()
 }
@@ -83,7 +86,7 @@ fn unit(value: &Value) -> String {
         .to_string()
 }
 
-fn model(case: &Value) -> Value {
+pub fn model(case: &Value) -> Value {
     let units = |list_of: &str| -> Map<String, Value> {
         list(&case[list_of])
             .map(|q| (text_of(&q["name"]), json!({"unit": unit(&q["unit"])})))
@@ -152,7 +155,7 @@ fn definition_unit(name: &str) -> &'static str {
 }
 
 /// Columns are converted to SI when they are uploaded: the factors `pi/180` of the cases fall away.
-fn channels(case: &Value) -> Value {
+pub fn channels(case: &Value) -> Value {
     let quantities = list(&case["inputs"]).chain(list(&case["outputs"]));
     let formula = |q: &Value| text_of(&q["from_columns"]).replace("*pi/180", "");
     Value::Object(

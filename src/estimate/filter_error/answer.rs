@@ -1,0 +1,142 @@
+//! The answer of the filter-error method, put together at its last iterate.
+
+use nalgebra::{DMatrix, Schur};
+
+use super::super::answer::{Solution, rows, table};
+use super::super::coloured_residuals::Colour;
+use super::super::error_bounds::ErrorBounds;
+use super::super::fit::{fits, histories_of};
+use super::super::problem::Problem;
+use super::super::report::Estimate;
+use super::super::stopped::Stopped;
+use super::evaluation::FilterEvaluator;
+use super::gain::Gain;
+use super::iterate::Iterate;
+use super::layout::Layout;
+use super::report::{FilterEstimate, Pole, ProcessNoiseEstimate, SegmentGain};
+
+pub(super) fn answer(
+    evaluator: &mut FilterEvaluator<'_>,
+    at: &Iterate,
+    bounds: &ErrorBounds,
+    iterations: usize,
+    stopped: &Stopped,
+) -> Solution {
+    let problem = evaluator.problem;
+    let model = &problem.model;
+    let mut modelled = vec![vec![Vec::new(); model.outputs.len()]; problem.segments.len()];
+    let mut gains: Vec<SegmentGain> = Vec::new();
+    // the last iterate was predicted before: what fails here failed there
+    let _ = evaluator.innovations(&at.z, &at.gain_noise.inverse, |index, gain, prediction| {
+        if prediction.sample == 0 {
+            gains.push(segment_gain(problem, index, gain));
+        }
+        let series = modelled[index].iter_mut().zip(prediction.outputs);
+        series.for_each(|(series, &value)| series.push(value));
+    });
+    let histories = histories_of(problem, |index, _| std::mem::take(&mut modelled[index]));
+    let layout = &evaluator.layout;
+    let name = |place: usize| layout.name(problem, place);
+    let held: Vec<String> = (0..at.held.len())
+        .filter(|&place| at.held[place].is_some())
+        .map(|place| name(place).0)
+        .collect();
+    let collinear = bounds.collinear(name);
+    let (outcome, reason) = stopped.say(problem.options.method, iterations, &held, &collinear);
+    let theta = &at.z[..layout.parameters];
+    let estimate = Estimate {
+        outcome,
+        reason,
+        iterations,
+        evaluations: evaluator.evaluations,
+        simulations: evaluator.simulations,
+        cost: at.weighting.cost,
+        det_r: at.weighting.det(),
+        noise_covariance: rows(&at.weighting.covariance),
+        outputs: fits(problem, &histories, &Colour::of(&histories)),
+        parameters: table(problem, theta, &at.held, bounds),
+        error_bounds: bounds.kind,
+        correlation: bounds.correlation.clone(),
+        collinear,
+        identifiability: None,
+        prediction: Vec::new(),
+        samples: problem.samples(),
+        filter: Some(FilterEstimate {
+            process_noise: process_noise(problem, layout, at, bounds),
+            gain_covariance: rows(&at.gain_noise.covariance),
+            gains,
+        }),
+    };
+    Solution {
+        estimate,
+        histories,
+    }
+}
+
+fn process_noise(
+    problem: &Problem,
+    layout: &Layout,
+    at: &Iterate,
+    bounds: &ErrorBounds,
+) -> Vec<ProcessNoiseEstimate> {
+    let states = problem
+        .model
+        .states
+        .iter()
+        .zip(&problem.model.document.states);
+    let intensities = layout.intensities(&at.z);
+    let row = |(index, (state, (_, document)))| {
+        let place = layout.place(index);
+        let unit = match (document as &crate::model::State).unit.as_str() {
+            "" | "-" => "1/s^0.5".to_string(),
+            unit => format!("{unit}/s^0.5"),
+        };
+        let state: &crate::model::Quantity = state;
+        let scale = state.unit.scale;
+        let error = place.and_then(|place| bounds.standard_errors[place]);
+        ProcessNoiseEstimate {
+            state: state.name.clone(),
+            unit,
+            start: layout.start[index] / scale,
+            estimate: intensities[index] / scale,
+            standard_error: error.map(|error| error / scale),
+            fixed: place.is_none(),
+            at_bound: place.and_then(|place| at.held[place]),
+        }
+    };
+    states.enumerate().map(row).collect()
+}
+
+fn segment_gain(problem: &Problem, index: usize, gain: &Gain) -> SegmentGain {
+    let segment = &problem.segments[index];
+    let states = gain.a.nrows();
+    let identity = DMatrix::<f64>::identity(states, states);
+    // one step of the integrator is the Taylor series of exp(A Δt) up to its order
+    let order = problem.options.integrator.stage_count();
+    let flow = &gain.a * segment.steps.length(0);
+    let step = (1..=order).rev().fold(identity.clone(), |sum, term| {
+        &identity + &flow * sum / term as f64
+    });
+    let error = step * (identity - &gain.k * &gain.c);
+    SegmentGain {
+        segment: segment.label.clone(),
+        gain: rows(&gain.k),
+        poles: poles(error),
+    }
+}
+
+fn poles(matrix: DMatrix<f64>) -> Vec<Pole> {
+    if matrix.is_empty() || !matrix.iter().all(|value| value.is_finite()) {
+        return Vec::new();
+    }
+    let Some(schur) = Schur::try_new(matrix, f64::EPSILON, 10_000) else {
+        return Vec::new();
+    };
+    let eigenvalues = schur.complex_eigenvalues();
+    let pole = |value: &nalgebra::Complex<f64>| Pole {
+        real: value.re,
+        imaginary: value.im,
+        magnitude: value.norm(),
+    };
+    eigenvalues.iter().map(pole).collect()
+}

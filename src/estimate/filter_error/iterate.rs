@@ -1,0 +1,141 @@
+//! Unknowns on the way, and everything that is known there.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::super::evaluation::Unusable;
+use super::super::likelihood::Weighting;
+use super::super::options::Noise;
+use super::super::problem::Problem;
+use super::super::report::{Bound, Iteration};
+use super::super::step::Newton;
+use super::evaluation::FilterEvaluator;
+use super::limit::Limit;
+use crate::estimate::iterate::Taken;
+
+/// R as it stands in the gain: that of an earlier iterate.
+#[derive(Clone)]
+pub(super) struct GainNoise {
+    pub covariance: DMatrix<f64>,
+    pub inverse: DMatrix<f64>,
+}
+
+impl GainNoise {
+    pub fn of(weighting: &Weighting) -> Self {
+        Self {
+            covariance: weighting.covariance.clone(),
+            inverse: weighting.inverse.clone(),
+        }
+    }
+}
+
+pub(super) struct Iterate {
+    /// SI.
+    pub z: Vec<f64>,
+    pub gain_noise: GainNoise,
+    pub weighting: Weighting,
+    /// Reduced where the gain is at its limit.
+    pub information: DMatrix<f64>,
+    /// By place: the bound against which the descent direction pushes.
+    pub held: Vec<Option<Bound>>,
+    pub limit: Limit,
+    /// None where the information matrix cannot be decomposed.
+    pub newton: Option<Newton>,
+}
+
+impl Iterate {
+    pub fn at(
+        evaluator: &mut FilterEvaluator<'_>,
+        z: Vec<f64>,
+        gain_noise: GainNoise,
+    ) -> Result<Self, Unusable> {
+        let problem = evaluator.problem;
+        let (sums, shares) = evaluator.sums(&z, &gain_noise.inverse)?;
+        let noise = &problem.options.noise;
+        let samples = problem.samples();
+        let weighting = Weighting::new(noise, &sums.residuals, samples)?;
+        let descent = weighting.descent(&sums);
+        let limit = Limit::new(&evaluator.layout, &shares, &descent);
+        let reduced = |full: &DMatrix<f64>| limit.reduction.tr_mul(&(full * &limit.reduction));
+        let information = reduced(&weighting.information(&sums));
+        let descent = limit.reduction.tr_mul(&descent);
+        let relaxation = match noise {
+            Noise::Estimated { .. } => Some(reduced(&weighting.relaxation(&sums, samples))),
+            Noise::Given { .. } => None,
+        };
+        let held = held(evaluator, &z, &descent, &limit);
+        let newton = Newton::new(&information, relaxation.as_ref(), &descent, &held);
+        Ok(Self {
+            z,
+            gain_noise,
+            weighting,
+            information,
+            held,
+            limit,
+            newton,
+        })
+    }
+
+    /// How far R in the gain is from that of the innovations, in standard errors of R.
+    pub fn lag(&self, problem: &Problem) -> f64 {
+        let (gain, now) = (&self.gain_noise.covariance, &self.weighting.covariance);
+        let ratios = (0..now.nrows()).map(|i| (now[(i, i)] / gain[(i, i)]).ln());
+        let squares: f64 = ratios.map(|ratio| ratio * ratio).sum();
+        (0.5 * problem.samples() as f64 * squares).sqrt()
+    }
+
+    /// The step of all unknowns for a damping λ.
+    pub fn step(&self, newton: &Newton, damping: f64) -> DVector<f64> {
+        &self.limit.reduction * newton.step(damping)
+    }
+
+    pub fn report(
+        &self,
+        evaluator: &FilterEvaluator<'_>,
+        number: usize,
+        taken: &Taken,
+    ) -> Iteration {
+        let layout = &evaluator.layout;
+        let in_own_units = |(place, value): (usize, &f64)| {
+            let problem = evaluator.problem;
+            if place < layout.parameters {
+                problem.unit(place).from_si(*value)
+            } else {
+                value / layout.name(problem, place).1
+            }
+        };
+        let variance = self.weighting.covariance.diagonal();
+        Iteration {
+            number,
+            cost: self.weighting.cost,
+            det_r: self.weighting.det(),
+            variance: variance.iter().copied().collect(),
+            parameters: self.z.iter().enumerate().map(in_own_units).collect(),
+            gradient_norm: self.newton.as_ref().map_or(0.0, Newton::gradient_norm),
+            step: taken.length,
+            damping: taken.damping,
+            halvings: taken.halvings,
+        }
+    }
+}
+
+/// Which places are at a bound that the descent direction pushes against.
+fn held(
+    evaluator: &FilterEvaluator<'_>,
+    z: &[f64],
+    descent: &DVector<f64>,
+    limit: &Limit,
+) -> Vec<Option<Bound>> {
+    let bound = |(place, &value): (usize, &f64)| {
+        let (lower, upper) = evaluator.layout.limits(evaluator.problem, place);
+        if limit.places.contains(&place) {
+            Some(Bound::Upper)
+        } else if value <= lower && descent[place] < 0.0 {
+            Some(Bound::Lower)
+        } else if value >= upper && descent[place] > 0.0 {
+            Some(Bound::Upper)
+        } else {
+            None
+        }
+    };
+    z.iter().enumerate().map(bound).collect()
+}

@@ -1,0 +1,88 @@
+//! Where the filter begins: R from the scatter of the measurements, intensities from R.
+
+use nalgebra::DMatrix;
+
+use super::super::evaluation::Unusable;
+use super::super::likelihood::Weighting;
+use super::super::options::{Noise, NoiseStructure};
+use super::super::problem::Problem;
+use super::gain::{Gain, Setting};
+
+/// The share of a state's prediction error that a sample is to take away to begin with.
+const START_SHARE: f64 = 0.3;
+
+/// Steps ahead in which a state that no output shows directly may show.
+const STEPS_AHEAD: usize = 20;
+
+/// R to begin with: half the mean square of the change from sample to sample. This needs no simulation, which with an
+/// unstable model would leave the range of numbers.
+pub(super) fn gain_noise(problem: &Problem) -> Result<Weighting, Unusable> {
+    let outputs = problem.model.outputs.len();
+    let samples = problem.samples() as f64;
+    let scatter = |output: usize| {
+        let segments = problem.segments.iter();
+        let series = segments.map(|segment| &segment.measured[output]);
+        let changes = series.flat_map(|series| series.windows(2).map(|pair| pair[1] - pair[0]));
+        let squares: Vec<f64> = (changes.filter(|change| change.is_finite()))
+            .map(|change| change * change)
+            .collect();
+        0.5 * squares.iter().sum::<f64>() / squares.len().max(1) as f64
+    };
+    let squares: Vec<f64> = (0..outputs)
+        .map(|output| scatter(output) * samples)
+        .collect();
+    let sums = DMatrix::from_diagonal(&nalgebra::DVector::from_vec(squares));
+    let noise = match &problem.options.noise {
+        Noise::Given { variance } => Noise::Given {
+            variance: variance.clone(),
+        },
+        Noise::Estimated { .. } => Noise::Estimated {
+            structure: NoiseStructure::Diagonal,
+        },
+    };
+    Weighting::new(&noise, &sums, problem.samples())
+}
+
+/// Start values of the intensities, by state, SI: with f² Δt Σ_j C_ji²/r_j = share² a state that hardly moves by
+/// itself is corrected by about that share.
+pub(super) fn automatic_intensities(
+    problem: &Problem,
+    noise: &Weighting,
+) -> Result<Vec<f64>, Unusable> {
+    let states = problem.model.states.len();
+    let Some(segment) = problem.segments.first() else {
+        return Ok(vec![0.0; states]);
+    };
+    let mut parameters = Vec::new();
+    let theta = problem.unknowns.start();
+    problem.unknowns.parameters(0, &theta, &mut parameters);
+    let undisturbed = Gain::steady(&Setting {
+        model: &problem.model,
+        segment,
+        parameters: &parameters,
+        intensities: &vec![0.0; states],
+        weight: &noise.inverse,
+    })
+    .ok_or(Unusable::NoSteadyGain { segment: 0 })?;
+    let step = segment.steps.length(0);
+    let ahead = DMatrix::identity(states, states) + &undisturbed.a * step;
+    let mut shown = vec![0.0_f64; states];
+    let mut seen = undisturbed.c.clone();
+    for _ in 0..STEPS_AHEAD {
+        let information = (seen.transpose() * &noise.inverse * &seen).diagonal();
+        for (shown, &now) in shown.iter_mut().zip(&information) {
+            if now.is_finite() {
+                *shown = shown.max(now);
+            }
+        }
+        seen *= &ahead;
+    }
+    let start = |&shown: &f64| {
+        if shown > 0.0 {
+            START_SHARE / (shown * step).sqrt()
+        } else {
+            1.0
+        }
+    };
+    Ok(shown.iter().map(start).collect())
+}
