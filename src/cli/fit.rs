@@ -51,6 +51,9 @@ impl Fit {
                 table::parameters(&result.estimate, None),
                 table::outputs(&result.estimate)
             );
+            if let Some(filter) = &result.estimate.filter {
+                println!("\n{}", table::process_noise(filter));
+            }
         }
         Ok(())
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use indexmap::IndexMap;
 
 use super::Failure;
-use crate::estimate::{Method, Options};
+use crate::estimate::{Estimator, Method, Options};
 use crate::ingest::Format;
 use crate::job::{Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride};
 use crate::model::{ModelDocument, Start, catalog};
@@ -36,6 +36,9 @@ pub struct Request {
     /// Gauss-Newton steps in place of Levenberg-Marquardt.
     #[arg(long)]
     gauss_newton: bool,
+    /// For flight in turbulence: estimate process noise too, with a Kalman filter.
+    #[arg(long)]
+    filter_error: bool,
     /// Stop when a step is shorter than this many standard errors.
     #[arg(long, default_value_t = Options::default().tolerance)]
     pub tolerance: f64,
@@ -119,6 +122,11 @@ impl Request {
                     Method::GaussNewton
                 } else {
                     Method::LevenbergMarquardt
+                },
+                estimator: if self.filter_error {
+                    Estimator::FilterError
+                } else {
+                    Estimator::OutputError
                 },
                 tolerance: self.tolerance,
                 max_iterations: self.max_iterations,

@@ -4,7 +4,7 @@ use comfy_table::presets::UTF8_BORDERS_ONLY;
 use comfy_table::{CellAlignment, Table};
 use indexmap::IndexMap;
 
-use crate::estimate::{Estimate, ParameterEstimate, five_digits as number};
+use crate::estimate::{Estimate, FilterEstimate, ParameterEstimate, five_digits as number};
 
 /// The parameter table; beside the truth where that is known.
 pub fn parameters(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) -> String {
@@ -65,6 +65,28 @@ pub fn outputs(estimate: &Estimate) -> String {
         .set_header(["output", "unit", "rms residual", "mean residual", "R²"])
         .add_rows(rows);
     for column in table.column_iter_mut().skip(2) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table.to_string()
+}
+
+/// The intensity of the process noise of each state.
+pub fn process_noise(filter: &FilterEstimate) -> String {
+    let rows = filter.process_noise.iter().map(|noise| {
+        vec![
+            noise.state.clone(),
+            noise.unit.clone(),
+            number(noise.estimate),
+            noise.standard_error.map(number).unwrap_or_default(),
+            noise.remark().to_string(),
+        ]
+    });
+    let mut table = Table::new();
+    table
+        .load_style(UTF8_BORDERS_ONLY)
+        .set_header(["process noise of", "unit", "intensity", "std. error", ""])
+        .add_rows(rows);
+    for column in table.column_iter_mut().take(4).skip(2) {
         column.set_cell_alignment(CellAlignment::Right);
     }
     table.to_string()
