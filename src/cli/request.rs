@@ -6,7 +6,7 @@ use std::sync::Arc;
 use indexmap::IndexMap;
 
 use super::Failure;
-use crate::estimate::{Derivatives, Method, Options, Role};
+use crate::estimate::{Derivatives, Estimator, Method, Options, Role};
 use crate::flight::Maneuver;
 use crate::ingest::{self, Format, Limits};
 use crate::job::{Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride};
@@ -41,6 +41,9 @@ pub struct Request {
     /// Gauss-Newton steps in place of Levenberg-Marquardt.
     #[arg(long)]
     gauss_newton: bool,
+    /// For flight in turbulence: estimate process noise too, with a Kalman filter.
+    #[arg(long)]
+    filter_error: bool,
     /// Stop when a step is shorter than this many standard errors.
     #[arg(long, default_value_t = Options::default().tolerance)]
     pub tolerance: f64,
@@ -158,6 +161,11 @@ impl Request {
                     Method::GaussNewton
                 } else {
                     Method::LevenbergMarquardt
+                },
+                estimator: if self.filter_error {
+                    Estimator::FilterError
+                } else {
+                    Estimator::OutputError
                 },
                 tolerance: self.tolerance,
                 max_iterations: self.max_iterations,

@@ -4,11 +4,14 @@ use comfy_table::presets::UTF8_BORDERS_ONLY;
 use comfy_table::{CellAlignment, Table};
 use indexmap::IndexMap;
 
-use crate::estimate::{Estimate, OutputFit, ParameterEstimate, five_digits as number};
+use crate::estimate::{
+    Estimate, FilterEstimate, OutputFit, ParameterEstimate, five_digits as number,
+};
 
 /// All tables of an estimate, and what to know beside them.
 pub fn result(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) -> String {
     let mut parts = vec![parameters(estimate, truth), outputs(&estimate.outputs)];
+    parts.extend(estimate.filter.as_ref().map(process_noise));
     for prediction in &estimate.prediction {
         let segment = &prediction.segment;
         parts.push(format!(
@@ -104,6 +107,28 @@ fn outputs(outputs: &[OutputFit]) -> String {
         ])
         .add_rows(rows);
     for column in table.column_iter_mut().skip(2) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table.to_string()
+}
+
+/// The intensity of the process noise of each state.
+fn process_noise(filter: &FilterEstimate) -> String {
+    let rows = filter.process_noise.iter().map(|noise| {
+        vec![
+            noise.state.clone(),
+            noise.unit.clone(),
+            number(noise.estimate),
+            noise.standard_error.map(number).unwrap_or_default(),
+            noise.remark().to_string(),
+        ]
+    });
+    let mut table = Table::new();
+    table
+        .load_style(UTF8_BORDERS_ONLY)
+        .set_header(["process noise of", "unit", "intensity", "std. error", ""])
+        .add_rows(rows);
+    for column in table.column_iter_mut().take(4).skip(2) {
         column.set_cell_alignment(CellAlignment::Right);
     }
     table.to_string()

@@ -6,7 +6,9 @@ use super::figure::history_svg;
 use super::study::study_section;
 use super::style::CSS;
 use crate::estimate::study::DerivativeStudy;
-use crate::estimate::{Estimate, OutputFit, Role, TimeHistory, five_digits as number};
+use crate::estimate::{
+    Estimate, FilterEstimate, OutputFit, Role, TimeHistory, five_digits as number,
+};
 use crate::flight::Finding;
 use crate::job::{Fault, Status};
 
@@ -49,6 +51,10 @@ pub fn job_page(view: &JobView<'_>) -> String {
                 @if let Some(estimate) = view.estimate {
                     h2 { "Parameters" }
                     div.scroll { (parameter_table(estimate)) }
+                    @if let Some(filter) = &estimate.filter {
+                        h2 { "Process noise" }
+                        div.scroll { (process_noise_table(filter)) }
+                    }
                     h2 { "Fit" }
                     div.scroll { (output_table(&estimate.outputs)) }
                     @for prediction in &estimate.prediction {
@@ -125,6 +131,28 @@ fn parameter_table(estimate: &Estimate) -> Markup {
                 }
             }
         }
+    }
+}
+
+fn process_noise_table(filter: &FilterEstimate) -> Markup {
+    html! {
+        table {
+            thead { tr {
+                th { "state" } th { "unit" } th.number { "start" } th.number { "intensity" }
+                th.number { "standard error" } th { "" }
+            } }
+            tbody {
+                @for noise in &filter.process_noise {
+                    tr {
+                        td { (noise.state) } td.soft { (noise.unit) }
+                        td.number.soft { (number(noise.start)) } td.number { (number(noise.estimate)) }
+                        td.number { @if let Some(error) = noise.standard_error { (number(error)) } }
+                        td.soft { (noise.remark()) }
+                    }
+                }
+            }
+        }
+        p.soft { "Outputs are predicted from sample to sample by a Kalman filter; residuals are innovations." }
     }
 }
 

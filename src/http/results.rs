@@ -16,7 +16,9 @@ use super::format::{Format, cacheable, choose};
 use super::problem::{Problem, ProblemDocument};
 use super::query::{JobId, Parameters};
 use super::{Service, jobs, models};
-use crate::estimate::{Bound, CollinearSet, ErrorBoundsKind, Estimate, Outcome, ParameterEstimate};
+use crate::estimate::{
+    Bound, CollinearSet, ErrorBoundsKind, Estimate, FilterEstimate, Outcome, ParameterEstimate,
+};
 use crate::job::EventBody;
 use crate::model::ModelDocument;
 use crate::store::{JobRecord, Part};
@@ -81,10 +83,14 @@ pub struct ParameterTable {
     /// What `standard_error` and `correlation` are made from; `null` where they would mean nothing.
     #[serde(default)]
     error_bounds: Option<ErrorBoundsKind>,
-    /// Correlation of the free parameters' errors, in the order of the free parameters. Empty when singular.
+    /// Correlation of the free parameters' errors, in the order of the free parameters; with filter error the free
+    /// process noises follow. Empty when singular.
     correlation: Vec<Vec<Option<f64>>>,
     /// Sets of parameters that the data cannot tell apart, or cannot see.
     collinear: Vec<CollinearSet>,
+    /// With filter error: process noise and gains.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    filter: Option<FilterEstimate>,
 }
 
 #[derive(Deserialize, IntoParams)]

@@ -3,11 +3,13 @@
 use indexmap::IndexMap;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 
 use super::input_design::InputDesign;
 use super::noise::NoiseColour;
-use super::{InputInterpolation, Integrator, Segment, Steps, simulate};
+use super::trajectory::simulate_disturbed;
+use super::{InputInterpolation, Integrator, Segment, Steps};
 use crate::flight::{Channel, Maneuver, Unit};
 use crate::model::{Model, Start};
 
@@ -27,6 +29,9 @@ pub struct Scenario {
     /// Parameters, in their own units; those left out have the document's start value.
     pub truth: IndexMap<String, f64>,
     pub inputs: IndexMap<String, ScenarioInput>,
+    /// By state: the intensity of white process noise, in the state's unit per √s, as of turbulence.
+    #[serde(default)]
+    pub process_noise: IndexMap<String, f64>,
     /// Outputs as they are recorded.
     pub outputs: IndexMap<String, ScenarioOutput>,
     /// Channels that the model does not make but a recording has, such as the airspeed.
@@ -110,7 +115,8 @@ impl Scenario {
             Ok((0..count).map(at).collect())
         });
         let inputs = inputs.collect::<Result<Vec<Vec<f64>>, ScenarioError>>()?;
-        let outputs = self.simulate(model, &parameters, &inputs, count);
+        let intensities = self.intensities(model)?;
+        let outputs = self.simulate(model, &parameters, &intensities, &inputs, count);
         if outputs.iter().flatten().any(|y| !y.is_finite()) {
             return Err(unfit(
                 "truth",
@@ -156,6 +162,26 @@ impl Scenario {
         Maneuver::new(time, channels).map_err(|error| unfit("scenario", error.to_string()))
     }
 
+    /// SI, by state of the model.
+    fn intensities(&self, model: &Model) -> Result<Vec<f64>, ScenarioError> {
+        let unfit = |(name, value): (&String, &f64)| {
+            let known = model.states.iter().any(|state| state.name == *name);
+            (!known || !(*value >= 0.0 && value.is_finite())).then(|| ScenarioError::Unfit {
+                what: format!("process_noise.{name}"),
+                message: "an intensity of a state of the model, 0 or more, is asked for".into(),
+            })
+        };
+        match self.process_noise.iter().find_map(unfit) {
+            Some(error) => Err(error),
+            None => Ok((model.states.iter())
+                .map(|state| {
+                    let intensity = self.process_noise.get(&state.name);
+                    intensity.copied().unwrap_or(0.0) * state.unit.scale
+                })
+                .collect()),
+        }
+    }
+
     fn parameters(&self, model: &Model) -> Result<Vec<f64>, ScenarioError> {
         let what = |name: &str| format!("truth.{name}");
         if let Some(name) = self
@@ -185,11 +211,12 @@ impl Scenario {
         model.parameters.iter().map(value).collect()
     }
 
-    /// Outputs at the samples, integrated with finer steps.
+    /// Outputs at the samples, integrated with finer steps; after each the states are disturbed.
     fn simulate(
         &self,
         model: &Model,
         parameters: &[f64],
+        intensities: &[f64],
         inputs: &[Vec<f64>],
         count: usize,
     ) -> Vec<Vec<f64>> {
@@ -210,12 +237,24 @@ impl Scenario {
             measured: Vec::new(),
         };
         let mut outputs = vec![Vec::with_capacity(count); model.outputs.len()];
-        simulate(
+        // a stream of its own, so that the measurement noise is the same with and without
+        let mut random = ChaCha8Rng::seed_from_u64(self.seed);
+        random.set_stream(1);
+        let disturb = |state: &mut [f64]| {
+            for (x, intensity) in state.iter_mut().zip(intensities) {
+                if *intensity > 0.0 {
+                    let unit: f64 = StandardNormal.sample(&mut random);
+                    *x += intensity * step.sqrt() * unit;
+                }
+            }
+        };
+        simulate_disturbed(
             model,
             Integrator::Rk4,
             InputInterpolation::Linear,
             &segment,
             parameters,
+            disturb,
             |i, y: &[f64]| {
                 if i.is_multiple_of(SUBSTEPS) {
                     outputs

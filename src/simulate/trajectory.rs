@@ -23,6 +23,27 @@ pub fn simulate<T: Scalar>(
     interpolation: InputInterpolation,
     segment: &Segment,
     parameters: &[T],
+    sink: impl FnMut(usize, &[T]),
+) {
+    simulate_disturbed(
+        model,
+        integrator,
+        interpolation,
+        segment,
+        parameters,
+        |_| {},
+        sink,
+    );
+}
+
+/// As [`simulate`], with `disturb` shown the state after each step.
+pub(super) fn simulate_disturbed<T: Scalar>(
+    model: &Model,
+    integrator: Integrator,
+    interpolation: InputInterpolation,
+    segment: &Segment,
+    parameters: &[T],
+    mut disturb: impl FnMut(&mut [T]),
     mut sink: impl FnMut(usize, &[T]),
 ) {
     let mut stepper = Stepper::new(model, integrator, interpolation);
@@ -53,6 +74,7 @@ pub fn simulate<T: Scalar>(
         sink(k, &outputs);
         if k + 1 < segment.len() {
             stepper.step(segment, k, elapsed, &mut state);
+            disturb(&mut state);
             elapsed += segment.steps.length(k);
         }
     }
