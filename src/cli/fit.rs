@@ -51,6 +51,9 @@ impl Fit {
                 table::parameters(&result.estimate, None),
                 table::outputs(&result.estimate)
             );
+            if !result.estimate.modes.is_empty() {
+                println!("\n{}", table::modes(&result.estimate.modes));
+            }
         }
         Ok(())
     }

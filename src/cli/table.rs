@@ -4,7 +4,9 @@ use comfy_table::presets::UTF8_BORDERS_ONLY;
 use comfy_table::{CellAlignment, Table};
 use indexmap::IndexMap;
 
-use crate::estimate::{Estimate, ParameterEstimate, five_digits as number};
+use crate::estimate::{
+    Coefficient, Estimate, Measure, Mode, ParameterEstimate, five_digits as number,
+};
 
 /// The parameter table; beside the truth where that is known.
 pub fn parameters(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) -> String {
@@ -67,6 +69,58 @@ pub fn outputs(estimate: &Estimate) -> String {
     for column in table.column_iter_mut().skip(2) {
         column.set_cell_alignment(CellAlignment::Right);
     }
+    table.to_string()
+}
+
+/// Nondimensional coefficients.
+pub fn coefficients(coefficients: &[Coefficient]) -> String {
+    let rows = coefficients.iter().map(|coefficient| {
+        let error = coefficient.standard_error;
+        vec![
+            coefficient.name.clone(),
+            number(coefficient.value),
+            error.map(number).unwrap_or_default(),
+            error.map_or(String::new(), |error| percent(error, coefficient.value)),
+            coefficient.from.join(", "),
+        ]
+    });
+    let mut table = Table::new();
+    table
+        .load_style(UTF8_BORDERS_ONLY)
+        .set_header(["coefficient", "value", "std. error", "%", "from"])
+        .add_rows(rows);
+    table.to_string()
+}
+
+/// Modes of the motion.
+pub fn modes(modes: &[Mode]) -> String {
+    let text = |measure: Option<Measure>| measure.map(|m| m.to_string()).unwrap_or_default();
+    let rows = modes.iter().map(|mode| {
+        vec![
+            mode.label(),
+            mode.eigenvalue(),
+            text(mode.natural_frequency),
+            text(mode.damping_ratio),
+            text(mode.period.or(mode.time_constant)),
+            text(mode.time_to_half),
+            text(mode.time_to_double),
+            mode.remark.clone(),
+        ]
+    });
+    let mut table = Table::new();
+    table
+        .load_style(UTF8_BORDERS_ONLY)
+        .set_header([
+            "mode",
+            "eigenvalue, 1/s",
+            "frequency, rad/s",
+            "damping",
+            "period or time constant, s",
+            "to half, s",
+            "to double, s",
+            "",
+        ])
+        .add_rows(rows);
     table.to_string()
 }
 

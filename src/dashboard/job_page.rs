@@ -4,7 +4,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::figure::history_svg;
 use super::style::CSS;
-use crate::estimate::{Estimate, TimeHistory, five_digits as number};
+use crate::estimate::{Estimate, Measure, Mode, TimeHistory, five_digits as number};
 use crate::flight::Finding;
 use crate::job::{Fault, Status};
 
@@ -47,6 +47,10 @@ pub fn job_page(view: &JobView<'_>) -> String {
                     div.scroll { (parameter_table(estimate)) }
                     h2 { "Fit" }
                     div.scroll { (output_table(estimate)) }
+                    @if !estimate.modes.is_empty() {
+                        h2 { "Modes" }
+                        div.scroll { (mode_table(&estimate.modes)) }
+                    }
                 }
                 @for history in view.histories {
                     h2 { "Time histories, segment " (history.segment) }
@@ -126,6 +130,29 @@ fn output_table(estimate: &Estimate) -> Markup {
                         td { (output.name) } td.soft { (output.unit) }
                         td.number { (number(output.rms)) } td.number { (number(output.bias)) }
                         td.number { (format!("{:.4}", output.r_squared)) } td.number { (format!("{:.4}", output.theil)) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn mode_table(modes: &[Mode]) -> Markup {
+    let text = |measure: Option<Measure>| measure.map(|m| m.to_string()).unwrap_or_default();
+    html! {
+        table {
+            thead { tr {
+                th { "mode" } th.number { "eigenvalue, 1/s" } th.number { "frequency, rad/s" } th.number { "damping ratio" }
+                th.number { "period, s" } th.number { "time constant, s" } th.number { "to half, s" } th.number { "to double, s" } th { "" }
+            } }
+            tbody {
+                @for mode in modes {
+                    tr {
+                        td { (mode.label()) } td.number { (mode.eigenvalue()) }
+                        td.number { (text(mode.natural_frequency)) } td.number { (text(mode.damping_ratio)) }
+                        td.number { (text(mode.period)) } td.number { (text(mode.time_constant)) }
+                        td.number { (text(mode.time_to_half)) } td.number { (text(mode.time_to_double)) }
+                        td.soft { (mode.remark) }
                     }
                 }
             }

@@ -4,6 +4,7 @@ use super::error_bounds::ErrorBounds;
 use super::evaluation::Evaluator;
 use super::fit::{fits, histories};
 use super::iterate::Iterate;
+use super::modes::modes;
 use super::problem::Problem;
 use super::report::{Estimate, Outcome, ParameterEstimate, TimeHistory};
 use super::unknowns::Unknown;
@@ -41,6 +42,7 @@ pub(super) fn answer(
         correlation: bounds.correlation.clone(),
         collinear: bounds.collinear(problem),
         samples: problem.samples(),
+        modes: modes(problem, &at.theta, bounds),
     };
     Solution {
         estimate,

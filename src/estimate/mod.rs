@@ -9,6 +9,7 @@
 //! and [`Estimate`] is the answer, with the reason why the solver stopped.
 
 mod answer;
+mod coefficients;
 mod error_bounds;
 mod evaluation;
 mod fit;
@@ -16,17 +17,21 @@ mod information;
 mod iterate;
 mod likelihood;
 mod local_sums;
+mod modes;
 mod options;
 mod output_error;
 mod problem;
 mod report;
+mod state_matrix;
 mod step;
 mod sums;
 mod unknowns;
 
 pub use answer::Solution;
+pub use coefficients::{Coefficient, coefficients};
 pub use evaluation::{Evaluator, Unusable};
 pub use likelihood::NormalEquations;
+pub use modes::{Measure, Mode};
 pub use options::{Method, Noise, NoiseStructure, Options};
 pub use output_error::{Observer, output_error};
 pub use problem::Problem;

@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::modes::Mode;
+
 /// Why the solver stopped. A result with a reason, apart from the job's own status.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
@@ -86,6 +88,9 @@ pub struct Estimate {
     pub collinear: Vec<CollinearSet>,
     /// Samples used, over all segments.
     pub samples: usize,
+    /// Modes of the motion, fastest first; none for reconstruction models.
+    #[serde(default)]
+    pub modes: Vec<Mode>,
 }
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
