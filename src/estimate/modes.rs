@@ -145,19 +145,7 @@ fn of_matrix(
         if eigenvalue.im < 0.0 {
             continue;
         }
-        let shifted = DMatrix::from_fn(n, n, |row, column| {
-            let diagonal = if row == column {
-                eigenvalue
-            } else {
-                Complex::default()
-            };
-            Complex::from(matrix.value[(row, column)]) - diagonal
-        });
-        // the singular vectors of the smallest singular value are both eigenvectors
-        let svd = shifted.try_svd(true, true, f64::EPSILON, 10_000)?;
-        let smallest = svd.singular_values.imin();
-        let left = svd.u?.column(smallest).into_owned();
-        let right: DVector<Complex<f64>> = svd.v_t?.row(smallest).adjoint();
+        let (left, right) = eigenvectors(&matrix.value, eigenvalue)?;
         let product = left.dotc(&right);
         let gradient: Vec<Complex<f64>> = (matrix.by_place.iter())
             .map(|by| left.dotc(&(by.map(Complex::from) * &right)) / product)
@@ -181,6 +169,31 @@ fn of_matrix(
     let size = |mode: &Mode| mode.real.value.hypot(mode.imaginary.value);
     modes.sort_by(|a, b| size(b).total_cmp(&size(a)));
     Some(modes)
+}
+
+/// Left and right eigenvectors by inverse iteration: with the eigenvalue known to rounding, each solution of the
+/// nearly singular equations is longer by its inverse distance, in the direction of the eigenvector.
+fn eigenvectors(
+    matrix: &DMatrix<f64>,
+    eigenvalue: Complex<f64>,
+) -> Option<(DVector<Complex<f64>>, DVector<Complex<f64>>)> {
+    const ITERATIONS: usize = 3;
+    let n = matrix.nrows();
+    // off the eigenvalue by rounding, so that the equations can be solved
+    let shift = eigenvalue + Complex::from(f64::EPSILON * matrix.norm());
+    let shifted = matrix.map(Complex::from) - DMatrix::from_diagonal_element(n, n, shift);
+    let vector = |of: DMatrix<Complex<f64>>| {
+        let equations = of.lu();
+        // no eigenvector of a model is likely to be at right angles to this
+        let mut vector = DVector::from_fn(n, |k, _| Complex::new(1.0, 0.37 * (k as f64 + 1.0)));
+        for _ in 0..ITERATIONS {
+            vector = equations.solve(&vector)?;
+            let length = vector.norm();
+            vector.unscale_mut(length);
+        }
+        Some(vector)
+    };
+    Some((vector(shifted.adjoint())?, vector(shifted)?))
 }
 
 /// An eigenvalue in the words of flight mechanics.
@@ -244,8 +257,7 @@ impl<'a> Delta<'a> {
             remark: "",
         };
         if !delta.known {
-            delta.remark =
-                "without error bounds: the data do not determine all parameters of the model";
+            delta.remark = "no error bound: the data do not determine all parameters";
             return delta;
         }
         let (real, imaginary) = (delta.deviation(1.0, 0.0), delta.deviation(0.0, 1.0));
@@ -253,7 +265,7 @@ impl<'a> Delta<'a> {
         let is_apart = real.hypot(imaginary) <= NEAR * nearest;
         if !is_apart {
             delta.known = false;
-            delta.remark = "so near to another eigenvalue that the two are not told apart: a linear error bound would not hold";
+            delta.remark = "too near to another eigenvalue for a linear error bound";
         }
         delta
     }
