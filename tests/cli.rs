@@ -171,3 +171,52 @@ fn the_catalog_can_be_read() {
         toml::from_str(&succeeds(&["model", "short-period"])).expect("a document");
     assert_eq!(document.name, "short-period");
 }
+
+#[test]
+fn derivatives_become_coefficients_and_back() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let file = |name: &str, text: &str| {
+        let path = directory.path().join(name);
+        std::fs::write(&path, text).expect("written");
+        path.to_str().expect("a path").to_string()
+    };
+    let aircraft = file(
+        "aircraft.toml",
+        "m = 17600.0\nS = 64.0\nc = 3.16\nIy = 331000.0\nV = 130.0\nrho = 0.75\n",
+    );
+    let fit = succeeds(&["fit", "data/elevator.csv", "-m", "short-period", "--json"]);
+    let fit_file = file("fit.json", &fit);
+    let table = succeeds(&["derivatives", &fit_file, "--aircraft", &aircraft]);
+    assert!(
+        table.contains("Cmq") && table.contains("std. error"),
+        "{table}"
+    );
+    let json = succeeds(&["derivatives", &fit_file, "-a", &aircraft, "--json"]);
+    let coefficients: Value = serde_json::from_str(&json).expect("JSON");
+    let lines: Vec<String> = (coefficients.as_array().expect("a list").iter())
+        .map(|c| format!("{} = {}", c["name"].as_str().expect("a name"), c["value"]))
+        .collect();
+    let back_file = file("coefficients.toml", &lines.join("\n"));
+    let back = succeeds(&[
+        "derivatives",
+        &back_file,
+        "-a",
+        &aircraft,
+        "-m",
+        "short-period",
+        "--json",
+    ]);
+    let back: Value = serde_json::from_str(&back).expect("JSON");
+    let fit: Value = serde_json::from_str(&fit).expect("JSON");
+    let mut compared = 0;
+    for row in fit["estimate"]["parameters"].as_array().expect("a list") {
+        if let Some(found) = back[row["name"].as_str().expect("a name")].as_f64() {
+            let expected = row["estimate"].as_f64().expect("a number");
+            assert!((found / expected - 1.0).abs() < 1e-9, "{row}");
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 6);
+    let useless = file("bad.toml", "m = 17600.0\nS = 64.0\nV = 130.0\nrho = 0.75\n");
+    assert!(fails(&["derivatives", &fit_file, "-a", &useless]).contains("needs"));
+}

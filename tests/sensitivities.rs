@@ -44,7 +44,8 @@ fn parameters(model: &Model) -> Vec<f64> {
     let value = |(i, info): (usize, &trimtab::model::ParameterInfo)| {
         let start = match info.document.start {
             trimtab::model::Start::Value(value) => info.unit.to_si(value),
-            trimtab::model::Start::FromData(_) if info.name == "V_e" => 130.0,
+            // a speed, which must not be near zero
+            trimtab::model::Start::FromData(_) if info.document.unit == "m/s" => 130.0,
             trimtab::model::Start::FromData(_) => 0.04,
         };
         start * 1.1 + 0.01 * (1.0 + i as f64 / 7.0)

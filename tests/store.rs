@@ -77,6 +77,7 @@ fn new_job(name: &str) -> NewJob {
         maneuvers: Vec::new(),
         channels: Default::default(),
         parameters: Default::default(),
+        constants: Default::default(),
         options: Options::default(),
     };
     NewJob {

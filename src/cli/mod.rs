@@ -3,6 +3,7 @@
 
 mod client;
 mod demo;
+mod derivatives;
 mod failure;
 mod fit;
 mod model;
@@ -43,6 +44,7 @@ enum Command {
     Watch(watch::Watch),
     Simulate(simulate::Simulate),
     Model(model::ShowModel),
+    Derivatives(derivatives::Derivatives),
     /// Print the OpenAPI document of the API.
     Openapi,
 }
@@ -61,6 +63,7 @@ pub fn main() -> ExitCode {
         Command::Watch(watch) => block_on(watch.run()),
         Command::Simulate(simulate) => simulate.run(),
         Command::Model(model) => model.run(),
+        Command::Derivatives(derivatives) => derivatives.run(),
         Command::Openapi => openapi(),
     };
     match done {

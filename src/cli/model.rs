@@ -14,7 +14,7 @@ impl ShowModel {
     pub fn run(&self) -> Result<(), Failure> {
         let Some(name) = &self.name else {
             for document in catalog::all() {
-                println!("{:24} {}", document.name, document.title);
+                println!("{:36} {}", document.name, document.title);
             }
             return Ok(());
         };

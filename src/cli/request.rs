@@ -29,6 +29,9 @@ pub struct Request {
     /// Another start value: "Ma=-3.5", or "alpha_0=first(alpha)".
     #[arg(long = "start", short, value_name = "NAME=VALUE")]
     starts: Vec<String>,
+    /// Another value of one of the model's constants: "m=17600".
+    #[arg(long = "constant", value_name = "NAME=VALUE")]
+    constants: Vec<String>,
     /// Hold a parameter at its start value.
     #[arg(long, value_name = "NAME")]
     fix: Vec<String>,
@@ -133,6 +136,13 @@ impl Request {
             let (name, formula) = pair(text, "--channel")?;
             Ok((name.to_string(), formula.to_string()))
         });
+        let constants = self.constants.iter().map(|text| {
+            let (name, value) = pair(text, "--constant")?;
+            let value = (value.parse()).map_err(|_| {
+                Failure::new(format!("--constant '{text}': '{value}' is no number"))
+            })?;
+            Ok((name.to_string(), value))
+        });
         let label = |file: &PathBuf| {
             file.file_stem()
                 .map(|stem| stem.to_string_lossy().into_owned())
@@ -156,6 +166,7 @@ impl Request {
             maneuvers: ids.iter().zip(fitted.chain(predicted)).map(usage).collect(),
             channels: channels.collect::<Result<_, Failure>>()?,
             parameters,
+            constants: constants.collect::<Result<_, Failure>>()?,
             options: Options {
                 method: if self.gauss_newton {
                     Method::GaussNewton

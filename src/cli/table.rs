@@ -5,13 +5,17 @@ use comfy_table::{CellAlignment, Table};
 use indexmap::IndexMap;
 
 use crate::estimate::{
-    Estimate, FilterEstimate, OutputFit, ParameterEstimate, five_digits as number,
+    Coefficient, Estimate, FilterEstimate, Measure, Mode, OutputFit, ParameterEstimate,
+    five_digits as number,
 };
 
 /// All tables of an estimate, and what to know beside them.
 pub fn result(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) -> String {
     let mut parts = vec![parameters(estimate, truth), outputs(&estimate.outputs)];
     parts.extend(estimate.filter.as_ref().map(process_noise));
+    if !estimate.modes.is_empty() {
+        parts.push(modes(&estimate.modes));
+    }
     for prediction in &estimate.prediction {
         let segment = &prediction.segment;
         parts.push(format!(
@@ -131,6 +135,58 @@ fn process_noise(filter: &FilterEstimate) -> String {
     for column in table.column_iter_mut().take(4).skip(2) {
         column.set_cell_alignment(CellAlignment::Right);
     }
+    table.to_string()
+}
+
+/// Nondimensional coefficients.
+pub fn coefficients(coefficients: &[Coefficient]) -> String {
+    let rows = coefficients.iter().map(|coefficient| {
+        let error = coefficient.standard_error;
+        vec![
+            coefficient.name.clone(),
+            number(coefficient.value),
+            error.map(number).unwrap_or_default(),
+            error.map_or(String::new(), |error| percent(error, coefficient.value)),
+            coefficient.from.join(", "),
+        ]
+    });
+    let mut table = Table::new();
+    table
+        .load_style(UTF8_BORDERS_ONLY)
+        .set_header(["coefficient", "value", "std. error", "%", "from"])
+        .add_rows(rows);
+    table.to_string()
+}
+
+/// Modes of the motion.
+fn modes(modes: &[Mode]) -> String {
+    let text = |measure: Option<Measure>| measure.map(|m| m.to_string()).unwrap_or_default();
+    let rows = modes.iter().map(|mode| {
+        vec![
+            mode.label(),
+            mode.eigenvalue(),
+            text(mode.natural_frequency),
+            text(mode.damping_ratio),
+            text(mode.period.or(mode.time_constant)),
+            text(mode.time_to_half),
+            text(mode.time_to_double),
+            mode.remark.clone(),
+        ]
+    });
+    let mut table = Table::new();
+    table
+        .load_style(UTF8_BORDERS_ONLY)
+        .set_header([
+            "mode",
+            "eigenvalue, 1/s",
+            "frequency, rad/s",
+            "damping",
+            "period or time constant, s",
+            "to half, s",
+            "to double, s",
+            "",
+        ])
+        .add_rows(rows);
     table.to_string()
 }
 

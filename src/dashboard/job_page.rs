@@ -7,7 +7,7 @@ use super::study::study_section;
 use super::style::CSS;
 use crate::estimate::study::DerivativeStudy;
 use crate::estimate::{
-    Estimate, FilterEstimate, OutputFit, Role, TimeHistory, five_digits as number,
+    Estimate, FilterEstimate, Measure, Mode, OutputFit, Role, TimeHistory, five_digits as number,
 };
 use crate::flight::Finding;
 use crate::job::{Fault, Status};
@@ -57,6 +57,10 @@ pub fn job_page(view: &JobView<'_>) -> String {
                     }
                     h2 { "Fit" }
                     div.scroll { (output_table(&estimate.outputs)) }
+                    @if !estimate.modes.is_empty() {
+                        h2 { "Modes" }
+                        div.scroll { (mode_table(&estimate.modes)) }
+                    }
                     @for prediction in &estimate.prediction {
                         h2 { "Prediction of segment " (prediction.segment) }
                         p { (prediction.reason) }
@@ -176,6 +180,29 @@ fn output_table(outputs: &[OutputFit]) -> Markup {
                         }
                         td.number { (format!("{:.2}", output.autocorrelation)) }
                         td.number { (format!("{:.0}", output.effective_samples)) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn mode_table(modes: &[Mode]) -> Markup {
+    let text = |measure: Option<Measure>| measure.map(|m| m.to_string()).unwrap_or_default();
+    html! {
+        table {
+            thead { tr {
+                th { "mode" } th.number { "eigenvalue, 1/s" } th.number { "frequency, rad/s" } th.number { "damping ratio" }
+                th.number { "period, s" } th.number { "time constant, s" } th.number { "to half, s" } th.number { "to double, s" } th { "" }
+            } }
+            tbody {
+                @for mode in modes {
+                    tr {
+                        td { (mode.label()) } td.number { (mode.eigenvalue()) }
+                        td.number { (text(mode.natural_frequency)) } td.number { (text(mode.damping_ratio)) }
+                        td.number { (text(mode.period)) } td.number { (text(mode.time_constant)) }
+                        td.number { (text(mode.time_to_half)) } td.number { (text(mode.time_to_double)) }
+                        td.soft { (mode.remark) }
                     }
                 }
             }

@@ -8,6 +8,7 @@ use super::evaluation::Evaluator;
 use super::fit::{fits, histories};
 use super::identifiability::{DataInformation, Identifiability};
 use super::iterate::Iterate;
+use super::modes::modes;
 use super::problem::Problem;
 use super::report::{Bound, Estimate, ParameterEstimate, TimeHistory};
 use super::stopped::Stopped;
@@ -71,6 +72,7 @@ pub(super) fn answer(
         prediction: Vec::new(),
         filter: None,
         samples: problem.samples(),
+        modes: modes(problem, &at.theta, &bounds),
     };
     Solution {
         estimate,

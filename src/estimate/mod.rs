@@ -11,6 +11,7 @@
 
 mod answer;
 mod autoregression;
+mod coefficients;
 mod coloured_residuals;
 pub mod derivatives;
 mod error_bounds;
@@ -23,6 +24,7 @@ mod information;
 mod iterate;
 mod likelihood;
 mod local_sums;
+mod modes;
 mod options;
 mod output_error;
 mod prediction;
@@ -31,6 +33,7 @@ mod process_noise;
 pub mod quasi_newton;
 mod report;
 mod role;
+mod state_matrix;
 mod step;
 mod stopped;
 pub mod study;
@@ -38,6 +41,7 @@ mod sums;
 mod unknowns;
 
 pub use answer::Solution;
+pub use coefficients::{Coefficient, coefficients};
 pub use derivatives::{Derivatives, Scaling};
 pub use error_bounds::ErrorBoundsKind;
 pub use estimator::Estimator;
@@ -48,6 +52,7 @@ pub use filter_error::{
 };
 pub use identifiability::{CorrelatedPair, DataInformation, Identifiability, NearlyCollinearSet};
 pub use likelihood::NormalEquations;
+pub use modes::{Measure, Mode};
 pub use options::{Method, Noise, NoiseStructure, Options};
 pub use output_error::{Observer, output_error};
 pub use prediction::{Prediction, Validation, predict};

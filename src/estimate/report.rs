@@ -6,6 +6,7 @@ use utoipa::ToSchema;
 use super::error_bounds::ErrorBoundsKind;
 use super::filter_error::FilterEstimate;
 use super::identifiability::Identifiability;
+use super::modes::Mode;
 use super::prediction::Prediction;
 use super::role::Role;
 
@@ -119,6 +120,9 @@ pub struct Estimate {
     /// What the filter-error estimator adds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub filter: Option<FilterEstimate>,
+    /// Modes of the motion, fastest first; none for reconstruction models.
+    #[serde(default)]
+    pub modes: Vec<Mode>,
 }
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]

@@ -1,8 +1,10 @@
-//! What was flown: channels with units, maneuvers, their sampling.
+//! What was flown: channels with units, maneuvers, their sampling; aircraft constants and derivatives.
 //!
 //! Values inside Trimtab are SI (angles in radians). A channel is converted once, when it is built;
 //! nothing behind this room ever sees a degree or a knot.
 
+mod aircraft;
+mod derivatives;
 mod dimension;
 mod fault;
 mod finding;
@@ -11,6 +13,8 @@ mod sampling;
 mod si_name;
 mod unit;
 
+pub use aircraft::Aircraft;
+pub use derivatives::{Derivative, WeightedSum, coefficients, derivatives};
 pub use dimension::Dimension;
 pub use fault::{Fault, escape};
 pub use finding::{Finding, Severity};

@@ -86,6 +86,8 @@ codes! {
     InvalidModel "invalid_model" UNPROCESSABLE_ENTITY "The model has faults";
     /// The job cannot be started. `errors` lists all faults, each with its place in the spec.
     InvalidJob "invalid_job" UNPROCESSABLE_ENTITY "The job has faults";
+    /// The aircraft's constants have faults. `errors` lists all of them.
+    InvalidAircraft "invalid_aircraft" UNPROCESSABLE_ENTITY "The aircraft's constants have faults";
     /// The service failed: a defect of ours. Report it with the `request_id`.
     Internal "internal" INTERNAL_SERVER_ERROR "The service failed";
     /// The database does not answer in time. Nothing was lost that was accepted; try again.

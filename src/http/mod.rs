@@ -6,6 +6,7 @@
 
 mod body;
 pub mod code;
+mod coefficients;
 mod compute;
 mod csv;
 mod decimate;

@@ -49,7 +49,8 @@ pub fn without_result(job: &JobRecord) -> Problem {
     }
 }
 
-async fn part(service: &Service, id: Uuid, part: Part) -> Result<String, Problem> {
+/// One part of a result, as JSON.
+pub async fn part(service: &Service, id: Uuid, part: Part) -> Result<String, Problem> {
     match service.store.result_part(id, part).await? {
         Some(json) => Ok(json),
         None => Err(without_result(&jobs::find(service, id).await?)),

@@ -237,6 +237,26 @@ fn edited(spec: &JobSpec, declared: &ModelDocument, faults: &mut Vec<Fault>) -> 
             )),
         }
     }
+    for (name, &value) in &spec.constants {
+        if let Some(constant) = document.constants.get_mut(name) {
+            constant.value = value;
+            continue;
+        }
+        let known: Vec<&str> = document.constants.keys().map(String::as_str).collect();
+        let message = format!(
+            "the model has no constant '{name}'; it has {}",
+            if known.is_empty() {
+                "none".to_string()
+            } else {
+                known.join(", ")
+            }
+        );
+        faults.push(Fault::new(
+            format!("/constants/{}", escape(name)),
+            "unknown_constant",
+            message,
+        ));
+    }
     for (name, change) in &spec.parameters {
         let Some(parameter) = document.parameters.get_mut(name) else {
             let known: Vec<&str> = document.parameters.keys().map(String::as_str).collect();

@@ -46,6 +46,14 @@ pub struct JobSpec {
     )]
     #[schema(example = json!({"q_bias": {"fixed": true, "start": 0.0}}))]
     pub parameters: IndexMap<String, ParameterOverride>,
+    /// Other values of the model's constants (mass, wing area, lever arms), each in the constant's own unit.
+    #[serde(
+        default,
+        deserialize_with = "crate::model::unique",
+        skip_serializing_if = "IndexMap::is_empty"
+    )]
+    #[schema(example = json!({"m": 17600.0}))]
+    pub constants: IndexMap<String, f64>,
     #[serde(default)]
     pub options: Options,
 }

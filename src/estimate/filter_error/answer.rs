@@ -6,6 +6,7 @@ use super::super::answer::{Solution, rows, table};
 use super::super::coloured_residuals::Colour;
 use super::super::error_bounds::ErrorBounds;
 use super::super::fit::{fits, histories_of};
+use super::super::modes::modes;
 use super::super::problem::Problem;
 use super::super::report::Estimate;
 use super::super::stopped::Stopped;
@@ -60,6 +61,7 @@ pub(super) fn answer(
         collinear,
         identifiability: None,
         prediction: Vec::new(),
+        modes: modes(problem, theta, bounds),
         samples: problem.samples(),
         filter: Some(FilterEstimate {
             process_noise: process_noise(problem, layout, at, bounds),

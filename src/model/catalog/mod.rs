@@ -3,8 +3,14 @@
 use super::ModelDocument;
 
 /// Name and text of each.
-const DOCUMENTS: [(&str, &str); 3] = [
+const DOCUMENTS: [(&str, &str); 9] = [
     ("short-period", include_str!("short-period.toml")),
+    ("phugoid", include_str!("phugoid.toml")),
+    ("longitudinal", include_str!("longitudinal.toml")),
+    (
+        "longitudinal-nonlinear",
+        include_str!("longitudinal-nonlinear.toml"),
+    ),
     (
         "lateral-directional-2",
         include_str!("lateral-directional-2.toml"),
@@ -12,6 +18,18 @@ const DOCUMENTS: [(&str, &str); 3] = [
     (
         "lateral-directional-4",
         include_str!("lateral-directional-4.toml"),
+    ),
+    (
+        "six-degrees-of-freedom",
+        include_str!("six-degrees-of-freedom.toml"),
+    ),
+    (
+        "flight-path-reconstruction",
+        include_str!("flight-path-reconstruction.toml"),
+    ),
+    (
+        "flight-path-reconstruction-attitude",
+        include_str!("flight-path-reconstruction-attitude.toml"),
     ),
 ];
 
