@@ -4,6 +4,7 @@ use super::error_bounds::ErrorBounds;
 use super::evaluation::Evaluator;
 use super::fit::{fits, histories};
 use super::iterate::Iterate;
+use super::priors;
 use super::problem::Problem;
 use super::report::{Estimate, Outcome, ParameterEstimate, TimeHistory};
 use super::unknowns::Unknown;
@@ -51,6 +52,7 @@ pub(super) fn answer(
 /// All parameters, fixed ones too, in the order of the document.
 fn table(problem: &Problem, at: &Iterate, bounds: &ErrorBounds) -> Vec<ParameterEstimate> {
     let unknowns = &problem.unknowns;
+    let prior_shares = priors::shares(unknowns, &at.information, &at.held);
     let row = |(index, unknown): (usize, &Unknown)| {
         let info = &problem.model.parameters[unknown.parameter];
         let place = unknowns.free.iter().position(|&i| i == index);
@@ -66,6 +68,9 @@ fn table(problem: &Problem, at: &Iterate, bounds: &ErrorBounds) -> Vec<Parameter
                 .unit
                 .from_si(place.map_or(unknown.start, |place| at.theta[place])),
             standard_error: standard_error.map(|error| error / info.unit.scale),
+            prior_share: place
+                .filter(|_| standard_error.is_some())
+                .and_then(|place| prior_shares[place]),
             fixed: unknown.fixed,
             at_bound: place.and_then(|place| at.held[place]),
         }

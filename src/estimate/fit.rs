@@ -49,13 +49,18 @@ pub(super) fn histories(problem: &Problem, theta: &[f64]) -> Vec<TimeHistory> {
     problem.segments.iter().enumerate().map(history).collect()
 }
 
-/// The fit of each output over all segments.
+/// The fit of each output over the samples of all segments that have a value.
 pub(super) fn fits(problem: &Problem, histories: &[TimeHistory]) -> Vec<OutputFit> {
     let fit = |(i, output): (usize, &crate::model::Quantity)| {
         let all = |pick: fn(&OutputSeries) -> &Vec<f64>| -> Vec<f64> {
+            let present = |series: &&OutputSeries, k: usize| !series.measured[k].is_nan();
             histories
                 .iter()
-                .flat_map(|history| pick(&history.outputs[i]).iter().copied())
+                .map(|history| &history.outputs[i])
+                .flat_map(|series| {
+                    let values = pick(series).iter().enumerate();
+                    values.filter_map(move |(k, &v)| present(&series, k).then_some(v))
+                })
                 .collect()
         };
         let (measured, model, residual) = (
@@ -84,6 +89,7 @@ pub(super) fn fits(problem: &Problem, histories: &[TimeHistory]) -> Vec<OutputFi
             } else {
                 0.0
             },
+            samples: measured.len(),
         }
     };
     problem.model.outputs.iter().enumerate().map(fit).collect()

@@ -3,6 +3,7 @@
 
 mod bounds;
 mod event;
+mod missing;
 mod resolve;
 mod run;
 mod spec;

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::bounds;
+use super::missing;
 use super::resolve::{self, Named};
 use super::{Fault, JobSpec, ModelSource, Prepared};
 use crate::estimate::{
@@ -15,7 +16,7 @@ use crate::estimate::{
 };
 use crate::flight::{Maneuver, escape};
 use crate::model::{ChannelFormula, Model, ModelDocument, Start};
-use crate::simulate::Segment;
+use crate::simulate::{MOST_DELAY, Segment};
 
 /// A job whose model is compiled and whose data are resolved: nothing left that bad input could break.
 pub struct Plan {
@@ -109,6 +110,16 @@ pub fn prepare(
     };
     let unknowns = Unknowns::new(&model, resolved.len(), start).map_err(|fault| vec![fault])?;
     let segments: Vec<Segment> = resolved.into_iter().map(|(segment, _)| segment).collect();
+    missing::check_samples(&model, &segments, &spec.options, &mut findings, &mut faults);
+    faults.extend(missing::check_counts(
+        &model,
+        &segments,
+        &unknowns,
+        &spec.options,
+    ));
+    if !faults.is_empty() {
+        return Err(faults);
+    }
     bounds::check_unknowns(&model, &segments, &unknowns, &spec.options)?;
     let problem = Problem::new(model, segments, unknowns, spec.options.clone());
     let prepared = Prepared {
@@ -173,6 +184,21 @@ fn no_start(problem: &Problem, why: Unusable) -> Fault {
             let message = "with the start values an output or its derivative by a parameter is not a finite number at some sample (a root, logarithm, power or quotient at zero?); give other \"start\" values, or guard the expression with if(...)";
             Fault::new("/parameters", "diverged_at_start", message)
         }
+        Unusable::Delayed { segment, delay } => {
+            let (model, delays) = (&problem.model, &problem.model.delays);
+            let (what, name) = match delays.inputs.get(delay) {
+                Some(&input) => ("input", &model.inputs[input].name),
+                None => {
+                    let output = delays.outputs[delay - delays.inputs.len()];
+                    ("output", &model.outputs[output].name)
+                }
+            };
+            let message = format!(
+                "with the start values the delay of the {what} '{name}' is more than {MOST_DELAY} samples of segment {}; give other \"start\" values, or \"lower\" and \"upper\" bounds",
+                problem.segments[segment].label
+            );
+            Fault::new("/parameters", "delay_too_long", message)
+        }
         Unusable::SingularNoise => {
             let message = "the residuals of some outputs are not independent, so that their full covariance is singular; use the structure \"diagonal\", or leave one of these outputs out";
             Fault::new("/options/noise", "singular_noise", message)
@@ -213,6 +239,7 @@ fn edited(spec: &JobSpec, declared: &ModelDocument, faults: &mut Vec<Fault>) -> 
         parameter.lower = change.lower.or(parameter.lower);
         parameter.upper = change.upper.or(parameter.upper);
         parameter.fixed = change.fixed.unwrap_or(parameter.fixed);
+        parameter.prior = change.prior.or(parameter.prior);
     }
     document
 }

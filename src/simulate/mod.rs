@@ -2,10 +2,14 @@
 //!
 //! dx/dt = f(x, u, θ), x(0) = x0(θ), y_k = g(x_k, u_k, θ), stepped once a sample by an explicit method.
 //! [`simulate`] gives y for any kind of number; [`Sensitivities`] gives y and ∂y/∂θ. A [`Scenario`] makes a
-//! maneuver of known truth.
+//! maneuver of known truth. Inputs and outputs that the model delays are delayed here: [`driven`] inputs before a
+//! run, outputs behind it.
 
 mod columns;
+mod delay_line;
+mod delayed_inputs;
 mod input_design;
+mod interpolation;
 mod linearised;
 mod method;
 mod pack;
@@ -17,6 +21,7 @@ mod stepper;
 mod trajectory;
 
 pub use columns::Columns;
+pub use delayed_inputs::{MOST_DELAY, delay_out_of_bounds, driven};
 pub use input_design::InputDesign;
 pub use method::{InputInterpolation, Integrator};
 pub use pack::{PACK, Pack, add_scaled, packs, plus, scaled};

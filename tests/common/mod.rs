@@ -2,6 +2,8 @@
 #![allow(dead_code)]
 
 pub mod flight_data;
+pub mod plans;
+pub mod preprocessing;
 pub mod process;
 pub mod published_cases;
 pub mod recordings;
