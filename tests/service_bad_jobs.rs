@@ -160,7 +160,7 @@ async fn each_fault_has_its_place_and_code() {
 }
 
 #[tokio::test]
-async fn missing_values_in_a_channel_that_is_used_are_refused() {
+async fn missing_values_of_an_input_are_refused() {
     let server = Server::start().await;
     let recording = elevator();
     let mut lines: Vec<String> = recording.lines().map(str::to_string).collect();
@@ -185,6 +185,48 @@ async fn missing_values_in_a_channel_that_is_used_are_refused() {
         faults.iter().any(|(_, code)| code == "missing_values"),
         "{faults:?}"
     );
+}
+
+#[tokio::test]
+async fn missing_values_of_an_output_do_not_count_and_stay_missing() {
+    let server = Server::start().await;
+    let recording = elevator();
+    let mut lines: Vec<String> = recording.lines().map(str::to_string).collect();
+    let header: Vec<&str> = recording.lines().next().unwrap().split(',').collect();
+    let q = header
+        .iter()
+        .position(|name| name.starts_with("q["))
+        .unwrap();
+    for (row, line) in lines.iter_mut().enumerate().skip(1) {
+        if row % 10 != 1 {
+            let mut cells: Vec<&str> = line.split(',').collect();
+            cells[q] = "";
+            *line = cells.join(",");
+        }
+    }
+    let maneuver = server.upload(&lines.join("\n")).await;
+    let id = server.submit(&job(&maneuver)).await;
+    let done = server.wait(&id).await;
+    assert_eq!(done["outcome"], "converged", "{done:#}");
+    let events = server.get(&format!("/v1/jobs/{id}/events")).await.text();
+    assert!(
+        events.contains("no value in 563 of 626 samples"),
+        "{events}"
+    );
+    let path = format!("/v1/jobs/{id}/time-histories");
+    let history = server.get(&path).await.json();
+    let output = &history["segments"][0]["outputs"][1];
+    for (row, missing) in [(0, false), (1, true), (9, true), (10, false)] {
+        assert_eq!(output["measured"][row].is_null(), missing, "{row}");
+        assert_eq!(output["residual"][row].is_null(), missing, "{row}");
+        assert!(output["model"][row].is_number());
+    }
+    let csv = server.get(&format!("{path}?format=csv")).await.text();
+    let second = csv.lines().nth(2).unwrap();
+    assert!(second.split(',').any(str::is_empty), "{second}");
+    let fit = server.get(&format!("/v1/jobs/{id}/estimate")).await.json();
+    assert_eq!(fit["outputs"][1]["samples"], 63);
+    assert_eq!(fit["outputs"][0]["samples"], 626);
 }
 
 #[tokio::test]

@@ -89,9 +89,17 @@ fn draw(
         .label_style(("sans-serif", 12))
         .draw()
         .map_err(|error| error.to_string())?;
-    chart
-        .draw_series(LineSeries::new(residual, MEASURED.stroke_width(1)))
-        .map_err(|error| error.to_string())?;
+    // a line only where samples follow each other: not across what is missing
+    if output.residual.iter().any(|residual| residual.is_nan()) {
+        chart.draw_series(
+            residual
+                .iter()
+                .map(|&point| Circle::new(point, 1, MEASURED.filled())),
+        )
+    } else {
+        chart.draw_series(LineSeries::new(residual, MEASURED.stroke_width(1)))
+    }
+    .map_err(|error| error.to_string())?;
     Ok(())
 }
 

@@ -9,6 +9,7 @@ use super::fit::{fits, histories};
 use super::identifiability::{DataInformation, Identifiability};
 use super::iterate::Iterate;
 use super::modes::modes;
+use super::priors;
 use super::problem::Problem;
 use super::report::{Bound, Estimate, ParameterEstimate, TimeHistory};
 use super::stopped::Stopped;
@@ -64,7 +65,7 @@ pub(super) fn answer(
         det_r: at.weighting.det(),
         noise_covariance: rows(&at.weighting.covariance),
         outputs: fits(problem, &histories, &colour),
-        parameters: table(problem, &at.theta, &at.held, &bounds),
+        parameters: table(problem, &at.theta, (&at.information, &at.held), &bounds),
         error_bounds: bounds.kind,
         correlation: bounds.correlation.clone(),
         collinear,
@@ -91,10 +92,11 @@ pub(super) fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
 pub(super) fn table(
     problem: &Problem,
     theta: &[f64],
-    held: &[Option<Bound>],
+    (information, held): (&DMatrix<f64>, &[Option<Bound>]),
     bounds: &ErrorBounds,
 ) -> Vec<ParameterEstimate> {
     let unknowns = &problem.unknowns;
+    let prior_shares = priors::shares(unknowns, information, held);
     let row = |(index, unknown): (usize, &Unknown)| {
         let info = &problem.model.parameters[unknown.parameter];
         let place = unknowns.free.iter().position(|&i| i == index);
@@ -114,6 +116,9 @@ pub(super) fn table(
                 .from_si(place.map_or(unknown.start, |place| theta[place])),
             standard_error: in_own_unit(&bounds.standard_errors),
             conventional_standard_error: in_own_unit(&bounds.conventional),
+            prior_share: place
+                .filter(|&place| bounds.standard_errors[place].is_some())
+                .and_then(|place| prior_shares[place]),
             fixed: unknown.fixed,
             at_bound: place.and_then(|place| held[place]),
         }

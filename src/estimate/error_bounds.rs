@@ -9,6 +9,7 @@ use super::evaluation::Evaluator;
 use super::information::Spectrum;
 use super::iterate::Iterate;
 use super::options::Noise;
+use super::priors;
 use super::problem::Problem;
 use super::report::{Bound, CollinearSet, TimeHistory};
 
@@ -97,12 +98,14 @@ impl ErrorBounds {
         bounds
     }
 
-    /// F⁻¹ becomes F⁻¹ B F⁻¹.
+    /// F⁻¹ becomes F⁻¹ B F⁻¹; what priors know is in B as it is in F.
     fn correct(&mut self, evaluator: &mut Evaluator<'_>, iterate: &Iterate, colour: &Colour) {
         let inverse = &iterate.weighting.inverse;
-        let Ok(scatter) = gradient_covariance(evaluator, &iterate.theta, inverse, colour) else {
+        let Ok(mut scatter) = gradient_covariance(evaluator, &iterate.theta, inverse, colour)
+        else {
             return;
         };
+        priors::add_information(&evaluator.problem().unknowns, &mut scatter);
         let corrected = &self.covariance * scatter * &self.covariance;
         if corrected.iter().any(|v| !v.is_finite()) {
             return;

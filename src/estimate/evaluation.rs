@@ -7,7 +7,7 @@ use super::local_sums::LocalSums;
 use super::options::{Noise, NoiseStructure};
 use super::problem::Problem;
 use super::sums::{ResidualSums, Sums, mirror};
-use crate::simulate::{Block, Sensitivities, simulate};
+use crate::simulate::{Block, Sensitivities, delay_out_of_bounds, simulate};
 
 /// Why a θ gives no cost.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -18,6 +18,9 @@ pub enum Unusable {
     NotFinite,
     /// The Riccati equation of the Kalman filter has no solution with which the filter is stable.
     NoSteadyGain { segment: usize },
+    /// An input or output is delayed by more than [`crate::simulate::MOST_DELAY`] samples, or by no number; by its
+    /// place in [`crate::model::Delays::at`].
+    Delayed { segment: usize, delay: usize },
     /// The covariance of the residuals is singular: some outputs' residuals are not independent.
     SingularNoise,
 }
@@ -62,6 +65,18 @@ impl<'p> Evaluator<'p> {
         self.problem
     }
 
+    /// Sets the parameters for a segment.
+    fn set(&mut self, segment: usize, theta: &[f64]) -> Result<(), Unusable> {
+        let problem = self.problem;
+        (problem.unknowns).parameters(segment, theta, &mut self.parameters);
+        let beyond =
+            delay_out_of_bounds(&problem.model, &problem.segments[segment], &self.parameters);
+        match beyond {
+            Some(delay) => Err(Unusable::Delayed { segment, delay }),
+            None => Ok(()),
+        }
+    }
+
     /// Residuals alone.
     pub(super) fn residuals(&mut self, theta: &[f64]) -> Result<ResidualSums, Unusable> {
         self.simulations += 1;
@@ -71,9 +86,7 @@ impl<'p> Evaluator<'p> {
         let mut sums = DMatrix::zeros(outputs, outputs);
         let mut residual = vec![0.0; outputs];
         for (index, segment) in problem.segments.iter().enumerate() {
-            problem
-                .unknowns
-                .parameters(index, theta, &mut self.parameters);
+            self.set(index, theta)?;
             let (model, integrator) = (&problem.model, options.integrator);
             simulate(
                 model,
@@ -83,7 +96,13 @@ impl<'p> Evaluator<'p> {
                 &self.parameters,
                 |k, y: &[f64]| {
                     for i in 0..outputs {
-                        residual[i] = segment.measured[i][k] - y[i];
+                        let measured = segment.measured[i][k];
+                        // a missing sample does not count, whatever the model says there
+                        residual[i] = if measured.is_nan() {
+                            0.0
+                        } else {
+                            measured - y[i]
+                        };
                         for j in if self.full { 0..i } else { i..i } {
                             sums[(i, j)] += residual[i] * residual[j];
                         }
@@ -139,9 +158,7 @@ impl<'p> Evaluator<'p> {
         }
         let mut total = Sums::zeros(outputs, unknowns, full);
         for (index, segment) in problem.segments.iter().enumerate() {
-            problem
-                .unknowns
-                .parameters(index, theta, &mut self.parameters);
+            self.set(index, theta)?;
             let mut local = LocalSums::new(problem, self.full);
             self.machinery
                 .run(segment, &self.parameters, |block| local.add(block, segment))

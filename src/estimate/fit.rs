@@ -115,6 +115,7 @@ fn output_fit(output: &Quantity, pairs: &[(f64, f64)], colour: &Autoregression) 
             covariance: share(2.0 * (spreads - common), error),
         },
         autocorrelation: colour.lag_one,
+        samples: pairs.len(),
         effective_samples: (pairs.len() as f64 * colour.effective_share()).max(1.0),
     }
 }

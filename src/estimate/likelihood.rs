@@ -1,7 +1,8 @@
 //! The negative log-likelihood, its gradient and its Hessian, from sums over the data.
 //!
 //! Where R is estimated it is the R of greatest likelihood for each θ (relaxation), and the cost is the
-//! likelihood concentrated in R: J(θ) = (N/2) ln|R(θ)| + const. Its Hessian is the information matrix less
+//! likelihood concentrated in R: J(θ) = (N/2) ln|R(θ)| + const; where outputs have values at N_i samples each,
+//! r_i = Σ e_i²/N_i and J = Σ (N_i/2) ln r_i + const. Its Hessian is the information matrix less
 //! a term for the change of R with θ; with that term the step converges faster than R merely held fixed.
 
 use std::f64::consts::TAU;
@@ -10,6 +11,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::evaluation::{Evaluator, Unusable};
 use super::options::{Noise, NoiseStructure};
+use super::priors;
+use super::problem::Problem;
 use super::sums::{ResidualSums, Sums, pair};
 
 /// All that an iteration needs to know at a θ, but for the small solve.
@@ -33,13 +36,15 @@ impl NormalEquations {
         let sums = evaluator.sums(theta)?;
         let problem = evaluator.problem();
         let noise = &problem.options.noise;
-        let samples = problem.samples();
-        let weighting = Weighting::new(noise, &sums.residuals, samples)?;
+        let weighting = Weighting::at(problem, theta, &sums.residuals)?;
+        let mut information = weighting.information(&sums);
+        let mut descent = weighting.descent(&sums);
+        priors::add(&problem.unknowns, theta, &mut information, &mut descent);
         Ok(Self {
-            information: weighting.information(&sums),
-            descent: weighting.descent(&sums),
+            information,
+            descent,
             relaxation: match noise {
-                Noise::Estimated { .. } => Some(weighting.relaxation(&sums, samples)),
+                Noise::Estimated { .. } => Some(weighting.relaxation(&sums, &problem.counts)),
                 Noise::Given { .. } => None,
             },
             weighting,
@@ -48,6 +53,11 @@ impl NormalEquations {
 
     pub fn det_r(&self) -> f64 {
         self.weighting.det()
+    }
+
+    /// J: -ln L, and what the priors add to it.
+    pub fn cost(&self) -> f64 {
+        self.weighting.cost
     }
 }
 
@@ -58,7 +68,7 @@ pub(super) struct Weighting {
     pub inverse: DMatrix<f64>,
     diagonal: bool,
     pub ln_det: f64,
-    /// -ln L
+    /// -ln L, and what the priors add to it.
     pub cost: f64,
 }
 
@@ -69,11 +79,32 @@ const SMALLEST_VARIANCE: f64 = 1e-280;
 const SMALLEST_PIVOT: f64 = 1e-10;
 
 impl Weighting {
+    /// From the residuals' sums at θ.
+    ///
     /// # Errors
     /// R is singular, or the cost is not finite.
-    pub fn new(noise: &Noise, residuals: &ResidualSums, samples: usize) -> Result<Self, Unusable> {
-        let n = samples as f64;
-        let outputs = residuals.nrows();
+    pub fn at(
+        problem: &Problem,
+        theta: &[f64],
+        residuals: &ResidualSums,
+    ) -> Result<Self, Unusable> {
+        let mut weighting = Self::new(&problem.options.noise, residuals, &problem.counts)?;
+        weighting.cost += priors::cost(&problem.unknowns, theta);
+        if weighting.cost.is_finite() {
+            Ok(weighting)
+        } else {
+            Err(Unusable::NotFinite)
+        }
+    }
+
+    /// `counts` are the samples of each output. Where R is full they are all the same: a sample then has values
+    /// of all outputs, or does not count.
+    pub fn new(
+        noise: &Noise,
+        residuals: &ResidualSums,
+        counts: &[usize],
+    ) -> Result<Self, Unusable> {
+        let n = DVector::from_iterator(counts.len(), counts.iter().map(|&n| n as f64));
         let (covariance, inverse, ln_det) = match noise {
             Noise::Given { variance } => independent(DVector::from_column_slice(variance)),
             Noise::Estimated {
@@ -81,25 +112,26 @@ impl Weighting {
             } => independent(
                 residuals
                     .diagonal()
-                    .map(|sum| (sum / n).max(SMALLEST_VARIANCE)),
+                    .zip_map(&n, |sum, n| (sum / n).max(SMALLEST_VARIANCE)),
             ),
             Noise::Estimated {
                 structure: NoiseStructure::Full,
-            } => correlated(residuals / n)?,
+            } => correlated(residuals / n[0])?,
         };
         let quadratic = inverse.component_mul(residuals).sum();
-        let cost = 0.5 * quadratic + 0.5 * n * ln_det + 0.5 * n * outputs as f64 * TAU.ln();
-        if cost.is_finite() {
-            Ok(Self {
-                covariance,
-                inverse,
-                diagonal: !noise.is_full(),
-                ln_det,
-                cost,
-            })
-        } else {
-            Err(Unusable::NotFinite)
-        }
+        let normalisation = match noise {
+            Noise::Estimated {
+                structure: NoiseStructure::Full,
+            } => n[0] * ln_det,
+            _ => n.dot(&covariance.diagonal().map(f64::ln)),
+        };
+        Ok(Self {
+            covariance,
+            inverse,
+            diagonal: !noise.is_full(),
+            ln_det,
+            cost: 0.5 * (quadratic + normalisation + n.sum() * TAU.ln()),
+        })
     }
 
     pub fn det(&self) -> f64 {
@@ -150,19 +182,20 @@ impl Weighting {
     }
 
     /// What the change of R with θ takes off the information matrix:
-    /// (N/2) tr(R⁻¹ ∂R/∂θ_a R⁻¹ ∂R/∂θ_b), with ∂R/∂θ_a = -(1/N) Σ (S_a eᵀ + e S_aᵀ).
-    pub fn relaxation(&self, sums: &Sums, samples: usize) -> DMatrix<f64> {
-        let n = samples as f64;
+    /// (N/2) tr(R⁻¹ ∂R/∂θ_a R⁻¹ ∂R/∂θ_b), with ∂R/∂θ_a = -(1/N) Σ (S_a eᵀ + e S_aᵀ); output by output, with
+    /// its own N, where R is diagonal.
+    pub fn relaxation(&self, sums: &Sums, counts: &[usize]) -> DMatrix<f64> {
         let unknowns = sums.products[0].nrows();
         let outputs = self.inverse.nrows();
         let mut term = DMatrix::zeros(unknowns, unknowns);
         if sums.gradients[0].len() == 1 {
             for (i, gradients) in sums.gradients.iter().enumerate() {
                 let scaled = &gradients[0] * self.inverse[(i, i)];
-                term += &scaled * scaled.transpose() * (2.0 / n);
+                term += &scaled * scaled.transpose() * (2.0 / counts[i] as f64);
             }
             return term;
         }
+        let n = counts[0] as f64;
         let change = |a: usize| {
             let moment = DMatrix::from_fn(outputs, outputs, |i, j| sums.gradients[i][j][a]);
             &self.inverse * (&moment + moment.transpose())

@@ -3,6 +3,7 @@
 use multiversion::multiversion;
 use nalgebra::DMatrix;
 
+use super::missing::Missing;
 use super::problem::Problem;
 use super::sums::{Sums, pair};
 use crate::simulate::{Block, PACK, Pack, Segment, add_scaled, packs, plus, scaled};
@@ -19,6 +20,7 @@ pub(super) struct LocalSums {
     gradients: Vec<Vec<Vec<Pack>>>,
     /// By output: the residuals of the block.
     block_residuals: Vec<Vec<f64>>,
+    missing: Missing,
 }
 
 impl LocalSums {
@@ -45,6 +47,7 @@ impl LocalSums {
             products,
             gradients,
             block_residuals,
+            missing: Missing::new(problem),
         }
     }
 
@@ -55,9 +58,11 @@ impl LocalSums {
             residuals.clear();
             residuals.extend(measured.iter().zip(block.output(i)).map(|(z, y)| z - y));
         }
+        self.missing
+            .leave_out(block, segment, &mut self.block_residuals);
         let residuals = &self.block_residuals;
         for i in 0..outputs {
-            let rows = block.packed_rows(i);
+            let rows = self.missing.rows(block, i);
             for j in if self.full { 0..i } else { i..i } {
                 self.residuals[(i, j)] += dot(&residuals[i], &residuals[j]);
                 let to = &mut self.products[pair(i, j, true)];
@@ -65,7 +70,7 @@ impl LocalSums {
                     to,
                     rows,
                     self.widths[i],
-                    block.packed_rows(j),
+                    self.missing.rows(block, j),
                     packs(self.widths[j]),
                 );
             }

@@ -109,8 +109,7 @@ fn search(
         let worth_it = trial == 0
             || evaluator.residuals(&theta).is_ok_and(|residuals| {
                 in_range = true;
-                let weighting =
-                    Weighting::new(&problem.options.noise, &residuals, problem.samples());
+                let weighting = Weighting::at(problem, &theta, &residuals);
                 weighting.is_ok_and(|weighting| weighting.cost <= most)
             });
         if worth_it && let Ok(next) = Iterate::at(problem, evaluator, theta) {

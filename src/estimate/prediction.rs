@@ -88,6 +88,9 @@ pub fn predict(
                     "with the estimate the simulation leaves the range of numbers at sample {}",
                     sample + 1
                 ),
+                Unusable::Delayed { .. } => {
+                    "with the estimate an input or output is delayed too long".to_string()
+                }
                 // it is simulated without a filter
                 Unusable::NotFinite | Unusable::SingularNoise | Unusable::NoSteadyGain { .. } => {
                     "with the estimate an output is not a finite number at some sample".to_string()

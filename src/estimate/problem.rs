@@ -1,5 +1,6 @@
 //! An estimation problem: a model, its data, its unknowns, and how to go about it.
 
+use super::missing;
 use super::options::Options;
 use super::unknowns::Unknowns;
 use crate::flight::Unit;
@@ -14,6 +15,8 @@ pub struct Problem {
     pub unknowns: Unknowns,
     pub options: Options,
     pub(super) columns: Columns,
+    /// By output: samples that have a value, over all segments.
+    pub(super) counts: Vec<usize>,
 }
 
 impl Problem {
@@ -26,12 +29,14 @@ impl Problem {
         };
         let free: Vec<usize> = (0..model.parameters.len()).filter(is_free).collect();
         let columns = Columns::new(&model, &free);
+        let counts = missing::counts(model.outputs.len(), &segments);
         Self {
             model,
             segments,
             unknowns,
             options,
             columns,
+            counts,
         }
     }
 

@@ -56,7 +56,7 @@ pub struct Iteration {
     /// 0 is the start value.
     #[schema(example = 3)]
     pub number: usize,
-    /// -ln L, the negative log-likelihood J(θ, R).
+    /// -ln L, the negative log-likelihood J(θ, R), plus ½ Σ ((θ - mean)/sd)² of the parameters' priors.
     #[schema(example = -4821.7)]
     pub cost: f64,
     /// det R, what the field's programs print as cost.
@@ -93,7 +93,7 @@ pub struct Estimate {
     /// Simulations with sensitivities, and simulations alone.
     pub evaluations: usize,
     pub simulations: usize,
-    /// -ln L at the estimate.
+    /// -ln L at the estimate, plus ½ Σ ((θ - mean)/sd)² of the parameters' priors.
     pub cost: f64,
     #[serde(deserialize_with = "null_as_nan")]
     pub det_r: f64,
@@ -145,6 +145,11 @@ pub struct ParameterEstimate {
     #[schema(example = 0.0200)]
     #[serde(default)]
     pub conventional_standard_error: Option<f64>,
+    /// How much of the squared bound stems from the priors, from 0 (all from the data) to 1; absent in a job
+    /// without priors.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = 0.04)]
+    pub prior_share: Option<f64>,
     pub fixed: bool,
     /// The bound at which the parameter is held.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -187,6 +192,10 @@ pub struct OutputFit {
     #[serde(default)]
     #[schema(example = 310.5)]
     pub effective_samples: f64,
+    /// Samples that have a measured value; the others do not count.
+    #[serde(default)]
+    #[schema(example = 626)]
+    pub samples: usize,
 }
 
 /// Theil's decomposition of the mean squared residual, shares that add up to 1 (all 0 where there is no residual).
@@ -229,6 +238,9 @@ pub struct TimeHistory {
 pub struct Series {
     pub name: String,
     pub unit: String,
+    /// null where there is no value.
+    #[schema(value_type = Vec<Option<f64>>)]
+    #[serde(deserialize_with = "nulls_as_nan")]
     pub values: Vec<f64>,
 }
 
@@ -236,9 +248,14 @@ pub struct Series {
 pub struct OutputSeries {
     pub name: String,
     pub unit: String,
+    /// null where the output has no value.
+    #[schema(value_type = Vec<Option<f64>>)]
+    #[serde(deserialize_with = "nulls_as_nan")]
     pub measured: Vec<f64>,
     pub model: Vec<f64>,
-    /// measured - model
+    /// measured - model; null where nothing was measured.
+    #[schema(value_type = Vec<Option<f64>>)]
+    #[serde(deserialize_with = "nulls_as_nan")]
     pub residual: Vec<f64>,
 }
 
@@ -297,6 +314,14 @@ pub(super) fn null_as_nan<'de, D: serde::Deserializer<'de>>(
     Option::<f64>::deserialize(deserializer).map(|number| number.unwrap_or(f64::NAN))
 }
 
+fn nulls_as_nan<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Vec<f64>, D::Error> {
+    let numbers = Vec::<Option<f64>>::deserialize(deserializer)?;
+    Ok(numbers
+        .into_iter()
+        .map(|number| number.unwrap_or(f64::NAN))
+        .collect())
+}
+
 /// A number for a table: five digits, as a decimal where that is readable.
 pub fn five_digits(value: f64) -> String {
     let size = value.abs();
@@ -326,9 +351,21 @@ mod tests {
             theil_shares: TheilShares::default(),
             autocorrelation: 0.0,
             effective_samples: 1.0,
+            samples: 3,
         };
         let read: OutputFit = serde_json::from_str(&serde_json::to_string(&fit).unwrap()).unwrap();
         assert!(read.r_squared.is_nan() && read.theil == 0.5);
+        let series = OutputSeries {
+            name: "a".into(),
+            unit: "-".into(),
+            measured: vec![1.0, f64::NAN],
+            model: vec![0.5, 0.5],
+            residual: vec![0.5, f64::NAN],
+        };
+        let text = serde_json::to_string(&series).unwrap();
+        assert!(text.contains("[1.0,null]"), "{text}");
+        let read: OutputSeries = serde_json::from_str(&text).unwrap();
+        assert!(read.measured[0] == 1.0 && read.measured[1].is_nan());
     }
 
     #[test]

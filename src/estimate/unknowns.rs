@@ -1,6 +1,6 @@
 //! The unknowns of a problem: parameters of the model, one for all segments or one for each.
 
-use crate::model::{Model, Per};
+use crate::model::{Model, Per, Prior};
 
 /// One unknown, SI.
 #[derive(Clone, PartialEq, Debug)]
@@ -13,6 +13,8 @@ pub struct Unknown {
     pub lower: f64,
     pub upper: f64,
     pub fixed: bool,
+    /// What was known of it before the data, SI.
+    pub prior: Option<Prior>,
 }
 
 /// All unknowns, and where each segment finds its parameters.
@@ -42,6 +44,7 @@ impl Unknowns {
             let lower = bound(info.document.lower, f64::NEG_INFINITY);
             let upper = bound(info.document.upper, f64::INFINITY);
             let fixed = info.document.fixed;
+            let prior = info.document.prior.map(|prior| prior.in_si(&info.unit));
             let own = info.document.per == Per::Maneuver;
             for (segment, places) in places.iter_mut().enumerate() {
                 if segment == 0 || own {
@@ -54,6 +57,7 @@ impl Unknowns {
                         lower,
                         upper,
                         fixed,
+                        prior,
                     });
                 }
                 places[parameter] = all.len() - 1;

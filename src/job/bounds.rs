@@ -85,10 +85,15 @@ pub(super) fn check_unknowns(
         return fault("/parameters", "nothing_to_estimate", message.to_string());
     }
     let samples: usize = segments.iter().map(Segment::len).sum();
-    if samples * outputs <= count {
+    let measured = |segment: &Segment| {
+        let values = segment.measured.iter().flatten();
+        values.filter(|z| !z.is_nan()).count()
+    };
+    let values: usize = segments.iter().map(measured).sum();
+    let priors = (0..count).filter(|&place| unknowns.at(place).prior.is_some());
+    if values + priors.count() <= count {
         let message = format!(
-            "{} measured values for {count} unknowns; more values than unknowns are needed",
-            samples * outputs
+            "{values} measured values for {count} unknowns; more values than unknowns are needed"
         );
         return fault("/maneuvers", "too_few_samples", message);
     }
@@ -98,7 +103,7 @@ pub(super) fn check_unknowns(
             structure: NoiseStructure::Full
         }
     );
-    if full && samples * outputs <= count + outputs * outputs {
+    if full && values <= count + outputs * outputs {
         let message = format!(
             "{samples} samples are too few for a full covariance of {outputs} outputs beside {count} unknowns; use the structure \"diagonal\""
         );

@@ -24,6 +24,10 @@ pub(super) fn check_options(options: &Options, model: &Model, faults: &mut Vec<F
         }
         return;
     }
+    if !model.delays.is_empty() {
+        let message = "the filter-error estimator knows no delays; fix each delay by leaving it out of the model, or use the estimator \"output_error\"";
+        fault("/options/estimator", message.to_string());
+    }
     if model.states.is_empty() {
         let message =
             "a model without states has nothing to filter; use the estimator \"output_error\"";
@@ -67,6 +71,18 @@ pub(super) fn check_data(
 ) -> Result<(), Vec<Fault>> {
     if options.estimator != Estimator::FilterError {
         return Ok(());
+    }
+    let missing = (0..model.outputs.len()).find(|&i| {
+        segments
+            .iter()
+            .any(|s| s.measured[i].iter().any(|z| z.is_nan()))
+    });
+    if let Some(output) = missing {
+        let message = format!(
+            "some samples of the output '{}' are missing, and a steady gain is that of all outputs; choose \"rows\" where all are there, leave the output out, or use the estimator \"output_error\"",
+            model.outputs[output].name
+        );
+        return Err(vec![Fault::new("/maneuvers", "missing_values", message)]);
     }
     if let Some(segment) = segments
         .iter()

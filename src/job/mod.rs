@@ -4,6 +4,7 @@
 mod bounds;
 mod event;
 mod filter;
+mod missing;
 mod resolve;
 mod run;
 mod spec;

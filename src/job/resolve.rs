@@ -205,26 +205,42 @@ pub(super) fn segment(
     index: usize,
     faults: &mut Vec<Fault>,
 ) -> Segment {
-    let mut make = |quantities: &[Quantity], role: &str| -> Vec<Vec<f64>> {
+    let mut make = |quantities: &[Quantity], role: Role| -> Vec<Vec<f64>> {
         quantities
             .iter()
             .map(|quantity| samples(spec, quantity, role, stretch, index, faults))
             .collect()
     };
     Segment {
-        inputs: make(&model.inputs, "input"),
-        measured: make(&model.outputs, "output"),
+        inputs: make(&model.inputs, Role::Input),
+        measured: make(&model.outputs, Role::Output),
         label: stretch.label.clone(),
         time: stretch.time().to_vec(),
         steps: stretch.steps.clone(),
     }
 }
 
-/// The samples of one input or output; with a fault added where they cannot be made.
+/// What a channel is to the model.
+#[derive(Clone, Copy, PartialEq)]
+enum Role {
+    Input,
+    Output,
+}
+
+impl Role {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Input => "input",
+            Self::Output => "output",
+        }
+    }
+}
+
+/// The samples of one input or output, those of an output NaN where it has no value; with a fault added where they cannot be made.
 fn samples(
     spec: &JobSpec,
     quantity: &Quantity,
-    role: &str,
+    role: Role,
     stretch: &Stretch<'_>,
     index: usize,
     faults: &mut Vec<Fault>,
@@ -253,7 +269,8 @@ fn samples(
     match formula.dimension(stretch) {
         Err(error) if mapped.is_none() => {
             let message = format!(
-                "no channel '{name}' is recorded for the model's {role}; say how to make it, as \"channels\": {{\"{name}\": \"<formula>\"}}; recorded are {}",
+                "no channel '{name}' is recorded for the model's {}; say how to make it, as \"channels\": {{\"{name}\": \"<formula>\"}}; recorded are {}",
+                role.name(),
                 stretch.names().join(", ")
             );
             return fault(error.code(), message);
@@ -261,25 +278,34 @@ fn samples(
         Err(error) => return fault(error.code(), error.to_string()),
         Ok(Some(found)) if found != wanted => {
             let message = format!(
-                "'{text}' is in {found}, the model's {role} '{name}' in {wanted}; correct the unit in the recording's header, or the formula"
+                "'{text}' is in {found}, the model's {} '{name}' in {wanted}; correct the unit in the recording's header, or the formula",
+                role.name()
             );
             return fault("unit_mismatch", message);
         }
         Ok(_) => {}
     }
-    let values = formula.samples(stretch).unwrap_or_default();
+    let mut values = formula.samples(stretch).unwrap_or_default();
+    if role == Role::Output {
+        let missing = values.iter_mut().filter(|value| !value.is_finite());
+        missing.for_each(|value| *value = f64::NAN);
+        return values;
+    }
     let missing: Vec<usize> = (0..values.len())
         .filter(|&k| !values[k].is_finite())
         .collect();
     if let Some(&first) = missing.first() {
         let message = format!(
-            "the model's {role} '{name}' ('{text}') has no value in {} row(s), first in row {}; {}",
+            "the model's input '{name}' ('{text}') has no value in {} row(s), first in row {}; {}",
             missing.len(),
             stretch.rows.start + first + 1,
             if mapped.is_some() {
-                "correct the formula where it is no number, or choose \"rows\" without them"
+                "correct the formula where it is no number (interpolated(...) fills in between values), or choose \"rows\" without them"
+                    .to_string()
             } else {
-                "choose \"rows\" without them, or upload the recording with them filled in"
+                format!(
+                    "say \"channels\": {{\"{name}\": \"interpolated({name})\"}} to fill in between values, or choose \"rows\" without them"
+                )
             }
         );
         return fault("missing_values", message);

@@ -8,15 +8,15 @@ use utoipa::ToSchema;
 
 use super::resolve::{self, Named, Stretch};
 use super::{Fault, JobKind, JobSpec, ModelSource, Prepared, study};
-use super::{bounds, filter};
+use super::{bounds, filter, missing};
 use crate::estimate::study::DerivativeStudy;
 use crate::estimate::{
-    Estimate, Estimator, Iteration, Noise, Options, Outcome, Problem, Role, Solution, TimeHistory,
-    Unknowns, Unusable, Validation, filter_error, output_error, predict,
+    Derivatives, Estimate, Estimator, Iteration, Noise, Options, Outcome, Problem, Role, Solution,
+    TimeHistory, Unknowns, Unusable, Validation, filter_error, output_error, predict,
 };
 use crate::flight::{Maneuver, escape};
 use crate::model::{ChannelFormula, Model, ModelDocument, Start};
-use crate::simulate::Segment;
+use crate::simulate::{MOST_DELAY, Segment};
 
 /// A job whose model is compiled and whose data are resolved: nothing left that bad input could break.
 pub struct Plan {
@@ -100,6 +100,16 @@ pub fn prepare(
     }
     let unknowns = unknowns(spec, &model, &fitted)?;
     let segments: Vec<Segment> = fitted.into_iter().map(|(segment, _)| segment).collect();
+    missing::check_samples(&model, &segments, &spec.options, &mut findings, &mut faults);
+    faults.extend(missing::check_counts(
+        &model,
+        &segments,
+        &unknowns,
+        &spec.options,
+    ));
+    if !faults.is_empty() {
+        return Err(faults);
+    }
     bounds::check_unknowns(&model, &segments, &unknowns, &spec.options)?;
     let mut validation = Vec::new();
     for resolved in predicted {
@@ -217,6 +227,21 @@ pub(super) fn no_start(problem: &Problem, why: Unusable) -> Fault {
             Fault::new("/parameters", "diverged_at_start", message)
         }
         Unusable::NoSteadyGain { segment } => filter::no_gain(problem, segment),
+        Unusable::Delayed { segment, delay } => {
+            let (model, delays) = (&problem.model, &problem.model.delays);
+            let (what, name) = match delays.inputs.get(delay) {
+                Some(&input) => ("input", &model.inputs[input].name),
+                None => {
+                    let output = delays.outputs[delay - delays.inputs.len()];
+                    ("output", &model.outputs[output].name)
+                }
+            };
+            let message = format!(
+                "with the start values the delay of the {what} '{name}' is more than {MOST_DELAY} samples of segment {}; give other \"start\" values, or \"lower\" and \"upper\" bounds",
+                problem.segments[segment].label
+            );
+            Fault::new("/parameters", "delay_too_long", message)
+        }
         Unusable::SingularNoise => {
             let message = "the residuals of some outputs are not independent, so that their full covariance is singular; use the structure \"diagonal\", or leave one of these outputs out";
             Fault::new("/options/noise", "singular_noise", message)
@@ -277,6 +302,7 @@ fn edited(spec: &JobSpec, declared: &ModelDocument, faults: &mut Vec<Fault>) -> 
         parameter.lower = change.lower.or(parameter.lower);
         parameter.upper = change.upper.or(parameter.upper);
         parameter.fixed = change.fixed.unwrap_or(parameter.fixed);
+        parameter.prior = change.prior.or(parameter.prior);
     }
     document
 }
@@ -338,6 +364,10 @@ fn check_options(options: &Options, model: &Model, faults: &mut Vec<Fault>) {
     if let Some(message) = options.derivatives.fault() {
         let pointer = "/options/derivatives/step";
         faults.push(Fault::new(pointer, "bad_option", message));
+    }
+    if !model.delays.is_empty() && options.derivatives != Derivatives::default() {
+        let message = "delays are known to the technique \"forward_sensitivities\" alone; choose it, or leave the delays out of the model";
+        faults.push(Fault::new("/options/derivatives", "bad_option", message));
     }
     if let Noise::Given { variance } = &options.noise {
         let outputs: Vec<&str> = model

@@ -9,7 +9,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use utoipa::ToSchema;
 
 use crate::estimate::{Options, Role};
-use crate::model::{Edit, ModelDocument, Start};
+use crate::model::{Edit, ModelDocument, Prior, Start};
 
 /// A job: a kind, a model, maneuvers, and how the one meets the others.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
@@ -159,4 +159,7 @@ pub struct ParameterOverride {
     pub upper: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fixed: Option<bool>,
+    /// What is known of it before the data.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prior: Option<Prior>,
 }

@@ -49,6 +49,10 @@ pub fn run_study(
 
 /// A study simulates very often: only what simulates fast is let in.
 pub(super) fn check(problem: &Problem) -> Result<(), Vec<Fault>> {
+    if !problem.model.delays.is_empty() {
+        let message = "only the technique \"forward_sensitivities\" knows delays, so there is nothing to compare; leave the delays out of the model";
+        return Err(vec![Fault::new("/model", "bad_option", message)]);
+    }
     let [_, central, ..] = Derivatives::all();
     let operations = study::operations(problem, &central);
     if operations <= study::MOST_OPERATIONS {

@@ -2,6 +2,7 @@
 //!
 //! All faults of a document are found in one go, as far as one does not hide another.
 
+use super::delays::Delays;
 use super::document::{ModelDocument, Start};
 use super::equations::Equations;
 use super::expression::{self, BinaryOperator, Expression, Function, Kind};
@@ -34,7 +35,8 @@ impl Model {
         }
         let slots = Slots {
             states: document.states.len(),
-            inputs: document.inputs.len(),
+            // behind the inputs themselves come the rates of those that are delayed
+            inputs: document.inputs.len() + equations.input_delays.len(),
             parameters: parameters.len(),
         };
         let mut graph = Graph::default();
@@ -43,6 +45,7 @@ impl Model {
             slots,
             graph: &mut graph,
             definitions: Vec::new(),
+            inputs: Vec::new(),
         };
         let roots = builder.build(document, &equations)?;
         let model = Self {
@@ -52,6 +55,7 @@ impl Model {
             initial_jacobian: Jacobian::derive(&mut graph, slots, &roots.initial),
             dynamics_jacobian: Jacobian::derive(&mut graph, slots, &roots.dynamics),
             observation_jacobian: Jacobian::derive(&mut graph, slots, &roots.observation),
+            delays: Delays::compile(&mut graph, slots, &roots.input_delays, &roots.output_delays),
             inputs: quantities(
                 document
                     .inputs
@@ -127,6 +131,15 @@ fn parameters(document: &ModelDocument, faults: &mut Vec<Fault>) -> Vec<Paramete
                 message,
             ));
         }
+        if let Some(prior) = parameter.prior.map(|prior| prior.in_si(&unit))
+            && !(prior.mean.is_finite() && prior.sd > 0.0 && prior.sd.powi(-2).is_normal())
+        {
+            faults.push(Fault::new(
+                format!("{pointer}/prior"),
+                "bad_prior",
+                "a prior needs a finite \"mean\" and a standard deviation \"sd\" above 0",
+            ));
+        }
         if let Start::FromData(text) = &parameter.start
             && let Err(error) = expression::parse(text)
         {
@@ -158,6 +171,9 @@ struct Roots {
     initial: Vec<NodeId>,
     dynamics: Vec<NodeId>,
     observation: Vec<NodeId>,
+    /// By index of what is delayed.
+    input_delays: Vec<(usize, NodeId)>,
+    output_delays: Vec<(usize, NodeId)>,
 }
 
 /// Turns trees into nodes of the graph.
@@ -166,6 +182,8 @@ struct Builder<'a> {
     slots: Slots,
     graph: &'a mut Graph,
     definitions: Vec<Progress>,
+    /// What equations see of each input.
+    inputs: Vec<NodeId>,
 }
 
 /// How far a definition is.
@@ -182,6 +200,23 @@ impl Builder<'_> {
         document: &ModelDocument,
         equations: &Equations,
     ) -> Result<Roots, Vec<Fault>> {
+        let mut delays = |list: &[(usize, Expression)]| -> Vec<(usize, NodeId)> {
+            list.iter()
+                .map(|(i, delay)| (*i, self.node(delay)))
+                .collect()
+        };
+        let input_delays = delays(&equations.input_delays);
+        let output_delays = delays(&equations.output_delays);
+        self.inputs = (0..document.inputs.len())
+            .map(|i| self.graph.symbol(self.slots.input(i)))
+            .collect();
+        for (place, &(i, delay)) in input_delays.iter().enumerate() {
+            let rate = self
+                .graph
+                .symbol(self.slots.input(self.inputs.len() + place));
+            let change = self.graph.multiply(rate, delay);
+            self.inputs[i] = self.graph.add(self.inputs[i], change);
+        }
         self.definitions = vec![Progress::Untouched; equations.definitions.len()];
         for i in 0..equations.definitions.len() {
             let mut path = Vec::new();
@@ -210,6 +245,8 @@ impl Builder<'_> {
             initial: all(&equations.initial),
             dynamics: all(&equations.dynamics),
             observation: all(&equations.observation),
+            input_delays,
+            output_delays,
         };
         if self.graph.is_too_large() {
             Err(vec![too_large()])
@@ -303,7 +340,9 @@ impl Builder<'_> {
             }
             Function::If => return self.graph.select(arguments[0], arguments[1], arguments[2]),
             // refused by `read_equation`
-            Function::First | Function::Mean => return self.graph.constant(f64::NAN),
+            Function::First | Function::Mean | Function::Interpolated => {
+                return self.graph.constant(f64::NAN);
+            }
         };
         self.graph.unary(unary, arguments[0])
     }
@@ -312,7 +351,11 @@ impl Builder<'_> {
         let slots = self.slots;
         match self.names.meaning(name) {
             Some(Meaning::Constant(value)) => self.graph.constant(value),
-            Some(Meaning::Input(i)) => self.graph.symbol(slots.input(i)),
+            // in a delay, which may not depend on inputs, there are none yet: refused by `Equations::read`
+            Some(Meaning::Input(i)) => match self.inputs.get(i) {
+                Some(&node) => node,
+                None => self.graph.constant(f64::NAN),
+            },
             Some(Meaning::Parameter(i)) => self.graph.symbol(slots.parameter(i)),
             Some(Meaning::State(i)) => self.graph.symbol(slots.state(i)),
             Some(Meaning::Time) => self.graph.symbol(slots.time()),

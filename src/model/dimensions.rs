@@ -56,7 +56,7 @@ pub(super) fn measure(
             _ => alike(left, right, "compare").map(|_| Some(Dimension::NONE)),
         },
         Kind::Call(function, arguments) => match (function, arguments.as_slice()) {
-            (Function::Abs | Function::First, [value]) => of(value),
+            (Function::Abs | Function::First | Function::Interpolated, [value]) => of(value),
             (Function::Sign, [value]) => of(value).map(|_| Some(Dimension::NONE)),
             (Function::Sqrt, [value]) => match of(value)? {
                 None => Ok(None),

@@ -7,6 +7,8 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use crate::flight::Unit;
+
 /// States, inputs, outputs and parameters with their units, and equations as text:
 /// dx/dt = f(x, u, θ), x(0) = x0(θ), y = g(x, u, θ).
 ///
@@ -89,6 +91,11 @@ pub struct Input {
     #[serde(default, skip_serializing_if = "String::is_empty")]
     #[schema(example = "rad")]
     pub unit: String,
+    /// By how much the model sees it later than it was recorded, s: an expression in parameters and constants.
+    /// Negative: earlier. Between samples the recording is a monotone cubic, beyond its ends the value is held.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "tau_de")]
+    pub delay: Option<String>,
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
 }
@@ -129,6 +136,11 @@ pub struct Output {
     pub unit: String,
     #[schema(example = "q + q_bias")]
     pub equation: String,
+    /// By how much it is recorded later than it happens, s: an expression in parameters and constants. Negative:
+    /// earlier. Between samples the output is a cubic, before the segment its first value, behind it its last.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "tau_alpha")]
+    pub delay: Option<String>,
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
 }
@@ -151,8 +163,33 @@ pub struct Parameter {
     /// `job`: one value for all maneuvers; `maneuver`: each segment has its own (initial states, biases, wind).
     #[serde(default, skip_serializing_if = "Per::is_job")]
     pub per: Per,
+    /// What is known of it before the data, from a wind tunnel or an earlier flight: it counts in the estimate
+    /// and in its error bounds. Of a parameter `per = "maneuver"` it holds for each of its values.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prior: Option<Prior>,
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
+}
+
+/// A normal prior, in the parameter's unit.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Prior {
+    #[schema(example = -0.5)]
+    pub mean: f64,
+    /// Standard deviation, above 0.
+    #[schema(example = 0.1, exclusive_minimum = 0.0)]
+    pub sd: f64,
+}
+
+impl Prior {
+    /// Of the same parameter in SI.
+    pub fn in_si(self, unit: &Unit) -> Self {
+        Self {
+            mean: unit.to_si(self.mean),
+            sd: self.sd * unit.scale,
+        }
+    }
 }
 
 /// Where a parameter starts: a number, or an expression in recorded channels such as

@@ -15,7 +15,7 @@ use crate::flight::{Dimension, Unit};
 #[serde(deny_unknown_fields)]
 pub struct Edit {
     pub kind: EditKind,
-    /// An output for `sensor_*`, an input for `input_*`, a state (its equation), a definition or an
+    /// An output for `sensor_*` and `output_delay`, an input for `input_*`, a state (its equation), a definition or an
     /// output for `missing_term`.
     #[schema(example = "q")]
     pub target: String,
@@ -42,6 +42,10 @@ pub enum EditKind {
     InputBias,
     /// (1 + k) u
     InputScale,
+    /// u(t - τ)
+    InputDelay,
+    /// y(t - τ)
+    OutputDelay,
     /// ψ term, added to an equation
     MissingTerm,
 }
@@ -135,6 +139,18 @@ impl Edit {
                 }
                 unit
             }
+            EditKind::InputDelay => {
+                let Some(input) = edited.inputs.get_mut(&self.target) else {
+                    return Err(self.no_target("input", document.inputs.keys()));
+                };
+                later(&mut input.delay, &name)
+            }
+            EditKind::OutputDelay => {
+                let Some(output) = edited.outputs.get_mut(&self.target) else {
+                    return Err(self.no_target("output", document.outputs.keys()));
+                };
+                later(&mut output.delay, &name)
+            }
             EditKind::MissingTerm => self.add_term(&mut edited, document, &name)?,
         };
         let parameter = Parameter {
@@ -144,6 +160,7 @@ impl Edit {
             upper: None,
             fixed: false,
             per: Per::Job,
+            prior: None,
             description: format!("{} of {}", self.kind.words(), self.target),
         };
         edited.parameters.insert(name, parameter);
@@ -197,6 +214,7 @@ impl Edit {
             EditKind::SensorBias | EditKind::InputBias => format!("{}_bias", self.target),
             EditKind::SensorScale | EditKind::InputScale => format!("{}_scale", self.target),
             EditKind::SensorDrift => format!("{}_drift", self.target),
+            EditKind::InputDelay | EditKind::OutputDelay => format!("{}_delay", self.target),
             EditKind::MissingTerm => format!("{}_term", self.target),
         };
         let numbered = (2..).map(|n| format!("{base}_{n}"));
@@ -225,9 +243,19 @@ impl EditKind {
             Self::SensorBias | Self::InputBias => "bias",
             Self::SensorScale | Self::InputScale => "scale factor, less one,",
             Self::SensorDrift => "drift",
+            Self::InputDelay | Self::OutputDelay => "time delay",
             Self::MissingTerm => "missing term",
         }
     }
+}
+
+/// Adds a parameter to a delay; the answer is its unit.
+fn later(delay: &mut Option<String>, name: &str) -> String {
+    *delay = Some(match delay {
+        Some(before) => format!("{before} + {name}"),
+        None => name.to_string(),
+    });
+    "s".to_string()
 }
 
 /// The unit of a difference: a temperature in degC differs by kelvins.

@@ -12,6 +12,9 @@ pub(super) struct Equations {
     pub initial: Vec<Expression>,
     pub dynamics: Vec<Expression>,
     pub observation: Vec<Expression>,
+    /// Delays of inputs and of outputs, by index of what is delayed.
+    pub input_delays: Vec<(usize, Expression)>,
+    pub output_delays: Vec<(usize, Expression)>,
 }
 
 impl Equations {
@@ -66,14 +69,44 @@ impl Equations {
                 )
             })
             .collect();
+        let delay = |list: &str, name: &str| format!("/{list}/{}/delay", escape(name));
+        let mut delays = |list: &str, all: &mut dyn Iterator<Item = (&String, &Option<String>)>| {
+            let delayed = |(i, (name, text)): (usize, (&String, &Option<String>))| {
+                let pointer = delay(list, name);
+                let text = text.as_deref()?;
+                Some((i, read(pointer, text, "s", Some(Dimension::SECOND))))
+            };
+            all.enumerate().filter_map(delayed).collect()
+        };
+        let mut inputs = document.inputs.iter().map(|(name, i)| (name, &i.delay));
+        let input_delays = delays("inputs", &mut inputs);
+        let mut outputs = document.outputs.iter().map(|(name, o)| (name, &o.delay));
+        let output_delays = delays("outputs", &mut outputs);
         for (name, state) in &document.states {
-            initial_is_constant(name, &state.initial, names, faults);
+            let pointer = format!("/states/{}/initial", escape(name));
+            let remedy = "make a parameter with start = \"first(<channel>)\" where the initial state is to be read off the data";
+            let code = "initial_depends_on_data";
+            depends_on_parameters_only(&pointer, &state.initial, names, (code, remedy), faults);
+        }
+        let inputs = document.inputs.iter().map(|(n, i)| ("inputs", n, &i.delay));
+        let outputs = document
+            .outputs
+            .iter()
+            .map(|(n, o)| ("outputs", n, &o.delay));
+        for (list, name, text) in inputs.chain(outputs) {
+            if let Some(text) = text {
+                let remedy = "a delay is the same all along a maneuver";
+                let code = "delay_depends_on_data";
+                depends_on_parameters_only(&delay(list, name), text, names, (code, remedy), faults);
+            }
         }
         Self {
             definitions,
             initial,
             dynamics,
             observation,
+            input_delays,
+            output_delays,
         }
     }
 }
@@ -111,7 +144,7 @@ fn read_equation(
     }
     if let Some(function) = data_function(&parsed) {
         let message = format!(
-            "{}() looks at a recording and may stand only in a parameter's start",
+            "{}() looks at a recording and may stand only in a parameter's start, or where a job says how to make a channel",
             function.name()
         );
         fault("syntax_error", message);
@@ -145,13 +178,21 @@ fn data_function(expression: &Expression) -> Option<Function> {
         Kind::Number(_) | Kind::Name(_) => None,
         Kind::Negate(inner) => data_function(inner),
         Kind::Binary(_, left, right) => data_function(left).or_else(|| data_function(right)),
-        Kind::Call(function @ (Function::First | Function::Mean), _) => Some(*function),
+        Kind::Call(function @ (Function::First | Function::Mean | Function::Interpolated), _) => {
+            Some(*function)
+        }
         Kind::Call(_, arguments) => arguments.iter().find_map(data_function),
     }
 }
 
-/// An initial state is known before anything is recorded.
-fn initial_is_constant(state: &str, text: &str, names: &Names, faults: &mut Vec<Fault>) {
+/// An initial state and a delay are known before anything is recorded.
+fn depends_on_parameters_only(
+    pointer: &str,
+    text: &str,
+    names: &Names,
+    (code, remedy): (&'static str, &str),
+    faults: &mut Vec<Fault>,
+) {
     let Ok(parsed) = expression::parse(text) else {
         return;
     };
@@ -160,12 +201,10 @@ fn initial_is_constant(state: &str, text: &str, names: &Names, faults: &mut Vec<
             names.meaning(name),
             None | Some(Meaning::Constant(_) | Meaning::Parameter(_))
         ) {
-            let message = format!(
-                "column {}: '{name}' is not a parameter or constant; make a parameter with start = \"first({name})\" where the initial state is to be read off the data",
-                span.start + 1
-            );
-            let pointer = format!("/states/{}/initial", escape(state));
-            faults.push(Fault::new(pointer, "initial_depends_on_data", message));
+            let place = span.start + 1;
+            let message =
+                format!("column {place}: '{name}' is not a parameter or constant; {remedy}");
+            faults.push(Fault::new(pointer, code, message));
         }
     }
 }

@@ -227,7 +227,7 @@ fn call_many(function: Function, arguments: Vec<Value>, on: &dyn Recorded) -> Va
         Function::Min => next().zip(next(), f64::min),
         Function::Max => next().zip(next(), f64::max),
         Function::First => match next() {
-            Value::Each(values) => Value::One(values.first().copied().unwrap_or(f64::NAN)),
+            Value::Each(values) => Value::One(present(&values).next().unwrap_or(f64::NAN)),
             one @ Value::One(_) => one,
         },
         Function::Mean => match (next(), next()) {
@@ -238,9 +238,14 @@ fn call_many(function: Function, arguments: Vec<Value>, on: &dyn Recorded) -> Va
                     .take_while(|&&t| t - time[0] < duration)
                     .count()
                     .max(1);
-                Value::One(values[..count].iter().sum::<f64>() / count as f64)
+                let values = &values[..count];
+                Value::One(present(values).sum::<f64>() / present(values).count() as f64)
             }
             (one, _) => one,
+        },
+        Function::Interpolated => match next() {
+            Value::Each(values) => Value::Each(interpolated(on.time(), values)),
+            one @ Value::One(_) => one,
         },
         _ => {
             let (condition, yes, no) = (next(), next(), next());
@@ -253,6 +258,30 @@ fn call_many(function: Function, arguments: Vec<Value>, on: &dyn Recorded) -> Va
             Value::Each(condition)
         }
     }
+}
+
+/// The values that are there.
+fn present(values: &[f64]) -> impl Iterator<Item = f64> + '_ {
+    values.iter().copied().filter(|value| !value.is_nan())
+}
+
+/// Missing values on straight lines in time between their neighbours; before the first and behind the last
+/// value nothing is known, and nothing is filled in.
+fn interpolated(time: &[f64], mut values: Vec<f64>) -> Vec<f64> {
+    let mut known: Option<usize> = None;
+    for k in 0..values.len() {
+        if values[k].is_nan() {
+            continue;
+        }
+        if let Some(before) = known {
+            for between in before + 1..k {
+                let share = (time[between] - time[before]) / (time[k] - time[before]);
+                values[between] = (1.0 - share) * values[before] + share * values[k];
+            }
+        }
+        known = Some(k);
+    }
+    values
 }
 
 #[cfg(test)]
@@ -269,12 +298,13 @@ mod tests {
             let values: &[f64] = match name {
                 "left" => &[1.0, 2.0, 3.0, 4.0],
                 "right" => &[5.0, 4.0, 3.0, f64::NAN],
+                "sparse" => &[f64::NAN, 7.0, f64::NAN, 9.0],
                 _ => return None,
             };
             Some((values, Dimension::NONE))
         }
         fn names(&self) -> Vec<String> {
-            vec!["left".to_string(), "right".to_string()]
+            ["left", "right", "sparse"].map(String::from).to_vec()
         }
     }
 
@@ -289,8 +319,11 @@ mod tests {
         let number = |text: &str| ChannelFormula::parse(text).unwrap().number(&Two);
         assert_eq!(number("mean(left, 2)"), Ok(1.5));
         assert_eq!(number("2*first(right)"), Ok(10.0));
+        // missing values do not count, but there must be some
+        assert_eq!(number("mean(right, 9)"), Ok(4.0));
+        assert_eq!(number("first(sparse)"), Ok(7.0));
         assert_eq!(
-            number("mean(right, 9)").unwrap_err().code(),
+            number("mean(sparse, 1)").unwrap_err().code(),
             "missing_values"
         );
         assert!(
@@ -302,6 +335,19 @@ mod tests {
     }
 
     #[test]
+    fn fills_in_between_values_only() {
+        let filled = |text: &str| ChannelFormula::parse(text).unwrap().samples(&Two).unwrap();
+        let sparse = filled("2*interpolated(sparse)");
+        assert!(sparse[0].is_nan());
+        assert_eq!(sparse[1..], [14.0, 16.0, 18.0]);
+        assert!(filled("interpolated(right)")[3].is_nan());
+        assert_eq!(
+            interpolated(&[0.0, 1.0, 4.0], vec![1.0, f64::NAN, 5.0]),
+            [1.0, 2.0, 5.0]
+        );
+    }
+
+    #[test]
     fn names_what_is_not_recorded() {
         let error = ChannelFormula::parse("left - middle")
             .unwrap()
@@ -309,7 +355,7 @@ mod tests {
             .unwrap_err();
         assert_eq!(
             error.to_string(),
-            "'left - middle': there is no channel 'middle'; recorded are left, right"
+            "'left - middle': there is no channel 'middle'; recorded are left, right, sparse"
         );
     }
 }

@@ -5,6 +5,7 @@
 
 pub mod catalog;
 mod compile;
+mod delays;
 mod dimensions;
 mod document;
 mod edit;
@@ -19,8 +20,9 @@ mod program;
 mod scalar;
 mod unique;
 
+pub use delays::Delays;
 pub use document::{
-    Constant, Definition, Input, ModelDocument, Output, Parameter, Per, Start, State,
+    Constant, Definition, Input, ModelDocument, Output, Parameter, Per, Prior, Start, State,
 };
 pub use edit::{Edit, EditError, EditKind};
 pub use formula::{ChannelFormula, FormulaError, Recorded};
@@ -48,6 +50,7 @@ pub struct Model {
     pub initial_jacobian: Jacobian,
     pub dynamics_jacobian: Jacobian,
     pub observation_jacobian: Jacobian,
+    pub delays: Delays,
 }
 
 /// A named quantity of a model and the unit its document gives it.

@@ -14,6 +14,8 @@ pub trait Scalar:
     + Neg<Output = Self>
 {
     fn from_f64(value: f64) -> Self;
+    /// The number without what is infinitely small about it: the real part of a complex one. Of lanes, the first.
+    fn real(self) -> f64;
     fn sin(self) -> Self;
     fn cos(self) -> Self;
     fn tan(self) -> Self;
@@ -48,6 +50,9 @@ impl Scalar for f64 {
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         value
+    }
+    fn real(self) -> f64 {
+        self
     }
     forward!(f64: sin cos tan asin acos atan tanh exp ln sqrt abs);
     #[inline(always)]
@@ -84,6 +89,9 @@ impl Scalar for f64 {
 impl Scalar for Complex64 {
     fn from_f64(value: f64) -> Self {
         Self::new(value, 0.0)
+    }
+    fn real(self) -> f64 {
+        self.re
     }
     forward!(Complex64: sin cos tan tanh exp ln sqrt);
     fn asin(self) -> Self {
@@ -181,6 +189,9 @@ impl Scalar for Lanes {
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         Self([value; LANES])
+    }
+    fn real(self) -> f64 {
+        self.0[0]
     }
     lanes_unary!(sin cos tan asin acos atan tanh exp ln sqrt abs sign);
     lanes_binary!(power atan2 less less_or_equal);

@@ -23,7 +23,10 @@ impl Columns {
         });
         let observation = &model.observation_jacobian;
         let row = |output: usize| -> Vec<usize> {
-            let own = |p: &&usize| observation.by_parameter.contains(&(output, **p));
+            let own = |p: &&usize| {
+                observation.by_parameter.contains(&(output, **p))
+                    || model.delays.output_depends_on(output, **p)
+            };
             let sees_states = observation.by_state.iter().any(|&(row, _)| row == output);
             if sees_states {
                 dynamic

@@ -72,6 +72,11 @@ impl<'m> Linearised<'m> {
         &self.values[stage * self.results + result]
     }
 
+    /// All results over the block, one after the other.
+    pub fn all_over_block(&self, stage: usize) -> &[[f64; BLOCK]] {
+        &self.values[stage * self.results..(stage + 1) * self.results]
+    }
+
     /// Whether a result changes from sample to sample.
     pub fn varies(&self, result: usize) -> bool {
         self.program.varies(result)

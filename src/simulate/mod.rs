@@ -2,11 +2,15 @@
 //!
 //! dx/dt = f(x, u, θ), x(0) = x0(θ), y_k = g(x_k, u_k, θ), stepped once a sample by an explicit method.
 //! [`simulate`] gives y for any kind of number; [`Sensitivities`] gives y and ∂y/∂θ, [`Adjoint`] the
-//! product (∂y/∂θ)ᵀ ȳ alone. A [`Scenario`] makes a maneuver of known truth.
+//! product (∂y/∂θ)ᵀ ȳ alone. A [`Scenario`] makes a maneuver of known truth. Inputs and outputs that the model delays
+//! are delayed here: [`driven`] inputs before a run, outputs behind it.
 
 mod adjoint;
 mod columns;
+mod delay_line;
+mod delayed_inputs;
 mod input_design;
+mod interpolation;
 mod linearised;
 mod march;
 mod method;
@@ -22,6 +26,7 @@ mod trajectory;
 
 pub use adjoint::{Adjoint, Checkpoints};
 pub use columns::Columns;
+pub use delayed_inputs::{MOST_DELAY, delay_out_of_bounds, driven};
 pub use input_design::InputDesign;
 pub use march::{March, Standing};
 pub use method::{InputInterpolation, Integrator, Stage};

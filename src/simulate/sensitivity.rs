@@ -9,6 +9,8 @@
 //! length of the recording.
 
 use super::columns::Columns;
+use super::delay_line::DelayLine;
+use super::delayed_inputs::driven;
 use super::linearised::{BLOCK, Linearised};
 use super::method::{InputInterpolation, Integrator, Stage};
 use super::pack::{Pack, packs};
@@ -23,15 +25,16 @@ pub struct Block<'a> {
     /// Index of the first sample.
     pub first: usize,
     pub len: usize,
-    outputs: &'a Linearised<'a>,
-    columns: &'a Columns,
-    rows: &'a [Vec<Pack>],
+    /// By output.
+    pub(super) outputs: &'a [[f64; BLOCK]],
+    pub(super) columns: &'a Columns,
+    pub(super) rows: &'a [Vec<Pack>],
 }
 
 impl Block<'_> {
     /// y of one output, sample by sample.
     pub fn output(&self, output: usize) -> &[f64] {
-        &self.outputs.over_block(0, output)[..self.len]
+        &self.outputs[output][..self.len]
     }
 
     /// ∂y/∂θ of one output at sample `k` of the block, in the order of [`Columns::of_output`].
@@ -65,6 +68,8 @@ pub struct Sensitivities<'m> {
     elapsed: [f64; BLOCK],
     /// By output: rows of ∂y/∂θ over the block.
     rows: Vec<Vec<Pack>>,
+    /// Where outputs are delayed.
+    delay_line: Option<DelayLine<'m>>,
 }
 
 impl<'m> Sensitivities<'m> {
@@ -90,6 +95,7 @@ impl<'m> Sensitivities<'m> {
             stage_states: vec![[0.0; BLOCK]; stages.len() * model.states.len()],
             elapsed: [0.0; BLOCK],
             rows: (0..columns.outputs()).map(rows).collect(),
+            delay_line: DelayLine::new(model, columns),
         }
     }
 
@@ -103,6 +109,12 @@ impl<'m> Sensitivities<'m> {
         parameters: &[f64],
         mut sink: impl FnMut(&Block<'_>),
     ) -> Result<(), Diverged> {
+        let delays = self.model.delays.at(parameters);
+        let driven = driven(self.model, segment, &delays);
+        let segment = &*driven;
+        if let Some(line) = &mut self.delay_line {
+            line.start(segment, parameters, &delays);
+        }
         self.stepper.set_parameters(parameters);
         self.dynamics.set_parameters(parameters);
         self.observation.set_parameters(parameters);
@@ -134,13 +146,17 @@ impl<'m> Sensitivities<'m> {
                 observation: &self.observation,
             };
             sweep(&block, &mut self.recursion, &mut self.rows);
-            sink(&Block {
+            let block = Block {
                 first,
                 len,
-                outputs: &self.outputs,
+                outputs: self.outputs.all_over_block(0),
                 columns: self.columns,
                 rows: &self.rows,
-            });
+            };
+            match &mut self.delay_line {
+                Some(line) => line.pass(&block, &mut sink),
+                None => sink(&block),
+            }
         }
         Ok(())
     }

@@ -1,5 +1,7 @@
 //! Simulation of a segment for any kind of number.
 
+use super::delayed_inputs::driven;
+use super::interpolation::Axis;
 use super::method::{InputInterpolation, Integrator};
 use super::segment::Segment;
 use super::stepper::Stepper;
@@ -38,6 +40,63 @@ pub fn simulate<T: Scalar>(
 
 /// As [`simulate`], with `disturb` shown the state after each step.
 pub(super) fn simulate_disturbed<T: Scalar>(
+    model: &Model,
+    integrator: Integrator,
+    interpolation: InputInterpolation,
+    segment: &Segment,
+    parameters: &[T],
+    disturb: impl FnMut(&mut [T]),
+    mut sink: impl FnMut(usize, &[T]),
+) {
+    let delays = model.delays.at(parameters);
+    let at_hand: Vec<f64> = delays.iter().map(|delay| delay.real()).collect();
+    let segment = &*driven(model, segment, &at_hand);
+    let delays = &delays[model.delays.inputs.len()..];
+    if delays.is_empty() {
+        run(
+            model,
+            integrator,
+            interpolation,
+            segment,
+            parameters,
+            disturb,
+            sink,
+        );
+        return;
+    }
+    let outputs = model.outputs.len();
+    let mut prompt = Vec::with_capacity(segment.len() * outputs);
+    let keep = |_, y: &[T]| prompt.extend_from_slice(y);
+    run(
+        model,
+        integrator,
+        interpolation,
+        segment,
+        parameters,
+        disturb,
+        keep,
+    );
+    let axis = Axis::new(segment);
+    for (k, prompt_now) in prompt.chunks_exact(outputs.max(1)).enumerate() {
+        let mut y = prompt_now.to_vec();
+        for (&output, &delay) in model.delays.outputs.iter().zip(delays) {
+            let stencil = axis.stencil(axis.before(k, delay.real()));
+            let sum = |weights: [f64; 4]| {
+                let terms = weights.into_iter().zip(stencil.samples);
+                let terms = terms.filter(|&(weight, _)| weight != 0.0);
+                terms.fold(T::from_f64(0.0), |sum, (weight, sample)| {
+                    sum + T::from_f64(weight) * prompt[sample * outputs + output]
+                })
+            };
+            let rest = T::from_f64(delay.real()) - delay;
+            y[output] = sum(stencil.weights) + sum(stencil.rates) * rest;
+        }
+        sink(k, &y);
+    }
+}
+
+/// Simulates a driven segment, outputs without their delays.
+fn run<T: Scalar>(
     model: &Model,
     integrator: Integrator,
     interpolation: InputInterpolation,

@@ -4,6 +4,8 @@
 pub mod estimation;
 pub mod filter_case;
 pub mod flight_data;
+pub mod plans;
+pub mod preprocessing;
 pub mod process;
 pub mod published_cases;
 pub mod recordings;

@@ -8,6 +8,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::estimate::evaluation::Unusable;
 use crate::estimate::likelihood::Weighting;
+use crate::estimate::priors;
 use crate::estimate::problem::Problem;
 use crate::estimate::sums::mirror;
 use crate::simulate::{Adjoint, Checkpoints};
@@ -66,7 +67,7 @@ impl<'p> CostAndGradient<'p> {
             problem.unknowns.parameters(index, theta, &mut parameters);
             let add = |k: usize, y: &[f64]| {
                 for i in 0..outputs {
-                    residual[i] = segment.measured[i][k] - y[i];
+                    residual[i] = present(segment.measured[i][k] - y[i], segment.measured[i][k]);
                     for j in if noise.is_full() { 0..i } else { i..i } {
                         sums[(i, j)] += residual[i] * residual[j];
                     }
@@ -84,7 +85,7 @@ impl<'p> CostAndGradient<'p> {
         if sums.iter().any(|v| !v.is_finite()) {
             return Err(Unusable::NotFinite);
         }
-        let weighting = Weighting::new(noise, &sums, problem.samples())?;
+        let weighting = Weighting::at(problem, theta, &sums)?;
         self.last = Some((theta.to_vec(), weighting.clone()));
         Ok(weighting)
     }
@@ -101,7 +102,7 @@ impl<'p> CostAndGradient<'p> {
             let mut own = vec![0.0; parameters.len()];
             let seed = |k: usize, y: &[f64], to: &mut [f64]| {
                 for (i, e) in residual.iter_mut().enumerate() {
-                    *e = y[i] - segment.measured[i][k];
+                    *e = present(y[i] - segment.measured[i][k], segment.measured[i][k]);
                 }
                 weighting.weighted(&residual, to);
             };
@@ -114,6 +115,7 @@ impl<'p> CostAndGradient<'p> {
                 }
             }
         }
+        priors::add_gradient(&problem.unknowns, theta, &mut total);
         if total.iter().all(|v: &f64| v.is_finite()) {
             Ok(total)
         } else {
@@ -126,4 +128,9 @@ impl<'p> CostAndGradient<'p> {
         let kept: usize = self.checkpoints.iter().map(Checkpoints::bytes).sum();
         kept + self.machinery.bytes()
     }
+}
+
+/// A residual; 0 where nothing was measured, whatever the model says there.
+fn present(residual: f64, measured: f64) -> f64 {
+    if measured.is_nan() { 0.0 } else { residual }
 }

@@ -117,6 +117,11 @@ pub fn columns<P: Perturbation>(
         for (i, y) in y.iter_mut().enumerate() {
             let measured = &segment.measured[i][first..until];
             y.iter_mut().zip(measured).for_each(|(y, z)| *y = z - *y);
+            // a missing sample does not count
+            for k in (0..len).filter(|&k| measured[k].is_nan()) {
+                y[k] = 0.0;
+                slopes[i].row_mut(k).fill(0.0);
+            }
         }
         sink(&Columns {
             residuals: &y,

@@ -55,7 +55,7 @@ pub(super) fn answer(
         det_r: at.weighting.det(),
         noise_covariance: rows(&at.weighting.covariance),
         outputs: fits(problem, &histories, &Colour::of(&histories)),
-        parameters: table(problem, theta, &at.held, bounds),
+        parameters: table(problem, theta, (&at.information, &at.held), bounds),
         error_bounds: bounds.kind,
         correlation: bounds.correlation.clone(),
         collinear,

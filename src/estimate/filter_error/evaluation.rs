@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::super::evaluation::Unusable;
 use super::super::likelihood::Weighting;
 use super::super::options::{Noise, NoiseStructure};
+use super::super::priors;
 use super::super::problem::Problem;
 use super::super::sums::{ResidualSums, Sums, mirror, pair};
 use super::gain::{Gain, Setting};
@@ -79,10 +80,12 @@ impl<'p> FilterEvaluator<'p> {
         let weight = self.start_noise.inverse.clone();
         let (sums, _) = self.sums(z, &weight)?;
         let problem = self.problem;
-        let weighting = Weighting::new(&problem.options.noise, &sums.residuals, problem.samples())?;
+        let weighting = Weighting::at(problem, z, &sums.residuals)?;
+        let mut prior = DVector::zeros(z.len());
+        priors::add_gradient(&problem.unknowns, z, &mut prior);
         Ok(FilterEquations {
             cost: weighting.cost,
-            descent: weighting.descent(&sums),
+            descent: weighting.descent(&sums) - prior,
         })
     }
 

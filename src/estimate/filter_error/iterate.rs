@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::super::evaluation::Unusable;
 use super::super::likelihood::Weighting;
 use super::super::options::Noise;
+use super::super::priors;
 use super::super::problem::Problem;
 use super::super::report::{Bound, Iteration};
 use super::super::step::Newton;
@@ -51,15 +52,16 @@ impl Iterate {
         let problem = evaluator.problem;
         let (sums, shares) = evaluator.sums(&z, &gain_noise.inverse)?;
         let noise = &problem.options.noise;
-        let samples = problem.samples();
-        let weighting = Weighting::new(noise, &sums.residuals, samples)?;
-        let descent = weighting.descent(&sums);
+        let weighting = Weighting::at(problem, &z, &sums.residuals)?;
+        let mut information = weighting.information(&sums);
+        let mut descent = weighting.descent(&sums);
+        priors::add(&problem.unknowns, &z, &mut information, &mut descent);
         let limit = Limit::new(&evaluator.layout, &shares, &descent);
         let reduced = |full: &DMatrix<f64>| limit.reduction.tr_mul(&(full * &limit.reduction));
-        let information = reduced(&weighting.information(&sums));
+        let information = reduced(&information);
         let descent = limit.reduction.tr_mul(&descent);
         let relaxation = match noise {
-            Noise::Estimated { .. } => Some(reduced(&weighting.relaxation(&sums, samples))),
+            Noise::Estimated { .. } => Some(reduced(&weighting.relaxation(&sums, &problem.counts))),
             Noise::Given { .. } => None,
         };
         let held = held(evaluator, &z, &descent, &limit);

@@ -187,6 +187,6 @@ fn trial(
     let weight = &current.gain_noise.inverse;
     restore(evaluator, &mut z, weight, &current.limit.places)?;
     let innovations = evaluator.innovations(&z, weight, |_, _, _| {})?;
-    let weighting = Weighting::new(&problem.options.noise, &innovations, problem.samples())?;
+    let weighting = Weighting::at(problem, &z, &innovations)?;
     Ok(Trial { z, weighting })
 }

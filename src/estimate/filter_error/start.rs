@@ -40,7 +40,7 @@ pub(super) fn gain_noise(problem: &Problem) -> Result<Weighting, Unusable> {
             structure: NoiseStructure::Diagonal,
         },
     };
-    Weighting::new(&noise, &sums, problem.samples())
+    Weighting::new(&noise, &sums, &problem.counts)
 }
 
 /// Start values of the intensities, by state, SI: with f² Δt Σ_j C_ji²/r_j = share² a state that hardly moves by

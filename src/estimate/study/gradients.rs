@@ -100,7 +100,13 @@ fn direct(
         let done = machinery.run(segment, &parameters, |block| {
             for k in 0..block.len {
                 for (output, e) in residual.iter_mut().enumerate() {
-                    *e = segment.measured[output][block.first + k] - block.output(output)[k];
+                    let measured = segment.measured[output][block.first + k];
+                    // a missing sample does not count
+                    *e = if measured.is_nan() {
+                        0.0
+                    } else {
+                        measured - block.output(output)[k]
+                    };
                 }
                 weighting.weighted(&residual, &mut weighted);
                 for (output, own) in own.iter_mut().enumerate() {

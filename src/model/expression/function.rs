@@ -1,7 +1,7 @@
 //! The functions that equations may call.
 
-/// A function by name. `first` and `mean` look at a whole recording and are allowed only where a
-/// parameter's start value is worked out.
+/// A function by name. `first`, `mean` and `interpolated` look at a whole recording: they are allowed only in
+/// channel formulas and where a parameter's start value is worked out.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Function {
     Sin,
@@ -22,9 +22,10 @@ pub enum Function {
     If,
     First,
     Mean,
+    Interpolated,
 }
 
-const ALL: [(&str, Function, usize); 18] = [
+const ALL: [(&str, Function, usize); 19] = [
     ("sin", Function::Sin, 1),
     ("cos", Function::Cos, 1),
     ("tan", Function::Tan, 1),
@@ -43,6 +44,7 @@ const ALL: [(&str, Function, usize); 18] = [
     ("if", Function::If, 3),
     ("first", Function::First, 1),
     ("mean", Function::Mean, 2),
+    ("interpolated", Function::Interpolated, 1),
 ];
 
 impl Function {
@@ -83,6 +85,6 @@ mod tests {
             assert_eq!(Function::find(name), Some(function));
             assert_eq!((function.name(), function.arguments()), (name, count));
         }
-        assert_eq!(Function::Mean as usize + 1, ALL.len());
+        assert_eq!(Function::Interpolated as usize + 1, ALL.len());
     }
 }

@@ -1,0 +1,64 @@
+//! Jobs prepared and run in the process, without a server.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use indexmap::IndexMap;
+use serde_json::{Value, json};
+use trimtab::estimate::ParameterEstimate;
+use trimtab::flight::{Channel, Maneuver, Unit};
+use trimtab::job::{self, Fault, JobResult, JobSpec, ModelSource, Plan};
+use trimtab::model::catalog;
+
+/// A recording of pure numbers, on the time axis `time`.
+pub fn recording(time: Vec<f64>, channels: &[(&str, Vec<f64>)]) -> Arc<Maneuver> {
+    let channel = |(name, values): &(&str, Vec<f64>)| {
+        let channel = Channel::from_recorded("-", Unit::NONE, values.clone());
+        (name.to_string(), channel)
+    };
+    let channels: IndexMap<String, Channel> = channels.iter().map(channel).collect();
+    Arc::new(Maneuver::new(time, channels).expect("a maneuver"))
+}
+
+/// A plan for a model, by catalog name or as a document, with `changes` in the spec.
+pub fn try_plan(
+    model: Value,
+    changes: Value,
+    maneuvers: &[Arc<Maneuver>],
+) -> Result<Plan, Vec<Fault>> {
+    let uses: Vec<Value> = maneuvers
+        .iter()
+        .map(|maneuver| json!({"id": maneuver.digest()}))
+        .collect();
+    let mut spec = json!({"model": model, "maneuvers": uses});
+    for (key, value) in changes.as_object().expect("an object") {
+        spec[key] = value.clone();
+    }
+    let spec: JobSpec = serde_json::from_value(spec).expect("a spec");
+    let document = match &spec.model {
+        ModelSource::Document(document) => (**document).clone(),
+        ModelSource::Reference(name) => catalog::find(name).expect("a catalog model"),
+    };
+    job::prepare(&spec, &document, maneuvers)
+}
+
+pub fn plan(model: Value, changes: Value, maneuvers: &[Arc<Maneuver>]) -> Plan {
+    try_plan(model, changes, maneuvers).unwrap_or_else(|faults| panic!("{faults:#?}"))
+}
+
+pub fn solve(model: Value, changes: Value, maneuvers: &[Arc<Maneuver>]) -> JobResult {
+    job::run(&plan(model, changes, maneuvers), &mut |_| {
+        ControlFlow::Continue(())
+    })
+    .unwrap_or_else(|faults| panic!("{faults:#?}"))
+}
+
+pub fn parameter<'r>(result: &'r JobResult, name: &str) -> &'r ParameterEstimate {
+    let mut all = result.estimate.parameters.iter();
+    all.find(|p| p.name == name).expect("the parameter")
+}
+
+/// Numbers from -0.5 to 0.5 without structure.
+pub fn scatter(k: usize, seed: f64) -> f64 {
+    ((k as f64 * 12.9898 + seed).sin() * 43_758.547).fract() / 2.0
+}
