@@ -171,3 +171,20 @@ fn the_catalog_can_be_read() {
         toml::from_str(&succeeds(&["model", "short-period"])).expect("a document");
     assert_eq!(document.name, "short-period");
 }
+
+#[test]
+fn a_recording_can_be_predicted_instead_of_fitted() {
+    let table = succeeds(&[
+        "fit",
+        "data/aileron.csv",
+        "--validate",
+        "data/rudder.csv",
+        "--model",
+        "lateral-directional-4",
+    ]);
+    let (fitted, predicted) = table.split_once("prediction of rudder:").expect("both");
+    assert!(
+        fitted.contains("Theil") && predicted.contains("Theil"),
+        "{table}"
+    );
+}
