@@ -220,3 +220,20 @@ fn derivatives_become_coefficients_and_back() {
     let useless = file("bad.toml", "m = 17600.0\nS = 64.0\nV = 130.0\nrho = 0.75\n");
     assert!(fails(&["derivatives", &fit_file, "-a", &useless]).contains("needs"));
 }
+
+#[test]
+fn a_recording_can_be_predicted_instead_of_fitted() {
+    let table = succeeds(&[
+        "fit",
+        "data/aileron.csv",
+        "--validate",
+        "data/rudder.csv",
+        "--model",
+        "lateral-directional-4",
+    ]);
+    let (fitted, predicted) = table.split_once("prediction of rudder:").expect("both");
+    assert!(
+        fitted.contains("Theil") && predicted.contains("Theil"),
+        "{table}"
+    );
+}

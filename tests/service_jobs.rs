@@ -447,3 +447,38 @@ async fn two_clients_at_once_get_their_own_answers() {
     };
     tokio::join!(fit(1), fit(2), fit(3), fit(4), fit(5), fit(6));
 }
+
+#[tokio::test]
+async fn a_validation_maneuver_has_its_prediction_and_its_histories() {
+    let server = Server::start().await;
+    let maneuver = server.upload(&elevator()).await;
+    let mut spec = job(&maneuver);
+    spec["maneuvers"] = json!([
+        {"id": maneuver, "label": "fitted", "rows": [1, 400]},
+        {"id": maneuver, "label": "predicted", "rows": [100, 626], "role": "validation"},
+    ]);
+    let id = server.submit(&spec).await;
+    let done = server.wait(&id).await;
+    assert_eq!(done["status"], "succeeded", "{done:#}");
+    let estimate = server.get(&format!("/v1/jobs/{id}/estimate")).await.json();
+    assert_eq!(estimate["samples"], 400);
+    let prediction = &estimate["prediction"][0];
+    assert_eq!(
+        (&prediction["segment"], &prediction["samples"]),
+        (&json!("predicted"), &json!(527))
+    );
+    assert!(prediction["outputs"][0]["theil_shares"]["covariance"].is_number());
+    for endpoint in ["time-histories", "residuals"] {
+        let segments = server
+            .get(&format!("/v1/jobs/{id}/{endpoint}"))
+            .await
+            .json();
+        let roles = [
+            &segments["segments"][0]["role"],
+            &segments["segments"][1]["role"],
+        ];
+        assert_eq!(roles, [&json!("estimation"), &json!("validation")]);
+    }
+    let page = server.get(&format!("/jobs/{id}")).await.text();
+    assert!(page.contains("Prediction of segment predicted"), "{page}");
+}
