@@ -2,7 +2,9 @@
 
 use super::Fault;
 use super::bounds::JOB_TOO_LARGE;
-use crate::estimate::{Estimator, Options, Problem, Unknowns, process_noise_names};
+use crate::estimate::{
+    Estimator, Noise, NoiseStructure, Options, Problem, Unknowns, process_noise_names,
+};
 use crate::flight::escape;
 use crate::model::Model;
 use crate::simulate::{Segment, Steps};
@@ -97,7 +99,12 @@ pub(super) fn check_data(
     let (states, outputs) = (model.states.len() as f64, model.outputs.len() as f64);
     let columns = unknowns.len() as f64 + states;
     let samples: usize = segments.iter().map(Segment::len).sum();
-    let pairs = outputs * outputs;
+    let pairs = match options.noise {
+        Noise::Estimated {
+            structure: NoiseStructure::Full,
+        } => outputs * outputs,
+        _ => outputs,
+    };
     let stages = options.integrator.stage_count() as f64;
     // of the recursion and the sums, and of one Lyapunov equation for each unknown and segment
     let along =

@@ -61,7 +61,7 @@ pub struct JobSpec {
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum JobKind {
-    /// Output-error estimation.
+    /// Estimation of parameters, by `options.estimator`.
     #[default]
     Estimate,
     /// Output-error estimation, and then all derivative techniques compared on the same problem: errors, costs,

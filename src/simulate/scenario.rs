@@ -166,7 +166,7 @@ impl Scenario {
     fn intensities(&self, model: &Model) -> Result<Vec<f64>, ScenarioError> {
         let unfit = |(name, value): (&String, &f64)| {
             let known = model.states.iter().any(|state| state.name == *name);
-            (!known || !(*value >= 0.0 && value.is_finite())).then(|| ScenarioError::Unfit {
+            (!(known && *value >= 0.0 && value.is_finite())).then(|| ScenarioError::Unfit {
                 what: format!("process_noise.{name}"),
                 message: "an intensity of a state of the model, 0 or more, is asked for".into(),
             })

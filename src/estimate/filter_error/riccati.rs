@@ -46,8 +46,8 @@ impl SteadyCovariance {
             p += Lyapunov::new(&(&a - &p * &g))?.solve(&residual(&p));
         }
         let terms = (&a * &p).norm() + q.norm();
-        // written so that a residual that is no number is refused
-        if !(residual(&p).norm() <= LARGEST_RESIDUAL * terms) {
+        let left = residual(&p).norm();
+        if left.is_nan() || left > LARGEST_RESIDUAL * terms {
             return None;
         }
         let lyapunov = Lyapunov::new(&(&a - &p * &g))?;
