@@ -253,7 +253,7 @@ impl<'a> Delta<'a> {
         let mut delta = Self {
             bounds,
             gradient,
-            known: !bounds.correlation.is_empty(),
+            known: !bounds.correlation.is_empty() || bounds.standard_errors.is_empty(),
             remark: "",
         };
         if !delta.known {
