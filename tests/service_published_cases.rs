@@ -4,7 +4,6 @@
 mod common;
 
 use std::collections::HashMap;
-use std::path::Path;
 
 use common::published_cases::{Case, read};
 use common::server::Server;
@@ -15,12 +14,10 @@ use trimtab::estimate::{Estimate, ParameterEstimate};
 /// errors) from the optimum that we converge to.
 const WITHIN_STANDARD_ERRORS: f64 = 0.05;
 
-async fn estimate(server: &Server, directory: &Path, case: &Case, method: &str) -> Estimate {
+async fn estimate(server: &Server, case: &Case, method: &str) -> Estimate {
     let mut maneuvers = Vec::new();
-    for (file, rows) in &case.segments {
-        let recording = std::fs::read_to_string(directory.join(file)).unwrap();
-        maneuvers
-            .push(json!({"id": server.upload(&recording).await, "rows": rows, "gaps": "join"}));
+    for (recording, rows) in &case.segments {
+        maneuvers.push(json!({"id": server.upload(recording).await, "rows": rows, "gaps": "join"}));
     }
     let spec = json!({
         "name": case.name,
@@ -40,14 +37,27 @@ async fn estimate(server: &Server, directory: &Path, case: &Case, method: &str) 
     serde_json::from_value(answer.json()).unwrap()
 }
 
-async fn reproduces(name: &str) {
+/// By name, and segment where each has its own and there are several.
+fn by_name(estimate: &Estimate) -> HashMap<(&str, Option<&str>), &ParameterEstimate> {
+    let rows = estimate.parameters.iter();
+    let alone = rows
+        .clone()
+        .all(|row| row.segment.as_deref().unwrap_or("1") == "1");
+    rows.map(|row| {
+        let segment = row.segment.as_deref().filter(|_| !alone);
+        ((row.name.as_str(), segment), row)
+    })
+    .collect()
+}
+
+async fn reproduces(name: &str, within: f64) {
     let Some(directory) = common::flight_data::directory(name) else {
         return;
     };
     let server = Server::start().await;
     let case = read(&directory, name);
     for method in ["levenberg_marquardt", "gauss_newton"] {
-        let estimate = estimate(&server, &directory, &case, method).await;
+        let estimate = estimate(&server, &case, method).await;
         let excess = estimate.det_r / case.det_r - 1.0;
         println!(
             "{name} {method}: {} iterations, det R {:e} ({excess:+.1e})",
@@ -58,18 +68,14 @@ async fn reproduces(name: &str) {
             "{name}: det R {excess:e} above the reference's"
         );
 
-        let found: HashMap<&str, &ParameterEstimate> = estimate
-            .parameters
-            .iter()
-            .map(|parameter| (parameter.name.as_str(), parameter))
-            .collect();
-        for (parameter, reference, deviation) in &case.reference {
-            let ours = found[parameter.as_str()];
+        let found = by_name(&estimate);
+        for (parameter, segment, reference, deviation) in &case.reference {
+            let ours = found[&(parameter.as_str(), segment.as_deref())];
             // the reference knows of white residuals only
-            let standard_error = (ours.conventional_standard_error).expect("the data see it");
+            let standard_error = ours.conventional_standard_error.expect("the data see it");
             let distance = (ours.estimate - reference).abs() / standard_error;
             assert!(
-                distance < WITHIN_STANDARD_ERRORS,
+                distance < within,
                 "{name} {parameter}: {distance} standard errors"
             );
             let ratio = standard_error / deviation;
@@ -83,20 +89,90 @@ async fn reproduces(name: &str) {
 
 #[tokio::test]
 async fn lateral_directional_with_accelerations() {
-    reproduces("TC01").await;
+    reproduces("TC01", WITHIN_STANDARD_ERRORS).await;
 }
 
 #[tokio::test]
 async fn lateral_directional_two_states() {
-    reproduces("TC03_ailrud1").await;
+    reproduces("TC03_ailrud1", WITHIN_STANDARD_ERRORS).await;
 }
 
 #[tokio::test]
 async fn nonlinear_longitudinal() {
-    reproduces("TC04").await;
+    reproduces("TC04", WITHIN_STANDARD_ERRORS).await;
 }
 
 #[tokio::test]
 async fn short_period() {
-    reproduces("TC11_elv1").await;
+    reproduces("TC11_elv1", WITHIN_STANDARD_ERRORS).await;
+}
+
+#[tokio::test]
+async fn flight_path_reconstruction_of_three_maneuvers() {
+    reproduces("TC22", WITHIN_STANDARD_ERRORS).await;
+}
+
+#[tokio::test]
+async fn flight_path_reconstruction_with_initial_states_of_each_maneuver() {
+    reproduces("TC22_x0free", WITHIN_STANDARD_ERRORS).await;
+}
+
+#[tokio::test]
+async fn flight_path_reconstruction_with_biases_of_each_maneuver() {
+    reproduces("TC32", WITHIN_STANDARD_ERRORS).await;
+}
+
+/// No states; smoothed and differentiated channels. The reference stops further out than elsewhere: its det R is 2.0e-5
+/// above ours, which with N = 3001 samples is √(N 2.0e-5) = 0.245 standard errors from the minimum.
+#[tokio::test]
+async fn quasi_steady_stall() {
+    reproduces("TC27_qst01", 0.245).await;
+}
+
+/// The reference takes a delayed signal from a straight line through the last two samples, which for the two negative
+/// delays here is an extrapolation; ours is a cubic between the samples to both sides (`tests/delays.rs` shows which
+/// is nearer to the truth), and fits better: det R is 0.28 % lower. Delays, and the calibrations of the delayed
+/// vanes, differ by what the interpolations do, up to one standard error; all else is the same model and agrees.
+#[tokio::test]
+async fn flight_path_reconstruction_with_time_delays() {
+    let name = "TC33";
+    let Some(directory) = common::flight_data::directory(name) else {
+        return;
+    };
+    let server = Server::start().await;
+    let case = read(&directory, name);
+    let estimate = estimate(&server, &case, "levenberg_marquardt").await;
+    let excess = estimate.det_r / case.det_r - 1.0;
+    println!(
+        "{name}: {} iterations, det R {:e} ({excess:+.1e})",
+        estimate.iterations, estimate.det_r
+    );
+    let found = by_name(&estimate);
+    let mut worst = (0.0_f64, 0.0_f64);
+    for (parameter, segment, reference, deviation) in &case.reference {
+        let ours = found[&(parameter.as_str(), segment.as_deref())];
+        let standard_error = ours.standard_error.expect("the data see it");
+        let distance = (ours.estimate - reference).abs() / deviation;
+        println!(
+            "{parameter} {segment:?}: {} ± {standard_error:.3e}, reference {reference} ± {deviation:.3e}: {distance:.3} apart",
+            ours.estimate
+        );
+        if ["tau_", "f_", "b_alpha"]
+            .iter()
+            .any(|own| parameter.starts_with(own))
+        {
+            worst.1 = worst.1.max(distance);
+        } else {
+            worst.0 = worst.0.max(distance);
+        }
+    }
+    println!(
+        "{name}: apart by at most {:.3} standard errors, delays and calibrations {:.3}",
+        worst.0, worst.1
+    );
+    assert!((-0.01..0.0).contains(&excess), "{excess:e}");
+    assert!(
+        worst.0 < WITHIN_STANDARD_ERRORS && worst.1 < 1.1,
+        "{worst:?}"
+    );
 }

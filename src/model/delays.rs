@@ -48,6 +48,9 @@ impl Delays {
 
     /// D(θ) in s: of the delayed inputs, then of the delayed outputs.
     pub fn at<T: Scalar>(&self, parameters: &[T]) -> Vec<T> {
+        if self.is_empty() {
+            return Vec::new();
+        }
         let mut workspace = self.program.workspace();
         self.program.set_parameters(&mut workspace, parameters);
         self.program.run(&mut workspace);

@@ -45,6 +45,7 @@ pub fn delay_out_of_bounds(model: &Model, segment: &Segment, parameters: &[f64])
     }
     let most = MOST_DELAY * Axis::new(segment).mean_step();
     let delays = model.delays.at(parameters);
-    // written so that what is no number is out of bounds
-    delays.iter().position(|delay| !(delay.abs() <= most))
+    delays
+        .iter()
+        .position(|delay| delay.is_nan() || delay.abs() > most)
 }
