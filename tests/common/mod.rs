@@ -2,8 +2,10 @@
 #![allow(dead_code)]
 
 pub mod flight_data;
+pub mod printed_adjoint;
 pub mod process;
 pub mod published_cases;
 pub mod recordings;
 pub mod server;
 pub mod sse;
+pub mod study_problems;
