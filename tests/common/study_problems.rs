@@ -118,6 +118,16 @@ const MODES: usize = 7;
 const LONGITUDINAL: [&str; 3] = ["de", "ds", "dt"];
 const LATERAL: [&str; 4] = ["dai", "dao", "dr", "dsa"];
 
+/// State, unit, what its rate is without parameters, derivatives by states, whether symmetric, size of controls.
+type Rigid = (
+    &'static str,
+    &'static str,
+    &'static str,
+    &'static [(&'static str, f64)],
+    bool,
+    f64,
+);
+
 /// Rigid short period and lateral-directional motion (6 states), seven flexible modes (14 states), each mode driven
 /// by rates, angles and controls of its symmetry and acting back on moments and forces. Sensors: six of the rigid
 /// motion, 18 vertical and six lateral accelerometers along the structure, 12 strain gauges, of which the first
@@ -135,7 +145,7 @@ pub fn flexible_aircraft_document() -> ModelDocument {
         }
     };
     // angles and rates: derivatives by state, controls of the symmetry, modes of the symmetry
-    let rigid: [(&str, &str, &str, &[(&str, f64)], bool, f64); 5] = [
+    let rigid: [Rigid; 5] = [
         ("alpha", "rad", "q", &[("alpha", -0.9)], true, -0.08),
         (
             "q",
