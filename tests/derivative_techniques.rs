@@ -1,12 +1,17 @@
 //! All derivative techniques give the same gradient, each to its own accuracy, on every catalog model.
 
+mod common;
+
 use std::ops::ControlFlow;
 
+use common::printed_adjoint::{Line25, algorithm_3};
+use common::study_problems;
 use nalgebra::DVector;
 use trimtab::estimate::derivatives::CostAndGradient;
+use trimtab::estimate::study;
 use trimtab::estimate::{
-    Derivatives, Evaluator, Noise, NoiseStructure, NormalEquations, Options, Problem, Scaling,
-    Unknowns, output_error,
+    Derivatives, Evaluator, Noise, NoiseStructure, NormalEquations, Options, Problem, Unknowns,
+    output_error,
 };
 use trimtab::model::{Model, Start, catalog};
 use trimtab::simulate::{InputInterpolation, Integrator, Segment, Steps, simulate};
@@ -109,8 +114,8 @@ const ROUNDING: f64 = 1e3 * f64::EPSILON;
 /// The usual steps balance the cut-off series and rounding, each about √ε or ε^(2/3) *if* second and third
 /// derivatives are of the size of the first and y is of the size of its derivatives times θ. Neither is so: a
 /// pole that moves by 1 % over ten of its time constants changes y by 10 %, and R⁻¹ weighs an output by what it
-/// is off, not by what it is. Measured are factors up to 30; a factor of 100 is allowed.
-const OF_A_DIFFERENCE: f64 = 100.0;
+/// is off, not by what it is. Measured are factors up to 12; a factor of 50 is allowed.
+const OF_A_DIFFERENCE: f64 = 50.0;
 
 fn tolerance(derivatives: &Derivatives) -> f64 {
     match derivatives {
@@ -155,17 +160,11 @@ fn the_adjoint_of_every_scheme() {
                         ..Options::default()
                     };
                     let problem = problem(&model, options, samples, uneven);
-                    let error = error(&problem, &gradient(&problem, adjoint()));
+                    let error = error(&problem, &gradient(&problem, Derivatives::adjoint()));
                     assert!(error <= ROUNDING, "{integrator:?} {samples}: {error:.1e}");
                 }
             }
         }
-    }
-}
-
-fn adjoint() -> Derivatives {
-    Derivatives::Adjoint {
-        scaling: Scaling::default(),
     }
 }
 
@@ -253,4 +252,46 @@ fn every_technique_finds_the_same_estimate() {
     // each stops 1e-5 standard errors from the minimum: half the square of that above it, and rounding of a
     // cost of some thousands
     assert!(most - least < 1e-9, "{costs:?}");
+}
+
+/// Machado 2022, table 12: 7 inputs, 42 outputs, 20 states, 210 parameters.
+#[test]
+fn a_problem_as_large_as_a_flexible_aircraft() {
+    let problem = study_problems::flexible_aircraft();
+    let model = &problem.model;
+    let size = (model.inputs.len(), model.outputs.len(), model.states.len());
+    assert_eq!((size, problem.unknowns.len()), ((7, 42, 20), 210));
+    let error = error(&problem, &gradient(&problem, Derivatives::adjoint()));
+    assert!(error <= ROUNDING, "{error:.1e}");
+    let (direct, adjoint) = (Derivatives::default(), Derivatives::adjoint());
+    let counted = |technique| study::operations(&problem, technique) as f64;
+    let ratio = counted(&direct) / counted(&adjoint);
+    println!("a direct gradient takes {ratio:.1} times the operations of an adjoint one");
+    assert!(ratio > 10.0, "{ratio}");
+}
+
+/// Machado's algorithm 3 is the adjoint where line 25 adds; as printed it forgets what comes back from later samples.
+#[test]
+fn the_printed_reverse_mode_lacks_a_sum() {
+    for problem in [study_problems::short_period(), study_problems::lateral()] {
+        let mut problem = problem;
+        let variance = vec![1e-6_f64; problem.model.outputs.len()];
+        let inverse: Vec<f64> = variance.iter().map(|v| v.recip()).collect();
+        problem.options.noise = Noise::Given { variance };
+        problem.options.integrator = Integrator::Euler;
+        let theta = problem.unknowns.start();
+        let by_place = |line_25| {
+            let (_, by_parameter) = algorithm_3(&problem, &theta, &inverse, line_25);
+            let parameter = |place: usize| problem.unknowns.at(place).parameter;
+            DVector::from_fn(theta.len(), |place, _| by_parameter[parameter(place)])
+        };
+        let added = error(&problem, &by_place(Line25::Added));
+        assert!(added <= ROUNDING, "{added:.1e}");
+        let printed = error(&problem, &by_place(Line25::AsPrinted));
+        println!(
+            "{}: error {printed:.2} as printed",
+            problem.model.document.name
+        );
+        assert!(printed > 0.1, "{printed}");
+    }
 }

@@ -22,6 +22,8 @@ use clap::{Parser, Subcommand};
 
 use failure::Failure;
 
+pub use study::tables as study_tables;
+
 #[derive(Parser)]
 #[command(
     name = "trimtab",

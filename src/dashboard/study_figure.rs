@@ -100,7 +100,7 @@ pub fn cost_figure(costs: &[CostPoint]) -> Result<String, String> {
             let y = range(all.iter().flatten().map(|point| point.1));
             let x = range(all.iter().flatten().map(|point| point.0));
             let mut chart = axes(panel, (0.0, x.1.max(0.1)), (y.0.floor(), y.1.ceil()))?;
-            let decades = (y.1.ceil() - y.0.floor()) as usize + 1;
+            let decades = 2 * (y.1.ceil() - y.0.floor()) as usize + 1;
             mesh(&mut chart, "free parameters", what, (4, decades))?;
             for (number, name) in ["direct (forward sensitivities)", "adjoint"]
                 .iter()
@@ -154,15 +154,13 @@ fn mesh(
     (x_labels, y_labels): (usize, usize),
 ) -> Result<(), String> {
     let power = |exponent: &f64| {
-        if (-1.0..4.0).contains(exponent) {
-            let value = 10_f64.powf(*exponent);
-            if value < 10.0 {
-                format!("{value:.1}")
-            } else {
-                format!("{value:.0}")
-            }
-        } else {
-            format!("1e{exponent:.0}")
+        let value = 10_f64.powf(*exponent);
+        let is_whole = (exponent - exponent.round()).abs() < 1e-6;
+        match (is_whole, (0.1..1e4).contains(&value)) {
+            (true, true) => format!("{}", (value * 10.0).round() / 10.0),
+            (true, false) => format!("1e{exponent:.0}"),
+            (false, true) => format!("{value:.1}"),
+            (false, false) => format!("{value:.0e}"),
         }
     };
     chart
@@ -192,7 +190,7 @@ fn series(
         .draw_series(line)
         .map_err(|error| error.to_string())?
         .label(name)
-        .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], colour.stroke_width(2)));
+        .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], colour.stroke_width(3)));
     let error = |error: DrawingAreaErrorKind<_>| error.to_string();
     let style = colour.filled();
     match number % 3 {

@@ -53,7 +53,7 @@ pub(super) fn check(problem: &Problem) -> Result<(), Vec<Fault>> {
         let message = "only the technique \"forward_sensitivities\" knows delays, so there is nothing to compare; leave the delays out of the model";
         return Err(vec![Fault::new("/model", "bad_option", message)]);
     }
-    let [_, central, ..] = Derivatives::all();
+    let central = Derivatives::CentralDifference { step: 1e-6 };
     let operations = study::operations(problem, &central);
     if operations <= study::MOST_OPERATIONS {
         return Ok(());

@@ -56,8 +56,12 @@ pub struct Adjoint<'m> {
     seeds: Vec<[f64; SPAN]>,
     /// x̄
     state: Vec<f64>,
-    stage: Vec<f64>,
+    /// K̄ of one stage, X̄ of the stage behind it, and Σ X̄.
+    slope: Vec<f64>,
     later_stage: Vec<f64>,
+    change: Vec<f64>,
+    /// ∂f/∂x where it is the same at all samples; else nothing.
+    fixed: Vec<f64>,
 }
 
 impl<'m> Adjoint<'m> {
@@ -81,8 +85,10 @@ impl<'m> Adjoint<'m> {
             slopes: vec![[0.0; SPAN]; stages.len() * n],
             seeds: vec![[0.0; SPAN]; model.outputs.len()],
             state: vec![0.0; n],
-            stage: vec![0.0; n],
+            slope: vec![0.0; n],
             later_stage: vec![0.0; n],
+            change: vec![0.0; n],
+            fixed: Vec::new(),
         }
     }
 
@@ -137,6 +143,12 @@ impl<'m> Adjoint<'m> {
         self.observation.set_parameters(parameters);
         self.outputs.set_parameters(parameters);
         self.state.fill(0.0);
+        let entries = 0..self.model.dynamics_jacobian.by_state.len();
+        self.fixed.clear();
+        if entries.clone().all(|i| !self.dynamics.varies(i)) {
+            self.fixed
+                .extend(entries.map(|i| self.dynamics.result(0, i)[0]));
+        }
         let outputs = self.model.outputs.len();
         let (mut y, mut y_bar) = (vec![0.0; outputs], vec![0.0; outputs]);
         for (block, &since) in checkpoints.elapsed.iter().enumerate().rev() {
@@ -174,33 +186,38 @@ impl<'m> Adjoint<'m> {
 
     /// x̄ at sample `k` of the block from x̄ at the next one; K̄ of the step between are kept.
     fn step_back(&mut self, segment: &Segment, first: usize, k: usize) {
-        let n = self.state.len();
-        let entries = &self.model.dynamics_jacobian.by_state;
         if first + k + 1 < segment.len() {
             let h = segment.steps.length(first + k);
+            let n = self.state.len();
             self.later_stage.fill(0.0);
-            // x̄' stays in place until all stages have used it
-            let mut sum = std::mem::take(&mut self.stage);
-            sum.fill(0.0);
-            let mut own = vec![0.0; n];
+            self.change.fill(0.0);
             for (s, stage) in self.stages.iter().enumerate().rev() {
                 let advance = self.stages.get(s + 1).map_or(0.0, |later| later.advance);
                 for i in 0..n {
-                    let slope = h * (stage.weight * self.state[i] + advance * self.later_stage[i]);
-                    self.slopes[s * n + i][k] = slope;
+                    self.slope[i] =
+                        h * (stage.weight * self.state[i] + advance * self.later_stage[i]);
+                    self.slopes[s * n + i][k] = self.slope[i];
                 }
+                let own = &mut self.later_stage;
                 own.fill(0.0);
-                for (entry, &(row, column)) in entries.iter().enumerate() {
-                    let value = self.dynamics.result(s, entry)[k];
-                    own[column] += value * self.slopes[s * n + row][k];
+                let entries = &self.model.dynamics_jacobian.by_state;
+                if self.fixed.is_empty() {
+                    for (entry, &(row, column)) in entries.iter().enumerate() {
+                        own[column] += self.dynamics.result(s, entry)[k] * self.slope[row];
+                    }
+                } else {
+                    for (value, &(row, column)) in self.fixed.iter().zip(entries) {
+                        own[column] += value * self.slope[row];
+                    }
                 }
-                sum.iter_mut().zip(&own).for_each(|(sum, own)| *sum += own);
-                self.later_stage.copy_from_slice(&own);
+                self.change
+                    .iter_mut()
+                    .zip(own)
+                    .for_each(|(sum, own)| *sum += *own);
             }
-            for (x, change) in self.state.iter_mut().zip(&sum) {
+            for (x, change) in self.state.iter_mut().zip(&self.change) {
                 *x += change;
             }
-            self.stage = sum;
         } else {
             // the last sample has outputs but no step
             self.slopes.iter_mut().for_each(|slopes| slopes[k] = 0.0);

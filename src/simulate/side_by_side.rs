@@ -56,6 +56,11 @@ impl<'m> SideBySide<'m> {
         }
     }
 
+    /// Whether a result changes from sample to sample.
+    pub fn varies(&self, result: usize) -> bool {
+        self.program.varies(result)
+    }
+
     /// A result over the block.
     pub fn result(&self, stage: usize, result: usize) -> &[f64; SPAN] {
         &self.values[stage * self.program.len() + result]

@@ -15,6 +15,6 @@ pub use adjoint::CostAndGradient;
 pub use central_difference::CentralDifference;
 pub use complex_step::ComplexStep;
 pub use forward_difference::ForwardDifference;
-pub(super) use perturbation::sums;
 pub use perturbation::{Perturbation, STRETCH, columns};
+pub(super) use perturbation::{size, sums};
 pub use technique::{Derivatives, Scaling};

@@ -18,7 +18,7 @@ pub const STRETCH: usize = 256;
 const SMALLEST_SIZE: f64 = 1e-2;
 
 /// The size of a parameter that relative steps refer to.
-pub(super) fn size(value: f64) -> f64 {
+pub(in crate::estimate) fn size(value: f64) -> f64 {
     value.abs().max(SMALLEST_SIZE)
 }
 

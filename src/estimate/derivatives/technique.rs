@@ -96,6 +96,13 @@ impl Derivatives {
         }
     }
 
+    /// The adjoint with its usual scaling.
+    pub fn adjoint() -> Self {
+        Self::Adjoint {
+            scaling: Scaling::default(),
+        }
+    }
+
     /// Each technique as it is when no more is said.
     pub fn all() -> [Self; 5] {
         [
@@ -109,9 +116,7 @@ impl Derivatives {
                 step: ComplexStep::usual(),
             },
             Self::ForwardSensitivities {},
-            Self::Adjoint {
-                scaling: Scaling::default(),
-            },
+            Self::adjoint(),
         ]
     }
 

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{Descent, Update};
 use crate::estimate::answer::{Ending, Solution, answer};
-use crate::estimate::derivatives::{CostAndGradient, Scaling};
+use crate::estimate::derivatives::{CostAndGradient, Scaling, size};
 use crate::estimate::evaluation::{Evaluator, Unusable};
 use crate::estimate::information::Spectrum;
 use crate::estimate::iterate::Iterate;
@@ -14,9 +14,6 @@ use crate::estimate::problem::Problem;
 use crate::estimate::report::Iteration;
 use crate::estimate::step::Newton;
 use crate::estimate::stopped::Stopped;
-
-/// Sizes of parameters for the scaling that knows no better.
-const SMALLEST_SIZE: f64 = 1e-2;
 
 /// How often the end of the descent may turn out to be none: the information matrix is then taken for the
 /// Hessian, and the descent goes on.
@@ -32,7 +29,7 @@ pub(in crate::estimate) fn initial_inverse(
     match scaling {
         Scaling::None => Ok((DMatrix::identity(n, n), true)),
         Scaling::Sizes => {
-            let square = |v: &f64| v.abs().max(SMALLEST_SIZE).powi(2);
+            let square = |v: &f64| size(*v).powi(2);
             let squares = DVector::from_iterator(n, theta.iter().map(square));
             Ok((DMatrix::from_diagonal(&squares), true))
         }

@@ -90,8 +90,7 @@ impl Study<'_, '_> {
         scaling: Scaling,
         minimum: f64,
     ) -> Result<DescentResult, NoStudy> {
-        let [.., technique] = Derivatives::all();
-        let of_one = operations(&self.problem, &technique).max(1);
+        let of_one = operations(&self.problem, &Derivatives::adjoint()).max(1);
         let most_gradients = (MOST_OPERATIONS / of_one).max(100) as usize;
         let problem = self.problem.clone();
         let unknowns = &problem.unknowns;

@@ -291,6 +291,7 @@ impl Study<'_, '_> {
                 continue;
             }
             let theta = some.unknowns.start();
+            let (direct, adjoint) = (Derivatives::default(), Derivatives::adjoint());
             let time = |technique: &Derivatives| -> Result<Times, Unusable> {
                 let places: Vec<usize> = (0..unknowns).collect();
                 let (done, times) = least(self.clock, || {
@@ -298,7 +299,6 @@ impl Study<'_, '_> {
                 });
                 done.map(|_| times)
             };
-            let [.., direct, adjoint] = Derivatives::all();
             points.push(CostPoint {
                 unknowns,
                 direct_operations: operations(&some, &direct),

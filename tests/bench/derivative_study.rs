@@ -1,0 +1,126 @@
+//! The derivative study on four problems, and why an adjoint run once took thousands of iterations.
+//!
+//! `cargo bench --bench derivative_study [-- DIRECTORY]` prints tables and writes two figures for each problem to
+//! the directory (`target/derivative-study` without one).
+
+#[path = "../common/printed_adjoint.rs"]
+mod printed_adjoint;
+#[path = "../common/study_problems.rs"]
+mod study_problems;
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use nalgebra::{DMatrix, DVector};
+use printed_adjoint::{Line25, algorithm_3};
+use trimtab::cli::study_tables;
+use trimtab::dashboard::{cost_figure, error_figure};
+use trimtab::estimate::derivatives::CostAndGradient;
+use trimtab::estimate::quasi_newton::{Descent, Update};
+use trimtab::estimate::study::study;
+use trimtab::estimate::{Noise, Options, Problem, output_error};
+use trimtab::simulate::Integrator;
+use trimtab::work::ThreadClock;
+
+fn compare(name: &str, problem: &Problem, directory: &Path) {
+    println!("\n== {name}");
+    let found = study(problem, &ThreadClock::start(), &mut |step| {
+        if let Some(step) = step {
+            eprintln!("{name} {}/{}: {}", step.number, step.of, step.finding);
+        }
+        ControlFlow::Continue(())
+    })
+    .unwrap_or_else(|why| panic!("{name}: {why:?}"));
+    println!("{}", study_tables(&found));
+    for (what, svg) in [
+        ("error", error_figure(&found.error_curves)),
+        ("cost", cost_figure(&found.costs)),
+    ] {
+        let path = directory.join(format!("{name}-{what}.svg"));
+        std::fs::write(&path, svg.expect("a figure")).expect("a directory to write to");
+    }
+}
+
+/// Algorithm 3 as printed and as the chain rule has it, with the optimisers that live on a gradient: Euler's scheme and
+/// R given, as there.
+fn printed(name: &str, problem: Problem) {
+    let problem = euler(problem);
+    let Noise::Given { variance } = &problem.options.noise else {
+        unreachable!("given above")
+    };
+    let inverse: Vec<f64> = variance.iter().map(|v| v.recip()).collect();
+    let mut lowest = f64::INFINITY;
+    output_error(&problem, &mut |iteration| {
+        lowest = lowest.min(iteration.cost);
+        ControlFlow::Continue(())
+    })
+    .expect("an estimate");
+    let theta = problem.unknowns.start();
+    let constant = {
+        let (own, _) = algorithm_3(&problem, &theta, &inverse, Line25::Added);
+        CostAndGradient::new(&problem).at(&theta).expect("a cost").0 - own
+    };
+    let n = theta.len();
+    for line_25 in [Line25::Added, Line25::AsPrinted] {
+        let mut evaluate = |theta: &[f64]| {
+            let (cost, by_parameter) = algorithm_3(&problem, theta, &inverse, line_25);
+            let parameter = |place: usize| problem.unknowns.at(place).parameter;
+            let gradient = DVector::from_fn(n, |place, _| by_parameter[parameter(place)]);
+            (cost + constant)
+                .is_finite()
+                .then_some((cost + constant, gradient))
+        };
+        for update in [Update::Bfgs, Update::None] {
+            let (cost, gradient) = evaluate(&theta).expect("a cost");
+            let (_, exact) = CostAndGradient::new(&problem)
+                .at(&theta)
+                .expect("a gradient");
+            let cosine = gradient.dot(&exact) / (gradient.norm() * exact.norm());
+            let open = (vec![f64::NEG_INFINITY; n], vec![f64::INFINITY; n]);
+            let start = (theta.clone(), cost, gradient);
+            let mut descent = Descent::new(start, open, DMatrix::identity(n, n), true, update);
+            let mut iterations = 0;
+            while iterations < 3000 && descent.cost > lowest + 0.5e-4 {
+                if descent.step(&mut evaluate).is_err() {
+                    break;
+                }
+                iterations += 1;
+            }
+            println!(
+                "{name:14} {line_25:?} {update:?}: cosine to the gradient {cosine:.3}, {iterations} iterations, {:.1e} above the minimum",
+                descent.cost - lowest
+            );
+        }
+    }
+}
+
+fn euler(mut problem: Problem) -> Problem {
+    let outputs = problem.model.outputs.len();
+    problem.options = Options {
+        integrator: Integrator::Euler,
+        noise: Noise::Given {
+            variance: vec![1e-6; outputs],
+        },
+        ..problem.options
+    };
+    problem
+}
+
+fn main() {
+    let named = std::env::args()
+        .skip(1)
+        .find(|argument| !argument.starts_with("--"));
+    let directory = named.map_or("target/derivative-study".into(), PathBuf::from);
+    std::fs::create_dir_all(&directory).expect("a directory to write to");
+    compare("short-period", &study_problems::short_period(), &directory);
+    compare("lateral", &study_problems::lateral(), &directory);
+    compare("flight-path", &study_problems::flight_path(), &directory);
+    compare(
+        "flexible-aircraft",
+        &study_problems::flexible_aircraft(),
+        &directory,
+    );
+    println!("\n== algorithm 3 as printed, and with line 25 adding");
+    printed("short-period", study_problems::short_period());
+    printed("lateral", study_problems::lateral());
+}
