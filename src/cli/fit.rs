@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::progress::Progress;
 use super::request::{Request, format_of, read_bytes};
 use super::{Failure, table};
+use crate::estimate;
 use crate::ingest::{self, Limits};
 use crate::job;
 
@@ -35,8 +36,11 @@ impl Fit {
             eprintln!("note: {}; {}", finding.message, finding.remedy);
         }
         let progress = Progress::new(spec.options.tolerance);
-        let result = job::run(&plan, &mut |iteration| {
-            progress.iteration(iteration);
+        let result = job::run(&plan, &mut |told| {
+            match told {
+                estimate::Progress::Start(report) => progress.say(&report.text),
+                estimate::Progress::Iteration(iteration) => progress.iteration(iteration),
+            }
             ControlFlow::Continue(())
         })
         .map_err(|faults| Failure::faults("the job failed", &faults))?;

@@ -52,6 +52,7 @@ pub async fn follow(client: &Client, job: &str) -> Result<Estimate, Failure> {
                     progress.say(&format!("note: {}; {}", finding.message, finding.remedy));
                 }
             }
+            EventBody::Start(report) => progress.say(&report.text),
             EventBody::Iteration(iteration) => progress.iteration(iteration),
             EventBody::CancelRequested => progress.say("asked to stop"),
             EventBody::Succeeded { reason, .. } => {

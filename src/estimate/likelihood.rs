@@ -55,7 +55,7 @@ impl NormalEquations {
 #[derive(Clone, Debug)]
 pub(super) struct Weighting {
     pub covariance: DMatrix<f64>,
-    inverse: DMatrix<f64>,
+    pub inverse: DMatrix<f64>,
     pub ln_det: f64,
     /// -ln L
     pub cost: f64,

@@ -1,6 +1,7 @@
-//! Estimation by the output-error method: cost, steps, iterations, error bounds.
+//! Estimation by output error and equation error: start, cost, steps, iterations, error bounds.
 //!
-//! [`Problem`] is a model with its data, [`output_error`] finds the θ of least negative log-likelihood
+//! [`Problem`] is a model with its data, [`estimate`] finds the θ that its options ask for: with [`output_error`], from
+//! a start that is found first, the θ of least negative log-likelihood
 //!
 //! ```text
 //! J(θ, R) = ½ Σ_k (z_k − y_k)ᵀ R⁻¹ (z_k − y_k) + (N/2) ln|R| + (N n_y/2) ln 2π
@@ -9,7 +10,9 @@
 //! and [`Estimate`] is the answer, with the reason why the solver stopped.
 
 mod answer;
+mod equation_error;
 mod error_bounds;
+mod estimator;
 mod evaluation;
 mod fit;
 mod information;
@@ -20,11 +23,15 @@ mod options;
 mod output_error;
 mod problem;
 mod report;
+mod shooting;
+mod start;
 mod step;
 mod sums;
 mod unknowns;
 
 pub use answer::Solution;
+pub use equation_error::{equation_error, has_equation_error};
+pub use estimator::{Estimator, Progress, Watcher, estimate};
 pub use evaluation::{Evaluator, Unusable};
 pub use likelihood::NormalEquations;
 pub use options::{Method, Noise, NoiseStructure, Options};
@@ -34,4 +41,5 @@ pub use report::{
     Bound, CollinearSet, Estimate, Iteration, Outcome, OutputFit, OutputSeries, ParameterEstimate,
     Series, TimeHistory, five_digits,
 };
+pub use start::{StartKind, StartMethod, StartReport};
 pub use unknowns::{Unknown, Unknowns};

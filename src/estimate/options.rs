@@ -3,11 +3,16 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::estimator::Estimator;
+use super::start::StartMethod;
 use crate::simulate::{InputInterpolation, Integrator};
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Options {
+    pub estimator: Estimator,
+    /// Where output error starts from.
+    pub start: StartMethod,
     pub method: Method,
     pub integrator: Integrator,
     pub input_interpolation: InputInterpolation,
@@ -24,6 +29,8 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
+            estimator: Estimator::default(),
+            start: StartMethod::default(),
             method: Method::default(),
             integrator: Integrator::default(),
             input_interpolation: InputInterpolation::default(),

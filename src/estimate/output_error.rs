@@ -29,13 +29,33 @@ const MOST_TRIALS: usize = 16;
 /// The cost is a sum over all samples: differences below this share of it are rounding.
 const ROUNDING: f64 = 1e-13;
 
-/// Estimates θ from the start values of the problem.
+/// Estimates θ from the start values of the problem, as they stand.
 ///
 /// # Errors
 /// The start values give no cost, so that there is nothing to begin with.
 pub fn output_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<Solution, Unusable> {
+    Ok(descend(problem, problem.unknowns.start(), observer)?.solution(problem))
+}
+
+/// Where the iteration ended, and why.
+pub(super) struct Descent<'p> {
+    pub evaluator: Evaluator<'p>,
+    pub last: Iterate,
+    pub iterations: usize,
+    stopped: Stopped,
+}
+
+/// Goes down from a θ until there is a reason to stop.
+///
+/// # Errors
+/// This θ gives no cost.
+pub(super) fn descend<'p>(
+    problem: &'p Problem,
+    theta: Vec<f64>,
+    observer: &mut Observer<'_>,
+) -> Result<Descent<'p>, Unusable> {
     let mut evaluator = Evaluator::new(problem);
-    let mut current = Iterate::at(problem, &mut evaluator, problem.unknowns.start())?;
+    let mut current = Iterate::at(problem, &mut evaluator, theta)?;
     let mut taken = Taken::default();
     let mut damping = match problem.options.method {
         Method::LevenbergMarquardt => DAMPING_START,
@@ -67,16 +87,21 @@ pub fn output_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
             Err(Nothing { in_range: false }) => break Stopped::Diverged,
         }
     };
-    let bounds = ErrorBounds::new(&current.information, &current.held);
-    let (outcome, reason) = stopped.say(problem, iteration, &current, &bounds);
-    Ok(answer(
-        problem,
-        &current,
-        &bounds,
-        &evaluator,
-        iteration,
-        (outcome, reason),
-    ))
+    Ok(Descent {
+        evaluator,
+        last: current,
+        iterations: iteration,
+        stopped,
+    })
+}
+
+impl Descent<'_> {
+    pub fn solution(self, problem: &Problem) -> Solution {
+        let at = &self.last;
+        let bounds = ErrorBounds::new(&at.information, &at.held);
+        let said = self.stopped.say(problem, self.iterations, at, &bounds);
+        answer(problem, at, &bounds, &self.evaluator, self.iterations, said)
+    }
 }
 
 /// No θ of lower cost was found; was there any that could be simulated?

@@ -10,8 +10,8 @@ use super::bounds;
 use super::resolve::{self, Named};
 use super::{Fault, JobSpec, ModelSource, Prepared};
 use crate::estimate::{
-    Estimate, Iteration, Noise, Options, Problem, Solution, TimeHistory, Unknowns, Unusable,
-    output_error,
+    Estimate, Estimator, Noise, Options, Problem, Progress, Solution, StartMethod, TimeHistory, Unknowns,
+    Unusable, estimate, has_equation_error,
 };
 use crate::flight::{Maneuver, escape};
 use crate::model::{ChannelFormula, Model, ModelDocument, Start};
@@ -111,6 +111,7 @@ pub fn prepare(
     let segments: Vec<Segment> = resolved.into_iter().map(|(segment, _)| segment).collect();
     bounds::check_unknowns(&model, &segments, &unknowns, &spec.options)?;
     let problem = Problem::new(model, segments, unknowns, spec.options.clone());
+    check_estimator(&problem)?;
     let prepared = Prepared {
         segments: problem
             .segments
@@ -136,19 +137,19 @@ pub fn prepare(
     })
 }
 
-/// Runs a plan; `observer` is told of each iteration and may stop it.
+/// Runs a plan; `watcher` is told of its progress and may stop it.
 ///
 /// # Errors
 /// The start values lead nowhere: there is no iterate to speak of.
 pub fn run(
     plan: &Plan,
-    observer: &mut dyn FnMut(&Iteration) -> ControlFlow<()>,
+    watcher: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
 ) -> Result<JobResult, Vec<Fault>> {
     let problem = &plan.problem;
     let Solution {
         estimate,
         histories,
-    } = output_error(problem, observer).map_err(|why| vec![no_start(problem, why)])?;
+    } = estimate(problem, watcher).map_err(|why| vec![no_start(problem, why)])?;
     Ok(JobResult {
         estimate,
         histories,
@@ -177,7 +178,28 @@ fn no_start(problem: &Problem, why: Unusable) -> Fault {
             let message = "the residuals of some outputs are not independent, so that their full covariance is singular; use the structure \"diagonal\", or leave one of these outputs out";
             Fault::new("/options/noise", "singular_noise", message)
         }
+        Unusable::NoMeasuredState => no_measured_state(problem),
     }
+}
+
+/// Equation error needs states that are measured.
+fn check_estimator(problem: &Problem) -> Result<(), Vec<Fault>> {
+    let options = &problem.options;
+    let asked = options.estimator == Estimator::EquationError
+        || options.start == StartMethod::EquationError {};
+    if asked && !has_equation_error(problem) {
+        return Err(vec![no_measured_state(problem)]);
+    }
+    Ok(())
+}
+
+fn no_measured_state(problem: &Problem) -> Fault {
+    let pointer = match problem.options.estimator {
+        Estimator::EquationError => "/options/estimator",
+        Estimator::OutputError => "/options/start",
+    };
+    let message = "equation error needs an output that measures a state: its equation is the state, possibly with a bias, scale or drift parameter; add such an output, or choose another";
+    Fault::new(pointer, "no_measured_state", message)
 }
 
 /// The declared document with the job's edits and overrides in it.
@@ -265,6 +287,9 @@ fn check_options(options: &Options, model: &Model, faults: &mut Vec<Fault>) {
     if !(1..=MOST_ITERATIONS).contains(&options.max_iterations) {
         let message = format!("max_iterations must be from 1 to {MOST_ITERATIONS}");
         faults.push(Fault::new("/options/max_iterations", "bad_option", message));
+    }
+    if let Some((field, message)) = options.start.unfit() {
+        faults.push(Fault::new(format!("/options/start/{field}"), "bad_option", message));
     }
     if let Noise::Given { variance } = &options.noise {
         let outputs: Vec<&str> = model

@@ -61,8 +61,8 @@ pub fn solve(
     let plan = job::prepare(spec, model, maneuvers).map_err(Unanswered::Refused)?;
     // a log that nobody reads any more means that the job was abandoned: the observer stops then
     let _ = log.blocking_send(EventBody::Prepared(plan.prepared.clone()));
-    let result = job::run(&plan, &mut |iteration| {
-        let told = log.blocking_send(EventBody::Iteration(iteration.clone()));
+    let result = job::run(&plan, &mut |progress| {
+        let told = log.blocking_send(progress.into());
         if told.is_err() || stop.asked().is_some() {
             return ControlFlow::Break(());
         }
