@@ -27,7 +27,7 @@ async fn estimate(server: &Server, directory: &Path, case: &Case, method: &str) 
         "model": case.model,
         "channels": case.channels,
         "maneuvers": maneuvers,
-        "options": {"method": method},
+        "options": {"method": method, "start": {"kind": "document"}},
     });
     let id = server.submit(&spec).await;
     let done = server.wait(&id).await;

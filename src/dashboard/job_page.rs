@@ -82,6 +82,8 @@ fn state(view: &JobView<'_>) -> Markup {
                 "const log = new EventSource('/v1/jobs/{}/events');\
                  const show = event => {{ const i = JSON.parse(event.data);\
                    document.getElementById('state').textContent = 'iteration ' + i.number + ', -ln L ' + i.cost; }};\
+                 const search = event => {{ document.getElementById('state').textContent = JSON.parse(event.data).text; }};\
+                 log.addEventListener('start', search);\
                  log.addEventListener('iteration', show);\
                  for (const end of ['succeeded', 'failed', 'cancelled']) log.addEventListener(end, () => {{ log.close(); location.reload(); }});",
                 view.id

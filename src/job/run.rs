@@ -10,8 +10,8 @@ use super::bounds;
 use super::resolve::{self, Named};
 use super::{Fault, JobSpec, ModelSource, Prepared};
 use crate::estimate::{
-    Estimate, Estimator, Noise, Options, Problem, Progress, Solution, StartMethod, TimeHistory, Unknowns,
-    Unusable, estimate, has_equation_error,
+    Estimate, Estimator, Noise, Options, Problem, Progress, Solution, StartMethod, TimeHistory,
+    Unknowns, Unusable, estimate, has_equation_error,
 };
 use crate::flight::{Maneuver, escape};
 use crate::model::{ChannelFormula, Model, ModelDocument, Start};
@@ -289,7 +289,11 @@ fn check_options(options: &Options, model: &Model, faults: &mut Vec<Fault>) {
         faults.push(Fault::new("/options/max_iterations", "bad_option", message));
     }
     if let Some((field, message)) = options.start.unfit() {
-        faults.push(Fault::new(format!("/options/start/{field}"), "bad_option", message));
+        faults.push(Fault::new(
+            format!("/options/start/{field}"),
+            "bad_option",
+            message,
+        ));
     }
     if let Noise::Given { variance } = &options.noise {
         let outputs: Vec<&str> = model

@@ -31,10 +31,9 @@ impl Status {
             (EventBody::Succeeded { .. }, _) => Self::Succeeded,
             (EventBody::Failed { .. }, _) => Self::Failed,
             (EventBody::Cancelled { .. }, _) => Self::Cancelled,
-            (
-                EventBody::Prepared(_) | EventBody::Start(_) | EventBody::Iteration(_),
-                before,
-            ) => before.unwrap_or(Self::Running),
+            (EventBody::Prepared(_) | EventBody::Start(_) | EventBody::Iteration(_), before) => {
+                before.unwrap_or(Self::Running)
+            }
         }
     }
 

@@ -61,7 +61,7 @@ fn prepare(problem: &Problem, recording: &Arc<Maneuver>, tolerance: f64) -> Plan
     let mut spec = json!({
         "model": "in the file",
         "maneuvers": [{"id": "the recording", "gaps": "join"}],
-        "options": {"tolerance": tolerance, "method": "gauss_newton"},
+        "options": {"tolerance": tolerance, "method": "gauss_newton", "start": {"kind": "document"}},
     });
     for (key, value) in problem.spec.as_object().expect("an object") {
         spec[key] = value.clone();

@@ -4,6 +4,7 @@
 pub mod flight_data;
 pub mod process;
 pub mod published_cases;
+pub mod random_starts;
 pub mod recordings;
 pub mod server;
 pub mod sse;

@@ -16,7 +16,10 @@ pub(in crate::estimate) struct MeasuredState {
 ///
 /// The output has the state's dimension (a rate does not measure an angle), needs no input and no other state, and is
 /// linear in it. Where several do, the one with the slope nearest to 1 is taken.
-pub(in crate::estimate) fn measured_states(model: &Model, parameters: &[f64]) -> Vec<MeasuredState> {
+pub(in crate::estimate) fn measured_states(
+    model: &Model,
+    parameters: &[f64],
+) -> Vec<MeasuredState> {
     let jacobian = &model.observation_jacobian;
     let mut workspace = jacobian.program.workspace();
     jacobian.program.set_parameters(&mut workspace, parameters);
@@ -24,7 +27,12 @@ pub(in crate::estimate) fn measured_states(model: &Model, parameters: &[f64]) ->
     let candidate = |output: usize, state: usize| {
         let mut entries = jacobian.by_state.iter().enumerate();
         let (slope, _) = entries.find(|&(_, &entry)| entry == (output, state))?;
-        let alone = jacobian.by_state.iter().filter(|entry| entry.0 == output).count() == 1;
+        let alone = jacobian
+            .by_state
+            .iter()
+            .filter(|entry| entry.0 == output)
+            .count()
+            == 1;
         let same = model.outputs[output].unit.dimension == model.states[state].unit.dimension;
         let value = jacobian.program.result(&workspace, slope);
         let usable = alone
@@ -42,7 +50,8 @@ pub(in crate::estimate) fn measured_states(model: &Model, parameters: &[f64]) ->
     };
     let best = |state: usize| {
         let all = (0..model.outputs.len()).filter_map(|output| candidate(output, state));
-        all.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(found, _)| found)
+        all.min_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(found, _)| found)
     };
     (0..model.states.len()).filter_map(best).collect()
 }

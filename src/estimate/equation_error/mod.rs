@@ -55,7 +55,10 @@ pub fn has_equation_error(problem: &Problem) -> bool {
 ///
 /// # Errors
 /// No output measures a state, or the regression has no finite residuals at the start values.
-pub fn equation_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<Solution, Unusable> {
+pub fn equation_error(
+    problem: &Problem,
+    observer: &mut Observer<'_>,
+) -> Result<Solution, Unusable> {
     let regression = Regression::new(problem).ok_or(Unusable::NoMeasuredState)?;
     let own = &regression.problem;
     let descent = descend(own, own.unknowns.start(), observer)?;
@@ -99,7 +102,10 @@ fn in_the_problem(
     let correlation = if found.correlation.is_empty() && !own.is_empty() {
         Vec::new()
     } else {
-        places.clone().map(|a| places.clone().map(|b| correlation(a, b)).collect()).collect()
+        places
+            .clone()
+            .map(|a| places.clone().map(|b| correlation(a, b)).collect())
+            .collect()
     };
     let left: Vec<String> = places
         .filter(|&place| regression.place(place).is_none())

@@ -56,7 +56,9 @@ impl Regression {
         }
         initial.set(problem, &mut rest);
         let unknowns = Unknowns::new(&model, segments.len(), |parameter, segment| {
-            problem.unknowns.parameters(segment, &start, &mut parameters);
+            problem
+                .unknowns
+                .parameters(segment, &start, &mut parameters);
             Ok::<f64, ()>(parameters[parameter])
         })
         .ok()?;
@@ -65,7 +67,9 @@ impl Regression {
             .iter()
             .map(|&i| {
                 let unknown = &unknowns.all[i];
-                problem.unknowns.place(unknown.segment.unwrap_or(0), unknown.parameter)
+                problem
+                    .unknowns
+                    .place(unknown.segment.unwrap_or(0), unknown.parameter)
             })
             .collect::<Option<Vec<usize>>>()?;
         let options = Options {
@@ -124,12 +128,15 @@ fn edited(model: &Model, measured: &[MeasuredState]) -> ModelDocument {
         if measured.iter().any(|at| at.output == index) {
             continue;
         }
-        let taken = |name: &str| {
-            document.outputs.contains_key(name) || document.inputs.contains_key(name)
-        };
+        let taken =
+            |name: &str| document.outputs.contains_key(name) || document.inputs.contains_key(name);
         let numbered = (2..).map(|n| format!("{name}_{n}"));
-        let free = std::iter::once(name.clone()).chain(numbered).find(|name| !taken(name));
-        document.outputs.insert(free.unwrap_or_default(), output.clone());
+        let free = std::iter::once(name.clone())
+            .chain(numbered)
+            .find(|name| !taken(name));
+        document
+            .outputs
+            .insert(free.unwrap_or_default(), output.clone());
     }
     document
 }
@@ -144,7 +151,9 @@ fn fix_unused(model: &mut Model) {
     let used: Vec<bool> = (0..model.parameters.len())
         .map(|parameter| {
             let enters = |entry: &(usize, usize)| entry.1 == parameter;
-            jacobians.iter().any(|jacobian| jacobian.by_parameter.iter().any(enters))
+            jacobians
+                .iter()
+                .any(|jacobian| jacobian.by_parameter.iter().any(enters))
         })
         .collect();
     for (info, used) in model.parameters.iter_mut().zip(used) {
@@ -171,7 +180,8 @@ fn with_states(
     }
     let others = segment.measured.iter().enumerate();
     let others = others.filter(|(i, _)| measured.iter().all(|at| at.output != *i));
-    made.measured.extend(others.map(|(_, values)| values.clone()));
+    made.measured
+        .extend(others.map(|(_, values)| values.clone()));
     (made, first)
 }
 
@@ -188,12 +198,21 @@ impl InitialStates {
         }
     }
 
-    fn add(&mut self, problem: &Problem, regression: &Model, segment: usize, state: usize, value: f64) {
+    fn add(
+        &mut self,
+        problem: &Problem,
+        regression: &Model,
+        segment: usize,
+        state: usize,
+        value: f64,
+    ) {
         let Some((_, document)) = problem.model.document.states.get_index(state) else {
             return;
         };
         let parameters = &problem.model.parameters;
-        let Some(parameter) = parameters.iter().position(|p| p.name == document.initial.trim())
+        let Some(parameter) = parameters
+            .iter()
+            .position(|p| p.name == document.initial.trim())
         else {
             return;
         };

@@ -51,23 +51,36 @@ pub(in crate::estimate) fn smoothed(time: &[f64], values: &[f64]) -> Smoothed {
             Some(fit) => (fit.value, fit.slope),
             // too few neighbours for a polynomial: a long hole, or a recording of a few samples
             None => (
-                result.value.last().copied().unwrap_or_else(|| first_number(values)),
+                result
+                    .value
+                    .last()
+                    .copied()
+                    .unwrap_or_else(|| first_number(values)),
                 0.0,
             ),
         };
         result.value.push(value);
         result.slope.push(slope);
     }
-    let squares = values.iter().zip(&result.value).map(|(z, x)| (z - x) * (z - x));
+    let squares = values
+        .iter()
+        .zip(&result.value)
+        .map(|(z, x)| (z - x) * (z - x));
     let (sum, count) = squares
         .filter(|square| square.is_finite())
-        .fold((0.0, 0_usize), |(sum, count), square| (sum + square, count + 1));
+        .fold((0.0, 0_usize), |(sum, count), square| {
+            (sum + square, count + 1)
+        });
     result.noise = (sum / count.max(1) as f64).sqrt();
     result
 }
 
 fn first_number(values: &[f64]) -> f64 {
-    values.iter().copied().find(|v| v.is_finite()).unwrap_or(0.0)
+    values
+        .iter()
+        .copied()
+        .find(|v| v.is_finite())
+        .unwrap_or(0.0)
 }
 
 /// The local polynomial at one sample.
@@ -88,7 +101,9 @@ impl Local {
 
 /// Fits the neighbours of sample `k`; at the ends the window keeps its width and leans inwards.
 fn local(time: &[f64], values: &[f64], k: usize, half: usize) -> Option<Local> {
-    let first = k.saturating_sub(half).min(values.len().saturating_sub(2 * half + 1));
+    let first = k
+        .saturating_sub(half)
+        .min(values.len().saturating_sub(2 * half + 1));
     let last = (first + 2 * half).min(values.len() - 1);
     let width = (time[last] - time[first]).max(f64::MIN_POSITIVE);
     let mut normal = SMatrix::<f64, ORDER, ORDER>::zeros();
@@ -120,14 +135,19 @@ mod tests {
 
     #[test]
     fn a_cubic_is_reproduced_with_its_derivative() {
-        let time: Vec<f64> = (0..40).map(|k| f64::from(k) * 0.1 + f64::from(k % 3) * 0.01).collect();
+        let time: Vec<f64> = (0..40)
+            .map(|k| f64::from(k) * 0.1 + f64::from(k % 3) * 0.01)
+            .collect();
         let cubic = |t: f64| 1.0 - 2.0 * t + 0.5 * t * t - 0.2 * t * t * t;
         let values: Vec<f64> = time.iter().map(|&t| cubic(t)).collect();
         let smooth = smoothed(&time, &values);
         for (k, &t) in time.iter().enumerate() {
             // the normal equations of a cubic over a window lose some digits
             assert!((smooth.value[k] - cubic(t)).abs() < 1e-9);
-            assert!((smooth.slope[k] - (-2.0 + t - 0.6 * t * t)).abs() < 1e-8, "{k}");
+            assert!(
+                (smooth.slope[k] - (-2.0 + t - 0.6 * t * t)).abs() < 1e-8,
+                "{k}"
+            );
         }
     }
 
@@ -135,8 +155,11 @@ mod tests {
     fn noise_widens_the_window_and_a_missing_value_is_filled_in() {
         let time: Vec<f64> = (0..400).map(|k| f64::from(k) * 0.02).collect();
         let scatter = |k: usize| ((k as f64 * 12.9898).sin() * 43_758.547).fract();
-        let mut values: Vec<f64> =
-            time.iter().enumerate().map(|(k, t)| t.sin() + 0.05 * scatter(k)).collect();
+        let mut values: Vec<f64> = time
+            .iter()
+            .enumerate()
+            .map(|(k, t)| t.sin() + 0.05 * scatter(k))
+            .collect();
         values[100] = f64::NAN;
         let smooth = smoothed(&time, &values);
         // differences of neighbours err by 0.05/0.02, about 2; a window of 65 samples by some hundredths

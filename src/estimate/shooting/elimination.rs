@@ -46,8 +46,12 @@ pub(super) fn eliminate(
     for ((beginning, pieces), own) in beginnings.iter().zip(pieces).zip(nodes) {
         // what is known of [s_j, θ] from everything before interval j
         let mut jacobian = DMatrix::zeros(states, states + unknowns);
-        jacobian.view_mut((0, 0), (states, states)).fill_diagonal(-1.0);
-        jacobian.view_mut((0, states), (states, unknowns)).copy_from(&beginning.slopes);
+        jacobian
+            .view_mut((0, 0), (states, states))
+            .fill_diagonal(-1.0);
+        jacobian
+            .view_mut((0, states), (states, unknowns))
+            .copy_from(&beginning.slopes);
         let mut information = jacobian.tr_mul(&(&weight * &jacobian));
         let mut descent = -jacobian.tr_mul(&weights.component_mul(&beginning.jump));
         let mut eliminated = Vec::new();
@@ -61,7 +65,9 @@ pub(super) fn eliminate(
                 jacobian
                     .view_mut((0, 0), (states, states))
                     .copy_from(&piece.slopes.columns(0, states));
-                jacobian.view_mut((0, states), (states, states)).fill_diagonal(-1.0);
+                jacobian
+                    .view_mut((0, states), (states, states))
+                    .fill_diagonal(-1.0);
                 jacobian
                     .view_mut((0, 2 * states), (states, unknowns))
                     .copy_from(&piece.slopes.columns(states, unknowns));

@@ -67,9 +67,17 @@ impl<'p> Cut<'p> {
         let columns = Columns::new(&model, &(0..nodes).filter(free).collect::<Vec<_>>());
         let width = problem.model.states.len() + problem.unknowns.len();
         let most = (MOST_ENTRIES / (width * width).max(1)).max(problem.segments.len());
-        let total: f64 = problem.segments.iter().filter_map(|s| s.elapsed().last().copied()).sum();
+        let total: f64 = problem
+            .segments
+            .iter()
+            .filter_map(|s| s.elapsed().last().copied())
+            .sum();
         let length = length.max(total / most as f64);
-        let intervals = problem.segments.iter().map(|segment| cut(segment, length)).collect();
+        let intervals = problem
+            .segments
+            .iter()
+            .map(|segment| cut(segment, length))
+            .collect();
         Some(Self {
             problem,
             model,
@@ -138,9 +146,18 @@ impl<'p> Cut<'p> {
             let of_interval = |(index, node): (usize, &DVector<f64>)| {
                 self.end(segment, index, theta, node, Some(&mut residuals))
             };
-            ends.push(nodes.iter().enumerate().map(of_interval).collect::<Vec<_>>());
+            ends.push(
+                nodes
+                    .iter()
+                    .enumerate()
+                    .map(of_interval)
+                    .collect::<Vec<_>>(),
+            );
         }
-        let finite = residuals.iter().chain(ends.iter().flatten().flatten()).all(|v| v.is_finite());
+        let finite = residuals
+            .iter()
+            .chain(ends.iter().flatten().flatten())
+            .all(|v| v.is_finite());
         finite.then_some(Walk { residuals, ends })
     }
 
@@ -188,7 +205,11 @@ impl<'p> Cut<'p> {
         let states = self.problem.model.states.len();
         let place = |&parameter: &usize| match parameter.checked_sub(own) {
             Some(state) => Some(state),
-            None => self.problem.unknowns.place(segment, parameter).map(|place| states + place),
+            None => self
+                .problem
+                .unknowns
+                .place(segment, parameter)
+                .map(|place| states + place),
         };
         (0..self.model.outputs.len())
             .map(|output| self.columns.of_output(output).iter().map(place).collect())
@@ -198,7 +219,11 @@ impl<'p> Cut<'p> {
 
 /// A residual that counts: nothing where nothing was measured, but no number where the model has none.
 fn counted(residual: f64, model: f64) -> f64 {
-    if residual.is_finite() || !model.is_finite() { residual } else { 0.0 }
+    if residual.is_finite() || !model.is_finite() {
+        residual
+    } else {
+        0.0
+    }
 }
 
 impl Piece {
@@ -245,8 +270,10 @@ impl Piece {
         }
         for i in 0..outputs {
             for j in (0..outputs).filter(|&j| weights[(i, j)] != 0.0) {
-                self.information.gemm_tr(weights[(i, j)], &rows[i], &rows[j], 1.0);
-                self.descent.gemv_tr(weights[(i, j)], &rows[i], &errors[j], 1.0);
+                self.information
+                    .gemm_tr(weights[(i, j)], &rows[i], &rows[j], 1.0);
+                self.descent
+                    .gemv_tr(weights[(i, j)], &rows[i], &errors[j], 1.0);
             }
         }
         let last = interval.segment.len() - 1;
@@ -295,14 +322,18 @@ fn edited(document: &ModelDocument) -> ModelDocument {
     };
     for (index, (name, state)) in document.states.iter().enumerate() {
         let node = unused(format!("node_{index}"));
-        edited.parameters.insert(node.clone(), parameter(&state.unit));
+        edited
+            .parameters
+            .insert(node.clone(), parameter(&state.unit));
         edited.states[name].initial = node;
         let output = Output {
             unit: state.unit.clone(),
             equation: name.clone(),
             description: String::new(),
         };
-        edited.outputs.insert(unused(format!("state_{index}")), output);
+        edited
+            .outputs
+            .insert(unused(format!("state_{index}")), output);
     }
     let elapsed = unused("node_t".to_string());
     edited.substitute("t", &format!("(t + {elapsed})"));

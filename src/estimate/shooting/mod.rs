@@ -92,7 +92,11 @@ impl Point {
         let mut jumps = 0.0;
         for (segment, (ends, nodes)) in walk.ends.iter().zip(&nodes).enumerate() {
             jumps += size(beginning(problem, segment, &theta, &nodes[0])?.jump);
-            jumps += ends.iter().zip(&nodes[1..]).map(|(end, next)| size(end - next)).sum::<f64>();
+            jumps += ends
+                .iter()
+                .zip(&nodes[1..])
+                .map(|(end, next)| size(end - next))
+                .sum::<f64>();
         }
         jumps.is_finite().then_some(Self {
             theta,
@@ -159,8 +163,7 @@ fn step(
         if let Some(reduced) = reduced {
             let held = held(&problem.unknowns, &point.theta, &reduced.descent);
             let newton = Newton::new(&reduced.information, None, &reduced.descent, &held)?;
-            let theta =
-                advanced(&problem.unknowns, &point.theta, &newton.step(*damping), 1.0);
+            let theta = advanced(&problem.unknowns, &point.theta, &newton.step(*damping), 1.0);
             let moved = theta.iter().zip(&point.theta).map(|(a, b)| a - b);
             let moved = reduced.nodes(&DVector::from_iterator(theta.len(), moved));
             let mut nodes = point.nodes.clone();
@@ -254,7 +257,11 @@ fn first_nodes(cut: &Cut<'_>, theta: &[f64]) -> (Nodes, DVector<f64>) {
         });
         let size = all().fold(0.0, |size: f64, x| size.max(x.abs()));
         let range = if high > low { high - low } else { size };
-        let least = if noise[state] > 0.0 { LEAST_NOISE } else { UNMEASURED_NOISE };
+        let least = if noise[state] > 0.0 {
+            LEAST_NOISE
+        } else {
+            UNMEASURED_NOISE
+        };
         noise[state] = f64::max(noise[state], least * range);
         if noise[state] == 0.0 {
             noise[state] = 1.0;

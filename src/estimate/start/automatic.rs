@@ -85,13 +85,17 @@ impl Candidate {
         let from = match self.kind {
             StartKind::EquationError => "equation error",
             StartKind::MultipleShooting => "multiple shooting",
-            _ => return "start values as given: equation error finds none of lower cost".to_string(),
+            _ => {
+                return "start values as given: equation error finds none of lower cost".to_string();
+            }
         };
         let instead = match of_document {
             Some(cost) => format!("the given ones have {cost:.1}"),
             None => "with the given ones the simulation leaves the range of numbers".to_string(),
         };
-        let own = self.cost.map_or("unknown".to_string(), |cost| format!("{cost:.1}"));
+        let own = self
+            .cost
+            .map_or("unknown".to_string(), |cost| format!("{cost:.1}"));
         format!("start values from {from}: -ln L {own}; {instead}")
     }
 }
@@ -108,7 +112,11 @@ fn cost_of_constants(problem: &Problem) -> Option<f64> {
         let centred: Vec<Vec<f64>> = segment.measured.iter().map(|z| centred(z)).collect();
         for i in 0..outputs {
             for j in 0..outputs {
-                sums[(i, j)] += centred[i].iter().zip(&centred[j]).map(|(a, b)| a * b).sum::<f64>();
+                sums[(i, j)] += centred[i]
+                    .iter()
+                    .zip(&centred[j])
+                    .map(|(a, b)| a * b)
+                    .sum::<f64>();
             }
         }
     }

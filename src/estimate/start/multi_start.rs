@@ -37,7 +37,9 @@ pub(super) fn multi_start(
 ) -> Result<Start, Unusable> {
     let next = AtomicUsize::new(0);
     let stop = AtomicBool::new(false);
-    let threads = std::thread::available_parallelism().map_or(1, NonZero::get).min(starts);
+    let threads = std::thread::available_parallelism()
+        .map_or(1, NonZero::get)
+        .min(starts);
     let (send, runs) = mpsc::channel();
     let mut tally = Tally::default();
     std::thread::scope(|scope| {
@@ -149,7 +151,12 @@ impl Tally {
             None => "leaves the range of numbers".to_string(),
         };
         let best = self.best.as_ref().map(|&(_, cost)| cost);
-        let reached = |best: f64| self.costs.iter().filter(|&&c| c - best < SAME_OPTIMUM).count();
+        let reached = |best: f64| {
+            self.costs
+                .iter()
+                .filter(|&&c| c - best < SAME_OPTIMUM)
+                .count()
+        };
         let text = format!(
             "start {} of {starts}: {ended}; {} so far reached the best optimum",
             self.runs,

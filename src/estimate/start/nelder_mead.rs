@@ -100,7 +100,11 @@ impl<'p> Search<'p> {
             let own = REACH * theta[place].abs();
             let error = information.as_ref().map_or(0.0, |diagonal| {
                 let error = diagonal[place].sqrt().recip();
-                if error.is_finite() { REACH_IN_ERRORS * error } else { 0.0 }
+                if error.is_finite() {
+                    REACH_IN_ERRORS * error
+                } else {
+                    0.0
+                }
             });
             match own.max(error) {
                 0.0 => REACH_FROM_ZERO,
@@ -116,7 +120,11 @@ impl<'p> Search<'p> {
             let reach = reach(place);
             let mut moved = theta.clone();
             // away from a bound that is near
-            moved[place] += if theta[place] + reach > unknown.upper { -reach } else { reach };
+            moved[place] += if theta[place] + reach > unknown.upper {
+                -reach
+            } else {
+                reach
+            };
             corners.push(self.corner(moved));
         }
         corners
@@ -130,16 +138,30 @@ impl<'p> Search<'p> {
         // with one parameter the coefficients of many leave nothing of the simplex
         let (contract, shrink) = (contract.max(0.5), shrink.max(0.5));
         let centre: Vec<f64> = (0..corners[0].theta.len())
-            .map(|i| corners[..last].iter().map(|corner| corner.theta[i]).sum::<f64>() / n)
+            .map(|i| {
+                corners[..last]
+                    .iter()
+                    .map(|corner| corner.theta[i])
+                    .sum::<f64>()
+                    / n
+            })
             .collect();
         let worst = corners[last].clone();
         let along = |share: f64| -> Vec<f64> {
-            centre.iter().zip(&worst.theta).map(|(c, w)| c + share * (c - w)).collect()
+            centre
+                .iter()
+                .zip(&worst.theta)
+                .map(|(c, w)| c + share * (c - w))
+                .collect()
         };
         let reflected = self.corner(along(1.0));
         if reflected.cost < corners[0].cost {
             let expanded = self.corner(along(expand));
-            corners[last] = if expanded.cost < reflected.cost { expanded } else { reflected };
+            corners[last] = if expanded.cost < reflected.cost {
+                expanded
+            } else {
+                reflected
+            };
         } else if reflected.cost < corners[last - 1].cost {
             corners[last] = reflected;
         } else {
@@ -153,7 +175,10 @@ impl<'p> Search<'p> {
                     if self.evaluations >= self.most {
                         return;
                     }
-                    let pulled = best.iter().zip(&corner.theta).map(|(b, c)| b + shrink * (c - b));
+                    let pulled = best
+                        .iter()
+                        .zip(&corner.theta)
+                        .map(|(b, c)| b + shrink * (c - b));
                     *corner = self.corner(pulled.collect());
                 }
             }
