@@ -9,6 +9,10 @@
 //! With ρ small each interval follows what was measured, however wrong θ is and however unstable the aircraft; as ρ
 //! grows the jumps close and the cost becomes that of output error. The nodes start from measured states. What
 //! comes out is a start: the estimate itself is always that of the whole trajectory.
+//!
+//! With R estimated, the optima along that way need not lead to the lowest one of the whole trajectory, and from an
+//! early one the way down may be long. So output error is tried from more than one ρ, as soon as the whole trajectory
+//! explains something, and the best is kept.
 
 mod elimination;
 mod intervals;
@@ -20,8 +24,9 @@ use nalgebra::{DMatrix, DVector};
 use super::equation_error::{measured_states, smoothed};
 use super::evaluation::{Evaluator, Unusable};
 use super::likelihood::Weighting;
+use super::output_error::descend;
 use super::problem::Problem;
-use super::start::{Start, StartKind, StartReport, cost};
+use super::start::{Start, StartKind, StartReport, cost, cost_of_constants, unobserved};
 use super::step::{Newton, advanced, held};
 use elimination::{Beginning, eliminate};
 use intervals::{Cut, Nodes};
@@ -33,16 +38,21 @@ const PENALTY_END: f64 = 1e10;
 /// Steps at one penalty, and the gain in -ln L below which the next penalty's turn comes.
 const MOST_STEPS: usize = 8;
 const SMALL_GAIN: f64 = 0.1;
-/// Done when the whole trajectory costs no more than this above the pieces.
+/// Closed when the whole trajectory costs no more than this above the pieces.
 const CLOSED: f64 = 1.0;
+/// From how many penalties output error is tried, and how far.
+const MOST_DESCENTS: usize = 4;
+const DESCENT_ITERATIONS: usize = 20;
 
 const DAMPING_START: f64 = 1e-3;
 const DAMPING_EASED: f64 = 0.1;
 const DAMPING_RAISED: f64 = 10.0;
 const MOST_TRIALS: usize = 10;
 
-/// How often intervals are halved when the first simulation leaves the range of numbers.
+/// How often intervals are halved when the first simulation runs away: its jumps are longer, in the states' noise,
+/// than this.
 const MOST_HALVINGS: usize = 8;
+const RUN_AWAY: f64 = 1e4;
 
 /// A state's noise is taken as at least this share of its range.
 const LEAST_NOISE: f64 = 1e-3;
@@ -63,14 +73,20 @@ pub(super) fn multiple_shooting(
     told: &mut Told<'_>,
 ) -> Result<Start, Unusable> {
     let halves = (0..=MOST_HALVINGS).map(|i| interval / f64::from(1 << i));
+    let mut found = None;
     for length in halves {
         let cut = Cut::new(problem, length).ok_or(Unusable::NotFinite)?;
         let (nodes, noise) = first_nodes(&cut, &theta);
         if let Some(point) = Point::at(&cut, theta.clone(), nodes, &noise) {
-            return Ok(close(&cut, point, &noise, told));
+            let runs_away = point.jump(&cut) > RUN_AWAY;
+            found = Some((cut, point, noise));
+            if !runs_away {
+                break;
+            }
         }
     }
-    Err(Unusable::NotFinite)
+    let (cut, point, noise) = found.ok_or(Unusable::NotFinite)?;
+    Ok(close(&cut, point, &noise, told))
 }
 
 /// θ and nodes, and what is known there.
@@ -106,6 +122,12 @@ impl Point {
         })
     }
 
+    /// Root mean square of the jumps, in the states' noise.
+    fn jump(&self, cut: &Cut<'_>) -> f64 {
+        let intervals: usize = cut.intervals.iter().map(Vec::len).sum();
+        (self.jumps / (intervals * self.nodes[0][0].len().max(1)) as f64).sqrt()
+    }
+
     fn merit(&self, penalty: f64) -> f64 {
         self.weighting.cost + 0.5 * penalty * self.jumps
     }
@@ -114,9 +136,13 @@ impl Point {
 /// Closes the jumps, penalty by penalty.
 fn close(cut: &Cut<'_>, mut point: Point, noise: &DVector<f64>, told: &mut Told<'_>) -> Start {
     let mut evaluator = Evaluator::new(cut.problem);
+    let constants = cost_of_constants(cut.problem);
     let (mut damping, mut penalty) = (DAMPING_START, PENALTY_START);
-    let mut steps = 0;
+    let (mut steps, mut descents) = (0, 0);
     let mut stopped = false;
+    let mut best: Option<(f64, Vec<f64>)> = None;
+    let mut short = cut.problem.clone();
+    short.options.max_iterations = DESCENT_ITERATIONS;
     while penalty <= PENALTY_END {
         for _ in 0..MOST_STEPS {
             let before = point.merit(penalty);
@@ -132,14 +158,25 @@ fn close(cut: &Cut<'_>, mut point: Point, noise: &DVector<f64>, told: &mut Told<
                 break;
             }
         }
-        let whole = cost(&mut evaluator, &point.theta);
-        if stopped || whole.is_ok_and(|whole| whole < point.weighting.cost + CLOSED) {
+        let whole = cost(&mut evaluator, &point.theta).unwrap_or(f64::INFINITY);
+        let closed = whole < point.weighting.cost + CLOSED;
+        if closed || constants.is_some_and(|constants| whole < constants) {
+            descents += 1;
+            let end = descend(&short, point.theta.clone(), &mut unobserved);
+            let end = end.map(|end| (end.last.weighting.cost, end.last.theta));
+            if let Ok(end) = end
+                && best.as_ref().is_none_or(|best| end.0 < best.0)
+            {
+                best = Some(end);
+            }
+        }
+        if stopped || closed || descents == MOST_DESCENTS {
             break;
         }
         penalty *= PENALTY_GROWTH;
     }
     Start {
-        theta: point.theta,
+        theta: best.map_or(point.theta, |(_, theta)| theta),
         stopped,
     }
 }
@@ -278,7 +315,7 @@ fn report(cut: &Cut<'_>, point: &Point, steps: usize, penalty: f64) -> StartRepo
         cost: Some(point.weighting.cost),
         text: format!(
             "multiple shooting, {intervals} intervals: jumps of {:.1e} of the states' noise, penalty {penalty:.0e}",
-            (point.jumps / intervals as f64).sqrt()
+            point.jump(cut)
         ),
     }
 }

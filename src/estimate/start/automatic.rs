@@ -2,7 +2,7 @@
 
 use super::method::INTERVAL;
 use super::report::{StartKind, StartReport};
-use super::{Start, unobserved};
+use super::{Start, cost_of_constants, unobserved};
 use crate::estimate::equation_error::equation_error_start;
 use crate::estimate::estimator::{Progress, Watcher};
 use crate::estimate::evaluation::{Evaluator, Unusable};
@@ -86,7 +86,8 @@ impl Candidate {
             StartKind::EquationError => "equation error",
             StartKind::MultipleShooting => "multiple shooting",
             _ => {
-                return "start values as given: equation error finds none of lower cost".to_string();
+                return "start values as given: equation error finds none of lower cost"
+                    .to_string();
             }
         };
         let instead = match of_document {
@@ -102,32 +103,4 @@ impl Candidate {
 
 fn is_lower(cost: Option<f64>, than: Option<f64>) -> bool {
     cost.is_some_and(|cost| than.is_none_or(|than| cost < than))
-}
-
-/// -ln L of outputs that stay at their means: a start that is worse explains nothing.
-fn cost_of_constants(problem: &Problem) -> Option<f64> {
-    let outputs = problem.model.outputs.len();
-    let mut sums = nalgebra::DMatrix::zeros(outputs, outputs);
-    for segment in &problem.segments {
-        let centred: Vec<Vec<f64>> = segment.measured.iter().map(|z| centred(z)).collect();
-        for i in 0..outputs {
-            for j in 0..outputs {
-                sums[(i, j)] += centred[i]
-                    .iter()
-                    .zip(&centred[j])
-                    .map(|(a, b)| a * b)
-                    .sum::<f64>();
-            }
-        }
-    }
-    let weighting = Weighting::new(&problem.options.noise, &sums, problem.samples()).ok()?;
-    Some(weighting.cost)
-}
-
-/// Values less their mean; those that are no numbers count nothing.
-fn centred(values: &[f64]) -> Vec<f64> {
-    let numbers: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    let mean = numbers.iter().sum::<f64>() / numbers.len().max(1) as f64;
-    let less = |&value: &f64| if value.is_finite() { value - mean } else { 0.0 };
-    values.iter().map(less).collect()
 }

@@ -8,6 +8,8 @@ mod report;
 
 use std::ops::ControlFlow;
 
+use nalgebra::DMatrix;
+
 use super::equation_error::equation_error_start;
 use super::estimator::{Progress, Watcher};
 use super::evaluation::{Evaluator, Unusable};
@@ -67,7 +69,7 @@ pub(super) fn find_start(problem: &Problem, watcher: &mut Watcher<'_>) -> Result
 }
 
 /// For iterations that are nobody's business.
-fn unobserved(_: &super::report::Iteration) -> ControlFlow<()> {
+pub(super) fn unobserved(_: &super::report::Iteration) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
@@ -80,4 +82,32 @@ pub(super) fn cost(evaluator: &mut Evaluator<'_>, theta: &[f64]) -> Result<f64, 
     let problem = evaluator.problem();
     Weighting::new(&problem.options.noise, &residuals, problem.samples())
         .map(|weighting| weighting.cost)
+}
+
+/// -ln L of outputs that stay at their means: a start that is worse explains nothing.
+pub(super) fn cost_of_constants(problem: &Problem) -> Option<f64> {
+    let outputs = problem.model.outputs.len();
+    let mut sums = DMatrix::zeros(outputs, outputs);
+    for segment in &problem.segments {
+        let centred: Vec<Vec<f64>> = segment.measured.iter().map(|z| centred(z)).collect();
+        for i in 0..outputs {
+            for j in 0..outputs {
+                sums[(i, j)] += centred[i]
+                    .iter()
+                    .zip(&centred[j])
+                    .map(|(a, b)| a * b)
+                    .sum::<f64>();
+            }
+        }
+    }
+    let weighting = Weighting::new(&problem.options.noise, &sums, problem.samples()).ok()?;
+    Some(weighting.cost)
+}
+
+/// Values less their mean; those that are no numbers count nothing.
+fn centred(values: &[f64]) -> Vec<f64> {
+    let numbers: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    let mean = numbers.iter().sum::<f64>() / numbers.len().max(1) as f64;
+    let less = |&value: &f64| if value.is_finite() { value - mean } else { 0.0 };
+    values.iter().map(less).collect()
 }
