@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use indexmap::IndexMap;
 use serde_json::{Value, json};
-use trimtab::estimate::{Bound, Outcome};
+use trimtab::estimate::{Bound, Outcome, Progress};
 use trimtab::flight::{Channel, Maneuver, Unit};
 use trimtab::job::{self, Fault, JobResult, JobSpec, ModelSource};
 
@@ -234,7 +234,7 @@ fn a_bound_is_kept_and_said() {
 fn the_budget_and_a_request_to_stop_end_it_with_what_there_is() {
     let result = solve(
         model(),
-        json!({"options": {"max_iterations": 1}}),
+        json!({"options": {"max_iterations": 1, "start": {"kind": "document"}}}),
         &maneuver(0.01),
     );
     assert_eq!(
@@ -243,20 +243,23 @@ fn the_budget_and_a_request_to_stop_end_it_with_what_there_is() {
     );
     let recording = maneuver(0.01);
     let spec: JobSpec =
-        serde_json::from_value(json!({"model": model(), "maneuvers": [{"id": "x"}]}))
+        serde_json::from_value(json!({"model": model(), "maneuvers": [{"id": "x"}], "options": {"start": {"kind": "document"}}}))
             .expect("a spec");
     let ModelSource::Document(document) = &spec.model else {
         panic!("a document")
     };
     let plan = job::prepare(&spec, document, &[recording]).unwrap_or_else(|f| panic!("{f:?}"));
     let mut told = 0;
-    let result = job::run(&plan, &mut |iteration| {
-        told += 1;
-        if iteration.number == 2 {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
+    let result = job::run(&plan, &mut |progress| match progress {
+        Progress::Iteration(iteration) => {
+            told += 1;
+            if iteration.number == 2 {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
         }
+        Progress::Start(_) => ControlFlow::Continue(()),
     });
     assert_eq!(
         result.expect("a result").estimate.outcome,
@@ -267,7 +270,9 @@ fn the_budget_and_a_request_to_stop_end_it_with_what_there_is() {
 
 #[test]
 fn a_start_that_diverges_at_once_names_the_place() {
-    let changes = json!({"parameters": {"a": {"start": 1e6}}});
+    let changes = json!({
+        "parameters": {"a": {"start": 1e6}}, "options": {"start": {"kind": "document"}},
+    });
     let faults = try_solve(model(), changes, &maneuver(0.01)).expect_err("a fault");
     assert_eq!(
         (faults[0].pointer.as_str(), &*faults[0].code),

@@ -25,7 +25,10 @@ async fn a_stream_tells_the_whole_job_and_ends() {
         .rest()
         .await;
     let names: Vec<&str> = live.iter().map(|event| event.event.as_str()).collect();
-    assert_eq!(names[..4], ["queued", "claimed", "prepared", "iteration"]);
+    assert_eq!(
+        names[..5],
+        ["queued", "claimed", "prepared", "start", "iteration"]
+    );
     assert_eq!(names[names.len() - 1], "succeeded");
     assert_eq!(ids(&live), (1..=live.len() as u64).collect::<Vec<_>>());
     for received in &live {

@@ -360,6 +360,7 @@ async fn a_start_that_leads_nowhere_fails_with_its_reason() {
     let maneuver = server.upload(&elevator()).await;
     let mut spec = job(&maneuver);
     spec["parameters"] = json!({"Ma": {"start": 1e9}, "Za": {"start": 1e9}});
+    spec["options"] = json!({"start": {"kind": "document"}});
     let id = server.submit(&spec).await;
     let done = server.wait(&id).await;
     assert_eq!(done["status"], "failed", "{done:#}");

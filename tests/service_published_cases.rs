@@ -24,7 +24,7 @@ async fn estimate(server: &Server, case: &Case, method: &str) -> Estimate {
         "model": case.model,
         "channels": case.channels,
         "maneuvers": maneuvers,
-        "options": {"method": method},
+        "options": {"method": method, "start": {"kind": "document"}},
     });
     let id = server.submit(&spec).await;
     let done = server.wait(&id).await;

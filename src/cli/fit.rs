@@ -28,8 +28,8 @@ impl Fit {
             eprintln!("note: {}; {}", finding.message, finding.remedy);
         }
         let progress = Progress::new(spec.options.tolerance);
-        let result = job::run(&plan, &mut |iteration| {
-            progress.iteration(iteration);
+        let result = job::run(&plan, &mut |told| {
+            progress.told(told);
             ControlFlow::Continue(())
         })
         .map_err(|faults| Failure::faults("the job failed", &faults))?;

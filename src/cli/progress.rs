@@ -2,7 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::estimate::Iteration;
+use crate::estimate::{self, Iteration};
 
 /// Steps of this many standard errors count as the beginning of the way.
 const LONGEST_STEP: f64 = 100.0;
@@ -27,6 +27,14 @@ impl Progress {
     pub fn say(&self, text: &str) {
         self.line(text);
         self.bar.set_message(text.to_string());
+    }
+
+    /// What an estimation tells on its way.
+    pub fn told(&self, told: estimate::Progress<'_>) {
+        match told {
+            estimate::Progress::Start(report) => self.say(&report.text),
+            estimate::Progress::Iteration(iteration) => self.iteration(iteration),
+        }
     }
 
     pub fn iteration(&self, iteration: &Iteration) {

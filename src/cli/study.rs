@@ -39,7 +39,7 @@ impl Study {
         let progress = Progress::new(spec.options.tolerance);
         let result = job::run_study(&plan, &ThreadClock::start(), &mut |told| {
             match told {
-                job::Progress::Iteration(iteration) => progress.iteration(iteration),
+                job::Progress::Estimation(told) => progress.told(told),
                 job::Progress::Finding(step) => progress.say(&step.finding),
                 job::Progress::Underway => {}
             }

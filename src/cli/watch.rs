@@ -48,6 +48,7 @@ pub async fn follow(client: &Client, job: &str) -> Result<Estimate, Failure> {
                     progress.say(&format!("note: {}; {}", finding.message, finding.remedy));
                 }
             }
+            EventBody::Start(report) => progress.say(&report.text),
             EventBody::Iteration(iteration) => progress.iteration(iteration),
             EventBody::Finding(step) => progress.say(&step.finding),
             EventBody::CancelRequested => progress.say("asked to stop"),

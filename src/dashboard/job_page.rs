@@ -105,6 +105,8 @@ fn state(view: &JobView<'_>) -> Markup {
                 "const log = new EventSource('/v1/jobs/{}/events');\
                  const show = event => {{ const i = JSON.parse(event.data);\
                    document.getElementById('state').textContent = 'iteration ' + i.number + ', -ln L ' + i.cost; }};\
+                 const search = event => {{ document.getElementById('state').textContent = JSON.parse(event.data).text; }};\
+                 log.addEventListener('start', search);\
                  log.addEventListener('iteration', show);\
                  log.addEventListener('finding', event => {{ document.getElementById('state').textContent = JSON.parse(event.data).finding; }});\
                  for (const end of ['succeeded', 'failed', 'cancelled']) log.addEventListener(end, () => {{ log.close(); location.reload(); }});",

@@ -23,6 +23,8 @@ pub enum Unusable {
     Delayed { segment: usize, delay: usize },
     /// The covariance of the residuals is singular: some outputs' residuals are not independent.
     SingularNoise,
+    /// Equation error was asked for, and no output measures a state.
+    NoMeasuredState,
 }
 
 /// Evaluates a problem at any θ; buffers are kept.

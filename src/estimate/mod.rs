@@ -1,6 +1,7 @@
-//! Estimation by the output-error and filter-error methods: cost, steps, iterations, error bounds.
+//! Estimation by output error, filter error and equation error: start, cost, steps, iterations, error bounds.
 //!
-//! [`Problem`] is a model with its data, [`output_error`] finds the θ of least negative log-likelihood
+//! [`Problem`] is a model with its data, [`estimate`] finds the θ that its options ask for: with [`output_error`], from
+//! a start that is found first, the θ of least negative log-likelihood
 //!
 //! ```text
 //! J(θ, R) = ½ Σ_k (z_k − y_k)ᵀ R⁻¹ (z_k − y_k) + (N/2) ln|R| + (N n_y/2) ln 2π
@@ -14,6 +15,7 @@ mod autoregression;
 mod coefficients;
 mod coloured_residuals;
 pub mod derivatives;
+mod equation_error;
 mod error_bounds;
 mod estimator;
 mod evaluation;
@@ -35,6 +37,8 @@ mod process_noise;
 pub mod quasi_newton;
 mod report;
 mod role;
+mod shooting;
+mod start;
 mod state_matrix;
 mod step;
 mod stopped;
@@ -45,8 +49,9 @@ mod unknowns;
 pub use answer::Solution;
 pub use coefficients::{Coefficient, coefficients};
 pub use derivatives::{Derivatives, Scaling};
+pub use equation_error::{equation_error, has_equation_error};
 pub use error_bounds::ErrorBoundsKind;
-pub use estimator::Estimator;
+pub use estimator::{Estimator, Progress, Watcher, estimate};
 pub use evaluation::{Evaluator, Unusable};
 pub use filter_error::{
     FilterEquations, FilterEstimate, FilterEvaluator, Pole, ProcessNoiseEstimate, SegmentGain,
@@ -65,4 +70,5 @@ pub use report::{
     Series, TheilShares, TimeHistory, five_digits,
 };
 pub use role::Role;
+pub use start::{StartKind, StartMethod, StartReport};
 pub use unknowns::{Unknown, Unknowns};

@@ -8,18 +8,21 @@ use super::derivatives::Derivatives;
 use super::error_bounds::ErrorBoundsKind;
 use super::estimator::Estimator;
 use super::process_noise::ProcessNoise;
+use super::start::StartMethod;
 use crate::simulate::{InputInterpolation, Integrator};
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Options {
+    pub estimator: Estimator,
+    /// Where output error starts from.
+    pub start: StartMethod,
     pub method: Method,
     pub integrator: Integrator,
     pub input_interpolation: InputInterpolation,
     pub noise: Noise,
     pub error_bounds: ErrorBoundsKind,
     pub derivatives: Derivatives,
-    pub estimator: Estimator,
     /// By state, for the filter-error estimator; a state that is not named has noise whose intensity is estimated from
     /// a start value of its own.
     #[serde(
@@ -41,13 +44,14 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
+            estimator: Estimator::default(),
+            start: StartMethod::default(),
             method: Method::default(),
             integrator: Integrator::default(),
             input_interpolation: InputInterpolation::default(),
             noise: Noise::default(),
             error_bounds: ErrorBoundsKind::default(),
             derivatives: Derivatives::default(),
-            estimator: Estimator::default(),
             process_noise: IndexMap::new(),
             tolerance: 1e-5,
             max_iterations: 50,

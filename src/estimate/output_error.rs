@@ -33,16 +33,39 @@ pub(super) const MOST_TRIALS: usize = 16;
 /// The cost is a sum over all samples: differences below this share of it are rounding.
 pub(super) const ROUNDING: f64 = 1e-13;
 
-/// Estimates θ from the start values of the problem.
+/// Estimates θ from the start values of the problem, as they stand.
 ///
 /// # Errors
 /// The start values give no cost, so that there is nothing to begin with.
 pub fn output_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<Solution, Unusable> {
-    if let Derivatives::Adjoint { scaling } = problem.options.derivatives {
-        return quasi_newton::solve(problem, scaling, observer);
+    let theta = problem.unknowns.start();
+    match problem.options.derivatives {
+        Derivatives::Adjoint { scaling } => quasi_newton::solve(problem, theta, scaling, observer),
+        _ => Ok(descend(problem, theta, observer)?.solution(problem)),
     }
+}
+
+/// Where the iteration ended, and why.
+pub(super) struct Descent<'p> {
+    pub evaluator: Evaluator<'p>,
+    pub last: Iterate,
+    pub iterations: usize,
+    /// What the data told at the start.
+    before: Option<DataInformation>,
+    stopped: Stopped,
+}
+
+/// Goes down from a θ until there is a reason to stop.
+///
+/// # Errors
+/// This θ gives no cost.
+pub(super) fn descend<'p>(
+    problem: &'p Problem,
+    theta: Vec<f64>,
+    observer: &mut Observer<'_>,
+) -> Result<Descent<'p>, Unusable> {
     let mut evaluator = Evaluator::new(problem);
-    let mut current = Iterate::at(problem, &mut evaluator, problem.unknowns.start())?;
+    let mut current = Iterate::at(problem, &mut evaluator, theta)?;
     let before = DataInformation::of(problem, &current.information);
     let mut taken = Taken::default();
     let mut damping = match problem.options.method {
@@ -75,13 +98,32 @@ pub fn output_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
             Err(Nothing { in_range: false }) => break Stopped::Diverged,
         }
     };
-    let ending = Ending {
-        stopped,
+    Ok(Descent {
+        evaluator,
+        last: current,
         iterations: iteration,
         before,
-        at: &current,
-    };
-    Ok(answer(problem, ending, &mut evaluator))
+        stopped,
+    })
+}
+
+impl Descent<'_> {
+    pub fn solution(self, problem: &Problem) -> Solution {
+        let Self {
+            mut evaluator,
+            last,
+            iterations,
+            before,
+            stopped,
+        } = self;
+        let ending = Ending {
+            stopped,
+            iterations,
+            before,
+            at: &last,
+        };
+        answer(problem, ending, &mut evaluator)
+    }
 }
 
 /// No θ of lower cost was found; was there any that could be simulated?

@@ -91,8 +91,11 @@ pub fn predict(
                 Unusable::Delayed { .. } => {
                     "with the estimate an input or output is delayed too long".to_string()
                 }
-                // it is simulated without a filter
-                Unusable::NotFinite | Unusable::SingularNoise | Unusable::NoSteadyGain { .. } => {
+                // it is simulated without a filter, and not regressed
+                Unusable::NotFinite
+                | Unusable::SingularNoise
+                | Unusable::NoSteadyGain { .. }
+                | Unusable::NoMeasuredState => {
                     "with the estimate an output is not a finite number at some sample".to_string()
                 }
             };

@@ -5,7 +5,7 @@ use utoipa::ToSchema;
 
 use super::Fault;
 use crate::estimate::study::StudyStep;
-use crate::estimate::{Iteration, Outcome};
+use crate::estimate::{Iteration, Outcome, Progress, StartReport};
 use crate::flight::Finding;
 
 /// One entry of a job's log. `seq` starts at 1 and has no holes.
@@ -31,6 +31,8 @@ pub enum EventBody {
     Released { reason: String },
     /// Model compiled, channels resolved, units checked.
     Prepared(Prepared),
+    /// The search for start values got on, or ended.
+    Start(StartReport),
     /// The solver finished an iteration (number 0: the start value).
     Iteration(Iteration),
     /// A derivative study found something.
@@ -63,6 +65,15 @@ pub struct Prepared {
     pub findings: Vec<Finding>,
 }
 
+impl From<Progress<'_>> for EventBody {
+    fn from(progress: Progress<'_>) -> Self {
+        match progress {
+            Progress::Start(report) => Self::Start(report.clone()),
+            Progress::Iteration(iteration) => Self::Iteration(iteration.clone()),
+        }
+    }
+}
+
 impl EventBody {
     /// The event's name on the wire (the `event:` line of a server-sent event).
     pub fn name(&self) -> &'static str {
@@ -71,6 +82,7 @@ impl EventBody {
             Self::Claimed { .. } => "claimed",
             Self::Released { .. } => "released",
             Self::Prepared(_) => "prepared",
+            Self::Start(_) => "start",
             Self::Iteration(_) => "iteration",
             Self::Finding(_) => "finding",
             Self::CancelRequested => "cancel_requested",

@@ -128,7 +128,7 @@ pub(super) fn check_data(
 pub(super) fn process_noise(problem: &Problem) -> Vec<String> {
     match problem.options.estimator {
         Estimator::FilterError => process_noise_names(problem),
-        Estimator::OutputError => Vec::new(),
+        Estimator::OutputError | Estimator::EquationError => Vec::new(),
     }
 }
 

@@ -11,8 +11,9 @@ use super::{Fault, JobKind, JobSpec, ModelSource, Prepared, study};
 use super::{bounds, filter, missing};
 use crate::estimate::study::DerivativeStudy;
 use crate::estimate::{
-    Derivatives, Estimate, Estimator, Iteration, Noise, Options, Outcome, Problem, Role, Solution,
-    TimeHistory, Unknowns, Unusable, Validation, filter_error, output_error, predict,
+    Derivatives, Estimate, Estimator, Noise, Options, Outcome, Problem, Progress, Role, Solution,
+    StartMethod, TimeHistory, Unknowns, Unusable, Validation, estimate, has_equation_error,
+    predict,
 };
 use crate::flight::{Maneuver, escape};
 use crate::model::{ChannelFormula, Model, ModelDocument, Start};
@@ -123,6 +124,7 @@ pub fn prepare(
     if spec.kind == JobKind::DerivativeStudy {
         study::check(&problem)?;
     }
+    check_estimator(&problem)?;
     let prepared = Prepared {
         segments: problem
             .segments
@@ -177,32 +179,28 @@ fn unknowns(
     Unknowns::new(model, resolved.len(), start).map_err(|fault| vec![fault])
 }
 
-/// Runs a plan; `observer` is told of each iteration and may stop it.
+/// Runs a plan; `watcher` is told of its progress and may stop it.
 ///
 /// # Errors
 /// The start values lead nowhere: there is no iterate to speak of.
 pub fn run(
     plan: &Plan,
-    observer: &mut dyn FnMut(&Iteration) -> ControlFlow<()>,
+    watcher: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
 ) -> Result<JobResult, Vec<Fault>> {
     let problem = &plan.problem;
     let Solution {
-        mut estimate,
+        estimate: mut result,
         mut histories,
-    } = match problem.options.estimator {
-        Estimator::OutputError => output_error(problem, observer),
-        Estimator::FilterError => filter_error(problem, observer),
-    }
-    .map_err(|why| vec![no_start(problem, why)])?;
-    if estimate.outcome != Outcome::Cancelled {
+    } = estimate(problem, watcher).map_err(|why| vec![no_start(problem, why)])?;
+    if result.outcome != Outcome::Cancelled {
         for validation in &plan.validation {
-            let (prediction, history) = predict(problem, &estimate, validation);
-            estimate.prediction.push(prediction);
+            let (prediction, history) = predict(problem, &result, validation);
+            result.prediction.push(prediction);
             histories.extend(history);
         }
     }
     Ok(JobResult {
-        estimate,
+        estimate: result,
         histories,
         model: plan.model.clone(),
         study: None,
@@ -246,7 +244,28 @@ pub(super) fn no_start(problem: &Problem, why: Unusable) -> Fault {
             let message = "the residuals of some outputs are not independent, so that their full covariance is singular; use the structure \"diagonal\", or leave one of these outputs out";
             Fault::new("/options/noise", "singular_noise", message)
         }
+        Unusable::NoMeasuredState => no_measured_state(problem),
     }
+}
+
+/// Equation error needs states that are measured.
+fn check_estimator(problem: &Problem) -> Result<(), Vec<Fault>> {
+    let options = &problem.options;
+    let asked = options.estimator == Estimator::EquationError
+        || options.start == StartMethod::EquationError {};
+    if asked && !has_equation_error(problem) {
+        return Err(vec![no_measured_state(problem)]);
+    }
+    Ok(())
+}
+
+fn no_measured_state(problem: &Problem) -> Fault {
+    let pointer = match problem.options.estimator {
+        Estimator::EquationError => "/options/estimator",
+        Estimator::OutputError | Estimator::FilterError => "/options/start",
+    };
+    let message = "equation error needs an output that measures a state: its equation is the state, possibly with a bias, scale or drift parameter; add such an output, or choose another";
+    Fault::new(pointer, "no_measured_state", message)
 }
 
 /// The declared document with the job's edits and overrides in it.
@@ -368,6 +387,13 @@ fn check_options(options: &Options, model: &Model, faults: &mut Vec<Fault>) {
     if !model.delays.is_empty() && options.derivatives != Derivatives::default() {
         let message = "delays are known to the technique \"forward_sensitivities\" alone; choose it, or leave the delays out of the model";
         faults.push(Fault::new("/options/derivatives", "bad_option", message));
+    }
+    if let Some((field, message)) = options.start.unfit() {
+        faults.push(Fault::new(
+            format!("/options/start/{field}"),
+            "bad_option",
+            message,
+        ));
     }
     if let Noise::Given { variance } = &options.noise {
         let outputs: Vec<&str> = model

@@ -31,9 +31,13 @@ impl Status {
             (EventBody::Succeeded { .. }, _) => Self::Succeeded,
             (EventBody::Failed { .. }, _) => Self::Failed,
             (EventBody::Cancelled { .. }, _) => Self::Cancelled,
-            (EventBody::Prepared(_) | EventBody::Iteration(_) | EventBody::Finding(_), before) => {
-                before.unwrap_or(Self::Running)
-            }
+            (
+                EventBody::Prepared(_)
+                | EventBody::Start(_)
+                | EventBody::Iteration(_)
+                | EventBody::Finding(_),
+                before,
+            ) => before.unwrap_or(Self::Running),
         }
     }
 

@@ -5,12 +5,12 @@ use std::ops::ControlFlow;
 use super::Fault;
 use super::run::{JobResult, Plan, no_start, run};
 use crate::estimate::study::{self, Clock, NoStudy, StudyStep};
-use crate::estimate::{Derivatives, Iteration, Outcome, Problem};
+use crate::estimate::{self, Derivatives, Outcome, Problem};
 
 /// What a study tells as it goes.
 #[derive(Clone, Copy, Debug)]
 pub enum Progress<'a> {
-    Iteration(&'a Iteration),
+    Estimation(estimate::Progress<'a>),
     Finding(&'a StudyStep),
     /// Nothing new, but an occasion to stop it.
     Underway,
@@ -25,8 +25,8 @@ pub fn run_study(
     clock: &dyn Clock,
     observer: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
 ) -> Result<JobResult, Vec<Fault>> {
-    let mut result = run(plan, &mut |iteration| {
-        observer(Progress::Iteration(iteration))
+    let mut result = run(plan, &mut |progress| {
+        observer(Progress::Estimation(progress))
     })?;
     if result.estimate.outcome == Outcome::Cancelled {
         return Ok(result);

@@ -134,9 +134,7 @@ impl Edit {
                     }
                     _ => (format!("((1 + {name})*{})", self.target), "-".to_string()),
                 };
-                for equation in equations(&mut edited) {
-                    *equation = replace_name(equation, &self.target, &text);
-                }
+                edited.substitute(&self.target, &text);
                 unit
             }
             EditKind::InputDelay => {
@@ -233,6 +231,15 @@ impl Edit {
             wanted,
             target: self.target.clone(),
             known: known.cloned().collect(),
+        }
+    }
+}
+
+impl ModelDocument {
+    /// Puts a text in the place of a name in all equations but those of initial states.
+    pub fn substitute(&mut self, name: &str, by: &str) {
+        for equation in equations(self) {
+            *equation = replace_name(equation, name, by);
         }
     }
 }

@@ -41,4 +41,31 @@ impl Segment {
     pub fn is_empty(&self) -> bool {
         self.time.is_empty()
     }
+
+    /// Seconds of simulated time from the first sample to each.
+    pub fn elapsed(&self) -> Vec<f64> {
+        let steps = (1..self.len()).map(|k| self.steps.length(k - 1));
+        let sums = steps.scan(0.0, |sum, step| {
+            *sum += step;
+            Some(*sum)
+        });
+        std::iter::once(0.0).chain(sums).take(self.len()).collect()
+    }
+
+    /// The samples of a range, as a segment of its own.
+    pub fn part(&self, range: std::ops::Range<usize>) -> Self {
+        let slice = |series: &Vec<f64>| series[range.clone()].to_vec();
+        Self {
+            label: self.label.clone(),
+            time: slice(&self.time),
+            steps: match &self.steps {
+                Steps::Even(step) => Steps::Even(*step),
+                Steps::Uneven(steps) => {
+                    Steps::Uneven(steps[range.start..(range.end - 1).max(range.start)].to_vec())
+                }
+            },
+            inputs: self.inputs.iter().map(slice).collect(),
+            measured: self.measured.iter().map(slice).collect(),
+        }
+    }
 }

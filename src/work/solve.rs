@@ -70,12 +70,10 @@ pub fn solve(
         ControlFlow::Continue(())
     };
     let result = match spec.kind {
-        JobKind::Estimate => job::run(&plan, &mut |iteration| {
-            tell(Some(EventBody::Iteration(iteration.clone())))
-        }),
+        JobKind::Estimate => job::run(&plan, &mut |progress| tell(Some(progress.into()))),
         JobKind::DerivativeStudy => job::run_study(&plan, &ThreadClock::start(), &mut |progress| {
             tell(match progress {
-                Progress::Iteration(iteration) => Some(EventBody::Iteration(iteration.clone())),
+                Progress::Estimation(progress) => Some(progress.into()),
                 Progress::Finding(step) => Some(EventBody::Finding(step.clone())),
                 Progress::Underway => None,
             })

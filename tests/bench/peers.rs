@@ -62,7 +62,7 @@ fn prepare(problem: &Problem, recording: &Arc<Maneuver>, tolerance: f64) -> Plan
         "model": "in the file",
         "maneuvers": [{"id": "the recording", "gaps": "join"}],
         // the peers know the conventional error bounds only
-        "options": {"tolerance": tolerance, "method": "gauss_newton", "error_bounds": "conventional"},
+        "options": {"tolerance": tolerance, "method": "gauss_newton", "error_bounds": "conventional", "start": {"kind": "document"}},
     });
     for (key, value) in problem.spec.as_object().expect("an object") {
         spec[key] = value.clone();

@@ -9,6 +9,7 @@ pub mod preprocessing;
 pub mod printed_adjoint;
 pub mod process;
 pub mod published_cases;
+pub mod random_starts;
 pub mod recordings;
 pub mod server;
 pub mod sse;

@@ -49,13 +49,13 @@ fn inverse(information: &DMatrix<f64>) -> Option<DMatrix<f64>> {
 /// The start values give no cost, so that there is nothing to begin with.
 pub(in crate::estimate) fn solve(
     problem: &Problem,
+    theta: Vec<f64>,
     scaling: Scaling,
     observer: &mut Observer<'_>,
 ) -> Result<Solution, Unusable> {
     let unknowns = &problem.unknowns;
     let mut evaluator = Evaluator::new(problem);
     let mut adjoint = CostAndGradient::new(problem);
-    let theta = unknowns.start();
     let (cost, gradient) = adjoint.at(&theta)?;
     let (inverse_hessian, unscaled) = initial_inverse(&mut evaluator, scaling, &theta)?;
     let bounds = (0..unknowns.len()).map(|i| (unknowns.at(i).lower, unknowns.at(i).upper));
