@@ -131,7 +131,7 @@ mod tests {
         for seed in 0..200 {
             let n = 1 + seed % 10;
             let mut random = scatter(seed);
-            let a = DMatrix::from_fn(n, n, &mut random) * 3.0;
+            let a = DMatrix::from_fn(n, n, &mut random) * 3.0 - DMatrix::identity(n, n) * 3.0;
             let c = DMatrix::from_fn(n, n, &mut random);
             let f = DMatrix::from_fn(n, n, |i, j| if i == j { random(i, j) + 1.1 } else { 0.0 });
             let units = DVector::from_fn(n, |i, _| 10f64.powi((i % 4) as i32 * 2 - 3));
