@@ -45,7 +45,7 @@ impl Autoregression {
                 .sum();
             let reflection = (autocovariance[order] - foreseen) / variance;
             // out of this range only where samples are missing, or by rounding
-            if !(reflection.abs() < 1.0) {
+            if reflection.is_nan() || reflection.abs() >= 1.0 {
                 break;
             }
             let mirrored: Vec<f64> = coefficients.iter().rev().copied().collect();

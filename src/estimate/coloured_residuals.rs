@@ -186,10 +186,10 @@ impl<'c> Filter<'c> {
 
     /// u_j(k) = Σ_i (R⁻¹)_ij S_i(k) + Σ_m a_jm u_j(k − m)
     fn add(&mut self, block: &Block<'_>, measured: &[Vec<f64>]) {
-        for j in 0..self.columns.len() {
+        for (j, measured) in measured.iter().enumerate() {
             for k in 0..block.len {
                 let at = self.begin_row(j);
-                if measured[j][block.first + k].is_finite() {
+                if measured[block.first + k].is_finite() {
                     let row = &mut self.filtered[j][at..];
                     for (i, columns) in self.columns.iter().enumerate() {
                         let weight = self.inverse[(i, j)];

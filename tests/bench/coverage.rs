@@ -19,8 +19,8 @@ use coverage::{fit, over_seeds};
 const SEEDS: u64 = 1000;
 
 fn main() {
-    let numbers = std::env::args().filter_map(|argument| argument.parse().ok());
-    let seeds: u64 = numbers.last().unwrap_or(SEEDS);
+    let mut numbers = std::env::args().filter_map(|argument| argument.parse().ok());
+    let seeds: u64 = numbers.next_back().unwrap_or(SEEDS);
     let n = seeds as f64;
     println!(
         "a share of 95 % is known to ±{:.1} % (95 %) from {seeds} seeds",
