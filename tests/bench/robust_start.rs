@@ -6,6 +6,7 @@
 
 #[path = "../common/flight_data.rs"]
 mod flight_data;
+#[allow(dead_code)] // the tests use the rest
 #[path = "../common/published_cases.rs"]
 mod published_cases;
 #[path = "../common/random_starts.rs"]
