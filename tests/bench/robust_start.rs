@@ -6,10 +6,10 @@
 
 #[path = "../common/flight_data.rs"]
 mod flight_data;
+#[allow(dead_code)]
 #[path = "../common/preprocessing.rs"]
-#[allow(dead_code)]
 mod preprocessing;
-#[allow(dead_code)]
+#[allow(dead_code)] // the tests use the rest
 #[path = "../common/published_cases.rs"]
 mod published_cases;
 #[path = "../common/random_starts.rs"]

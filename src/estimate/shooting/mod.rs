@@ -35,7 +35,9 @@ use intervals::{Cut, Nodes};
 const PENALTY_START: f64 = 1e-2;
 const PENALTY_GROWTH: f64 = 10.0;
 const PENALTY_END: f64 = 1e10;
-/// Steps at one penalty, and the gain in -ln L below which the next penalty's turn comes.
+/// Steps at the first penalty, which have the longest way to go, and at a later one; and the gain in -ln L below which
+/// the next penalty's turn comes.
+const MOST_FIRST_STEPS: usize = 40;
 const MOST_STEPS: usize = 8;
 const SMALL_GAIN: f64 = 0.1;
 /// Closed when the whole trajectory costs no more than this above the pieces.
@@ -143,7 +145,12 @@ fn close(cut: &Cut<'_>, mut point: Point, noise: &DVector<f64>, told: &mut Told<
     let mut short = cut.problem.clone();
     short.options.max_iterations = DESCENT_ITERATIONS;
     while penalty <= PENALTY_END {
-        for _ in 0..MOST_STEPS {
+        let most = if penalty > PENALTY_START {
+            MOST_STEPS
+        } else {
+            MOST_FIRST_STEPS
+        };
+        for _ in 0..most {
             let before = point.merit(penalty);
             let Some(next) = step(cut, &point, noise, penalty, &mut damping) else {
                 damping = DAMPING_START;
