@@ -5,8 +5,9 @@ use nalgebra::{DMatrix, DVector};
 use super::local_sums::LocalSums;
 use super::options::{Noise, NoiseStructure};
 use super::problem::Problem;
+use super::products::dot;
 use super::sums::{ResidualSums, Sums, mirror};
-use crate::simulate::{Sensitivities, simulate};
+use crate::simulate::{Diverged, Outputs, Sensitivities};
 
 /// Why a θ gives no cost.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -23,6 +24,7 @@ pub enum Unusable {
 pub struct Evaluator<'p> {
     problem: &'p Problem,
     machinery: Sensitivities<'p>,
+    outputs: Outputs<'p>,
     parameters: Vec<f64>,
     full: bool,
     /// Simulations with sensitivities, and without, so far.
@@ -48,6 +50,11 @@ impl<'p> Evaluator<'p> {
         Self {
             problem,
             machinery,
+            outputs: Outputs::new(
+                &problem.model,
+                options.integrator,
+                options.input_interpolation,
+            ),
             parameters: Vec::new(),
             full,
             evaluations: 0,
@@ -63,31 +70,25 @@ impl<'p> Evaluator<'p> {
     pub(super) fn residuals(&mut self, theta: &[f64]) -> Result<ResidualSums, Unusable> {
         self.simulations += 1;
         let problem = self.problem;
-        let options = &problem.options;
         let outputs = problem.model.outputs.len();
         let mut sums = DMatrix::zeros(outputs, outputs);
-        let mut residual = vec![0.0; outputs];
+        let mut residuals = vec![Vec::new(); outputs];
         for (index, segment) in problem.segments.iter().enumerate() {
             problem
                 .unknowns
                 .parameters(index, theta, &mut self.parameters);
-            let (model, integrator) = (&problem.model, options.integrator);
-            simulate(
-                model,
-                integrator,
-                options.input_interpolation,
-                segment,
-                &self.parameters,
-                |k, y: &[f64]| {
-                    for i in 0..outputs {
-                        residual[i] = segment.measured[i][k] - y[i];
-                        for j in if self.full { 0..i } else { i..i } {
-                            sums[(i, j)] += residual[i] * residual[j];
-                        }
-                        sums[(i, i)] += residual[i] * residual[i];
+            let run = self.outputs.run(segment, &self.parameters, |first, y| {
+                for ((residuals, y), z) in residuals.iter_mut().zip(y).zip(&segment.measured) {
+                    residuals.clear();
+                    residuals.extend(z[first..].iter().zip(*y).map(|(z, y)| z - y));
+                }
+                for i in 0..outputs {
+                    for j in if self.full { 0..=i } else { i..=i } {
+                        sums[(i, j)] += dot(&residuals[i], &residuals[j]);
                     }
-                },
-            );
+                }
+            });
+            run.map_err(|diverged| left_range(index, &diverged))?;
         }
         mirror(&mut sums);
         if sums.iter().all(|v| v.is_finite()) {
@@ -123,10 +124,7 @@ impl<'p> Evaluator<'p> {
             let mut local = LocalSums::new(problem, self.full);
             self.machinery
                 .run(segment, &self.parameters, |block| local.add(block, segment))
-                .map_err(|diverged| Unusable::LeftRange {
-                    segment: index,
-                    sample: diverged.sample,
-                })?;
+                .map_err(|diverged| left_range(index, &diverged))?;
             local.scatter(problem, index, &mut total);
         }
         mirror(&mut total.residuals);
@@ -140,5 +138,12 @@ impl<'p> Evaluator<'p> {
         } else {
             Err(Unusable::NotFinite)
         }
+    }
+}
+
+fn left_range(segment: usize, diverged: &Diverged) -> Unusable {
+    Unusable::LeftRange {
+        segment,
+        sample: diverged.sample,
     }
 }

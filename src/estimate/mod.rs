@@ -19,6 +19,7 @@ mod local_sums;
 mod options;
 mod output_error;
 mod problem;
+mod products;
 mod report;
 mod step;
 mod sums;

@@ -2,6 +2,7 @@
 //!
 //! All faults of a document are found in one go, as far as one does not hide another.
 
+use super::affine::Affine;
 use super::document::{ModelDocument, Start};
 use super::equations::Equations;
 use super::expression::{self, BinaryOperator, Expression, Function, Kind};
@@ -52,6 +53,7 @@ impl Model {
             initial_jacobian: Jacobian::derive(&mut graph, slots, &roots.initial),
             dynamics_jacobian: Jacobian::derive(&mut graph, slots, &roots.dynamics),
             observation_jacobian: Jacobian::derive(&mut graph, slots, &roots.observation),
+            affine_dynamics: Affine::find(&mut graph, slots, &roots.dynamics),
             inputs: quantities(
                 document
                     .inputs

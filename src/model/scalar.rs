@@ -4,6 +4,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use num_complex::Complex64;
 
+use super::instruction::Instructions;
+
 /// A number as compiled equations need it.
 pub trait Scalar:
     Copy
@@ -34,6 +36,13 @@ pub trait Scalar:
     fn less_or_equal(self, other: Self) -> Self;
     /// `yes` where self is not 0, else `no`.
     fn select(self, yes: Self, no: Self) -> Self;
+    /// self * factor + addend, rounded once where the number is real: the same on every machine, and one
+    /// instruction on those made since 2013. Where there is none it is slow, but the numbers are the same.
+    fn multiply_add(self, factor: Self, addend: Self) -> Self;
+    /// Does what a program says, with the widest vectors that the machine has; the numbers do not depend on them.
+    fn execute(body: &Instructions, registers: &mut [Self]) {
+        body.interpret(registers);
+    }
 }
 
 fn truth(value: bool) -> f64 {
@@ -73,6 +82,13 @@ impl Scalar for f64 {
     #[inline(always)]
     fn select(self, yes: Self, no: Self) -> Self {
         if self != 0.0 { yes } else { no }
+    }
+    #[inline(always)]
+    fn multiply_add(self, factor: Self, addend: Self) -> Self {
+        self.mul_add(factor, addend)
+    }
+    fn execute(body: &Instructions, registers: &mut [Self]) {
+        body.execute_one(registers);
     }
 }
 
@@ -126,6 +142,9 @@ impl Scalar for Complex64 {
     }
     fn select(self, yes: Self, no: Self) -> Self {
         if self.re != 0.0 { yes } else { no }
+    }
+    fn multiply_add(self, factor: Self, addend: Self) -> Self {
+        self * factor + addend
     }
 }
 
@@ -187,5 +206,14 @@ impl Scalar for Lanes {
     #[inline(always)]
     fn select(self, yes: Self, no: Self) -> Self {
         Self(std::array::from_fn(|i| self.0[i].select(yes.0[i], no.0[i])))
+    }
+    #[inline(always)]
+    fn multiply_add(self, factor: Self, addend: Self) -> Self {
+        Self(std::array::from_fn(|i| {
+            self.0[i].mul_add(factor.0[i], addend.0[i])
+        }))
+    }
+    fn execute(body: &Instructions, registers: &mut [Self]) {
+        body.execute_lanes(registers);
     }
 }

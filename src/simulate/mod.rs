@@ -5,21 +5,28 @@
 //! maneuver of known truth.
 
 mod columns;
+mod course;
 mod input_design;
 mod linearised;
 mod method;
+mod one_step;
+mod one_step_recursion;
+mod output_rows;
+mod outputs;
 mod pack;
 mod recursion;
 mod scenario;
 mod segment;
 mod sensitivity;
+mod state_sensitivities;
 mod stepper;
 mod trajectory;
 
 pub use columns::Columns;
 pub use input_design::InputDesign;
 pub use method::{InputInterpolation, Integrator};
-pub use pack::{PACK, Pack, add_scaled, packs, plus, scaled};
+pub use outputs::Outputs;
+pub use pack::{PACK, Pack, multiply_add, packs};
 pub use scenario::{Scenario, ScenarioError};
 pub use segment::{Segment, Steps};
 pub use sensitivity::{Block, Sensitivities};
