@@ -208,7 +208,7 @@ fn what_is_not_affine_is_left_to_the_stages() {
         ("a*sin(x)", false),
         ("a*x + a*t*a", false),
         ("a*sign(x)", false),
-        ("a*(x < u)", false),
+        ("a*if(x < u, 1, 2)", false),
         ("a*if(x > 0, x, u)", false),
         ("a*max(x, u)", false),
         ("a*x/u", false),

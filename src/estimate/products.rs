@@ -50,7 +50,9 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (a, a_rest) = a.as_chunks::<PACK>();
     let (b, b_rest) = b.as_chunks::<PACK>();
     for (a, b) in a.iter().zip(b) {
-        sums = std::array::from_fn(|i| a[i].mul_add(b[i], sums[i]));
+        for i in 0..PACK {
+            sums[i] = a[i].mul_add(b[i], sums[i]);
+        }
     }
     let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
     sums.iter().sum::<f64>() + rest

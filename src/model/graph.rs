@@ -265,8 +265,8 @@ fn fold_unary(operation: Unary, value: f64) -> f64 {
     use super::scalar::Scalar;
     match operation {
         Unary::Negate => -value,
-        Unary::Sin => value.sin(),
-        Unary::Cos => value.cos(),
+        Unary::Sin => Scalar::sin(value),
+        Unary::Cos => Scalar::cos(value),
         Unary::Tan => value.tan(),
         Unary::Asin => value.asin(),
         Unary::Acos => value.acos(),

@@ -20,6 +20,7 @@ pub mod limits;
 mod names;
 mod program;
 mod scalar;
+mod trigonometry;
 mod unique;
 
 pub use affine::{Affine, Coefficient, Factor};

@@ -102,20 +102,17 @@ fn form(
     sensitivities: &[Pack],
     (states, width): (usize, usize),
 ) {
-    let rows = &mut output.rows[..len * output.width];
-    if output.direct.is_empty() {
-        rows.fill(Pack::default());
-    } else {
-        rows.copy_from_slice(&output.direct[..len * output.width]);
-    }
-    if width == 0 {
-        return;
-    }
-    for &(entry, state) in &output.by_state {
-        let values = observation.over_block(0, entry);
-        let from = sensitivities.chunks_exact(states * width);
-        for ((row, from), &value) in rows.chunks_exact_mut(output.width).zip(from).zip(values) {
-            let from = &from[state * width..(state + 1) * width];
+    let rows = output.rows[..len * output.width].chunks_exact_mut(output.width.max(1));
+    let is_direct = !output.direct.is_empty();
+    for (k, row) in rows.enumerate() {
+        if is_direct {
+            row.copy_from_slice(&output.direct[k * output.width..(k + 1) * output.width]);
+        } else {
+            row.fill(Pack::default());
+        }
+        for &(entry, state) in &output.by_state {
+            let value = observation.value(0, entry, k);
+            let from = &sensitivities[(k * states + state) * width..][..width];
             for (to, &from) in row.iter_mut().zip(from) {
                 *to = multiply_add(value, from, *to);
             }

@@ -12,6 +12,10 @@ pub fn packs(width: usize) -> usize {
 /// factor * pack + addend, each number rounded once. By value, so that nothing can alias and a pack is one
 /// register.
 #[inline(always)]
-pub fn multiply_add(factor: f64, pack: Pack, addend: Pack) -> Pack {
-    std::array::from_fn(|i| factor.mul_add(pack[i], addend[i]))
+pub fn multiply_add(factor: f64, pack: Pack, mut addend: Pack) -> Pack {
+    // a loop, not `from_fn`: that may stay a function of its own, compiled for the least of machines
+    for i in 0..PACK {
+        addend[i] = factor.mul_add(pack[i], addend[i]);
+    }
+    addend
 }
