@@ -28,7 +28,7 @@ struct Place {
 pub(super) struct Recursion {
     states: usize,
     width: usize,
-    /// ∂f/∂x, by row.
+    /// By pack, then row: the entries of ∂f/∂x that meet a state with sensitivities in that pack.
     by_state: Vec<Vec<Product>>,
     by_parameter: Vec<Place>,
     /// By pack, then state: which pack of ∂f/∂θ it is; 0 is one that is always zero.
@@ -74,7 +74,7 @@ impl Recursion {
         Self {
             states,
             width,
-            by_state: by_row(&dynamics.by_state, states),
+            by_state: products(model, columns, width),
             by_parameter,
             forced,
             packs,
@@ -159,7 +159,10 @@ fn step(
                 }
             }
             let forcing = &recursion.forcing[(s * BLOCK + k) * recursion.packs..];
-            for (i, products) in recursion.by_state.iter().enumerate() {
+            for (i, products) in recursion.by_state[pack * states..(pack + 1) * states]
+                .iter()
+                .enumerate()
+            {
                 let mut value = forcing[forced[i]];
                 for product in products {
                     let factor = dynamics.value(s, product.entry, k);
@@ -175,11 +178,32 @@ fn step(
     }
 }
 
-/// Entries (row, state) as products, by row.
-fn by_row(entries: &[(usize, usize)], rows: usize) -> Vec<Vec<Product>> {
-    let mut products = vec![Vec::new(); rows];
-    for (entry, &(row, state)) in entries.iter().enumerate() {
-        products[row].push(Product { entry, state });
+/// By pack, then row: entries of ∂f/∂x, without those that meet only zeros for any θ.
+fn products(model: &Model, columns: &Columns, width: usize) -> Vec<Vec<Product>> {
+    let states = model.states.len();
+    let dynamics = &model.dynamics_jacobian;
+    let mut products = vec![Vec::new(); width * states];
+    for (pack, products) in products.chunks_exact_mut(states.max(1)).enumerate() {
+        let of_pack = |parameter: usize| {
+            let column = columns.dynamic.iter().position(|&p| p == parameter);
+            column.is_some_and(|column| column / PACK == pack)
+        };
+        let direct = (dynamics.by_parameter.iter()).chain(&model.initial_jacobian.by_parameter);
+        let mut moves = vec![false; states];
+        for &(row, parameter) in direct {
+            moves[row] |= of_pack(parameter);
+        }
+        // what depends on a state that moves, moves: at most as many rounds as there are states
+        for _ in 0..states {
+            for &(row, state) in &dynamics.by_state {
+                moves[row] |= moves[state];
+            }
+        }
+        for (entry, &(row, state)) in dynamics.by_state.iter().enumerate() {
+            if moves[state] {
+                products[row].push(Product { entry, state });
+            }
+        }
     }
     products
 }

@@ -13,10 +13,7 @@ use trimtab::job;
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [name, work, times, ..] = arguments.as_slice() else {
-        println!(
-            "problems: {}; work: equations, solve",
-            simulated::NAMES.join(", ")
-        );
+        println!("for tests/instructions: PROBLEM equations|solve TIMES");
         return;
     };
     let times: usize = times.parse().expect("how many times");
