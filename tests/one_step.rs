@@ -17,7 +17,12 @@ const STEP: f64 = 0.04;
 fn segment(model: &Model, steps: Steps, samples: usize) -> Segment {
     let wave = |channel: usize, k: usize| {
         let t = k as f64 * STEP;
-        0.05 * ((1.3 + channel as f64) * t).sin() + if (k / 37) % 2 == 0 { 0.03 } else { -0.02 }
+        0.05 * ((1.3 + channel as f64) * t).sin()
+            + if (k / 37).is_multiple_of(2) {
+                0.03
+            } else {
+                -0.02
+            }
     };
     let series = |count: usize| -> Vec<Vec<f64>> {
         let channel = |c: usize| (0..samples).map(|k| wave(c, k)).collect();
