@@ -6,8 +6,9 @@ use super::derivatives::{self, CentralDifference, ComplexStep, Derivatives, Forw
 use super::local_sums::LocalSums;
 use super::options::{Noise, NoiseStructure};
 use super::problem::Problem;
+use super::products::dot;
 use super::sums::{ResidualSums, Sums, mirror};
-use crate::simulate::{Block, Sensitivities, delay_out_of_bounds, simulate};
+use crate::simulate::{Block, Diverged, Outputs, Sensitivities, delay_out_of_bounds};
 
 /// Why a θ gives no cost.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -31,6 +32,7 @@ pub enum Unusable {
 pub struct Evaluator<'p> {
     problem: &'p Problem,
     machinery: Sensitivities<'p>,
+    outputs: Outputs<'p>,
     parameters: Vec<f64>,
     full: bool,
     /// Simulations with sensitivities, and without, so far.
@@ -56,6 +58,11 @@ impl<'p> Evaluator<'p> {
         Self {
             problem,
             machinery,
+            outputs: Outputs::new(
+                &problem.model,
+                options.integrator,
+                options.input_interpolation,
+            ),
             parameters: Vec::new(),
             full,
             evaluations: 0,
@@ -83,35 +90,25 @@ impl<'p> Evaluator<'p> {
     pub(super) fn residuals(&mut self, theta: &[f64]) -> Result<ResidualSums, Unusable> {
         self.simulations += 1;
         let problem = self.problem;
-        let options = &problem.options;
         let outputs = problem.model.outputs.len();
         let mut sums = DMatrix::zeros(outputs, outputs);
-        let mut residual = vec![0.0; outputs];
+        let mut residuals = vec![Vec::new(); outputs];
         for (index, segment) in problem.segments.iter().enumerate() {
             self.set(index, theta)?;
-            let (model, integrator) = (&problem.model, options.integrator);
-            simulate(
-                model,
-                integrator,
-                options.input_interpolation,
-                segment,
-                &self.parameters,
-                |k, y: &[f64]| {
-                    for i in 0..outputs {
-                        let measured = segment.measured[i][k];
-                        // a missing sample does not count, whatever the model says there
-                        residual[i] = if measured.is_nan() {
-                            0.0
-                        } else {
-                            measured - y[i]
-                        };
-                        for j in if self.full { 0..i } else { i..i } {
-                            sums[(i, j)] += residual[i] * residual[j];
-                        }
-                        sums[(i, i)] += residual[i] * residual[i];
+            let run = self.outputs.run(segment, &self.parameters, |first, y| {
+                for ((residuals, y), z) in residuals.iter_mut().zip(y).zip(&segment.measured) {
+                    residuals.clear();
+                    // a missing sample does not count, whatever the model says there
+                    let residual = |(z, y): (&f64, &f64)| if z.is_nan() { 0.0 } else { z - y };
+                    residuals.extend(z[first..].iter().zip(*y).map(residual));
+                }
+                for i in 0..outputs {
+                    for j in if self.full { 0..=i } else { i..=i } {
+                        sums[(i, j)] += dot(&residuals[i], &residuals[j]);
                     }
-                },
-            );
+                }
+            });
+            run.map_err(|diverged| left_range(index, &diverged))?;
         }
         mirror(&mut sums);
         if sums.iter().all(|v| v.is_finite()) {
@@ -164,13 +161,17 @@ impl<'p> Evaluator<'p> {
             let mut local = LocalSums::new(problem, self.full);
             self.machinery
                 .run(segment, &self.parameters, |block| local.add(block, segment))
-                .map_err(|diverged| Unusable::LeftRange {
-                    segment: index,
-                    sample: diverged.sample,
-                })?;
+                .map_err(|diverged| left_range(index, &diverged))?;
             local.scatter(problem, index, &mut total);
         }
         mirror(&mut total.residuals);
         total.finite()
+    }
+}
+
+fn left_range(segment: usize, diverged: &Diverged) -> Unusable {
+    Unusable::LeftRange {
+        segment,
+        sample: diverged.sample,
     }
 }

@@ -6,29 +6,29 @@ use super::problem::Problem;
 use super::report::{OutputFit, OutputSeries, Series, TheilShares, TimeHistory};
 use super::role::Role;
 use crate::model::Quantity;
-use crate::simulate::{Segment, simulate};
+use crate::simulate::{Outputs, Segment};
 
 /// Measured and modelled time histories of all segments for θ.
 pub(super) fn histories(problem: &Problem, theta: &[f64]) -> Vec<TimeHistory> {
     let model = &problem.model;
     let options = &problem.options;
     let mut parameters = Vec::new();
+    let mut machinery = Outputs::new(model, options.integrator, options.input_interpolation);
     let simulated = |index: usize, segment: &Segment| {
         problem.unknowns.parameters(index, theta, &mut parameters);
         let mut modelled = vec![Vec::with_capacity(segment.len()); model.outputs.len()];
-        simulate(
-            model,
-            options.integrator,
-            options.input_interpolation,
-            segment,
-            &parameters,
-            |_, y: &[f64]| {
-                modelled
-                    .iter_mut()
-                    .zip(y)
-                    .for_each(|(series, &value)| series.push(value));
-            },
-        );
+        let run = machinery.run(segment, &parameters, |_, y| {
+            modelled
+                .iter_mut()
+                .zip(y)
+                .for_each(|(series, y)| series.extend_from_slice(y));
+        });
+        if run.is_err() {
+            // an estimate has been simulated before; should it not be, what is missing is told apart
+            modelled
+                .iter_mut()
+                .for_each(|series| series.resize(segment.len(), f64::NAN));
+        }
         modelled
     };
     histories_of(problem, simulated)

@@ -1,12 +1,12 @@
 //! The sums of one segment, in the columns of its own sensitivities.
 
-use multiversion::multiversion;
 use nalgebra::DMatrix;
 
 use super::missing::Missing;
 use super::problem::Problem;
+use super::products::{add_cross_products, add_gradient, add_products, dot};
 use super::sums::{Sums, pair};
-use crate::simulate::{Block, PACK, Pack, Segment, add_scaled, packs, plus, scaled};
+use crate::simulate::{Block, PACK, Pack, Segment, packs};
 
 pub(super) struct LocalSums {
     full: bool,
@@ -71,7 +71,7 @@ impl LocalSums {
                     rows,
                     self.widths[i],
                     self.missing.rows(block, j),
-                    packs(self.widths[j]),
+                    self.widths[j],
                 );
             }
             self.residuals[(i, i)] += dot(&residuals[i], &residuals[i]);
@@ -122,66 +122,5 @@ impl LocalSums {
                 }
             }
         }
-    }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// to += Σ_k row_k row_kᵀ, up to the diagonal; four samples at a time, so that sums stay in registers longer.
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
-fn add_products(to: &mut [Pack], rows: &[Pack], width: usize) {
-    let stride = packs(width);
-    let mut quads = rows.chunks_exact(4 * stride.max(1));
-    for quad in &mut quads {
-        let (r0, rest) = quad.split_at(stride);
-        let (r1, rest) = rest.split_at(stride);
-        let (r2, r3) = rest.split_at(stride);
-        for a in 0..width {
-            let (pack, lane) = (a / PACK, a % PACK);
-            let (s0, s1, s2, s3) = (
-                r0[pack][lane],
-                r1[pack][lane],
-                r2[pack][lane],
-                r3[pack][lane],
-            );
-            let line = &mut to[a * stride..a * stride + pack + 1];
-            for ((((to, v0), v1), v2), v3) in line.iter_mut().zip(r0).zip(r1).zip(r2).zip(r3) {
-                let near = plus(scaled(s0, *v0), scaled(s1, *v1));
-                let far = plus(scaled(s2, *v2), scaled(s3, *v3));
-                *to = plus(*to, plus(near, far));
-            }
-        }
-    }
-    for row in quads.remainder().chunks_exact(stride.max(1)) {
-        for a in 0..width {
-            let (pack, lane) = (a / PACK, a % PACK);
-            let factor = row[pack][lane];
-            add_scaled(&mut to[a * stride..a * stride + pack + 1], factor, row);
-        }
-    }
-}
-
-/// to += Σ_k left_k right_kᵀ
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
-fn add_cross_products(to: &mut [Pack], left: &[Pack], width: usize, right: &[Pack], across: usize) {
-    let stride = packs(width);
-    for (left, right) in left
-        .chunks_exact(stride.max(1))
-        .zip(right.chunks_exact(across.max(1)))
-    {
-        for a in 0..width {
-            let factor = left[a / PACK][a % PACK];
-            add_scaled(&mut to[a * across..(a + 1) * across], factor, right);
-        }
-    }
-}
-
-/// to += Σ_k row_k e_k
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
-fn add_gradient(to: &mut [Pack], rows: &[Pack], residuals: &[f64]) {
-    for (row, &residual) in rows.chunks_exact(to.len().max(1)).zip(residuals) {
-        add_scaled(to, residual, row);
     }
 }

@@ -34,6 +34,7 @@ mod prediction;
 mod priors;
 mod problem;
 mod process_noise;
+mod products;
 pub mod quasi_newton;
 mod report;
 mod role;

@@ -2,6 +2,7 @@
 //!
 //! All faults of a document are found in one go, as far as one does not hide another.
 
+use super::affine::Affine;
 use super::delays::Delays;
 use super::document::{ModelDocument, Start};
 use super::equations::Equations;
@@ -56,6 +57,7 @@ impl Model {
             dynamics_jacobian: Jacobian::derive(&mut graph, slots, &roots.dynamics),
             observation_jacobian: Jacobian::derive(&mut graph, slots, &roots.observation),
             delays: Delays::compile(&mut graph, slots, &roots.input_delays, &roots.output_delays),
+            affine_dynamics: Affine::find(&mut graph, slots, &roots.dynamics),
             inputs: quantities(
                 document
                     .inputs

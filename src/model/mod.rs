@@ -3,9 +3,11 @@
 //! There is one way from a model to numbers: [`ModelDocument`] → [`Model::compile`] → [`Program`]s for
 //! f, g, x0 and their exact Jacobians. An effect is an [`Edit`] of the document.
 
+mod affine;
 pub mod catalog;
 mod compile;
 mod delays;
+mod derivative;
 mod dimensions;
 mod document;
 mod edit;
@@ -13,13 +15,16 @@ mod equations;
 pub mod expression;
 mod formula;
 mod graph;
+mod instruction;
 mod jacobian;
 pub mod limits;
 mod names;
 mod program;
 mod scalar;
+mod trigonometry;
 mod unique;
 
+pub use affine::{Affine, Coefficient, Factor};
 pub use delays::Delays;
 pub use document::{
     Constant, Definition, Input, ModelDocument, Output, Parameter, Per, Prior, Start, State,
@@ -45,6 +50,8 @@ pub struct Model {
     pub initial: Program,
     /// f(x, u, t, θ)
     pub dynamics: Program,
+    /// f as A x + B u + c, where it is of this form.
+    pub affine_dynamics: Option<Affine>,
     /// g(x, u, t, θ)
     pub observation: Program,
     pub initial_jacobian: Jacobian,

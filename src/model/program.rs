@@ -3,8 +3,9 @@
 //! Registers hold states, inputs, time, parameters, constants, then results. What depends on parameters
 //! alone is the *prelude*, run once for each θ; the *body* runs for each sample.
 
-use super::graph::{Binary, Graph, Node, NodeId, Unary};
-use super::scalar::{Lanes, Scalar};
+use super::graph::{Binary, Graph, Node, NodeId};
+use super::instruction::{Instruction, Instructions, Operation};
+use super::scalar::Scalar;
 
 /// Where the symbols of a model stand, in registers as in the graph.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -32,89 +33,14 @@ impl Slots {
     }
 }
 
-/// What an instruction does with its operands a, b, c. Flat, so that it is told by one jump.
-#[derive(Clone, Copy, Debug)]
-enum Operation {
-    Negate,
-    Sin,
-    Cos,
-    Tan,
-    Asin,
-    Acos,
-    Atan,
-    Tanh,
-    Exp,
-    Ln,
-    Sqrt,
-    Abs,
-    Sign,
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Power,
-    Atan2,
-    Less,
-    LessOrEqual,
-    Select,
-    /// c + a b, rounded as the two operations are.
-    MultiplyAdd,
-    /// c - a b, rounded as the two operations are.
-    MultiplySubtract,
-}
-
-impl From<Unary> for Operation {
-    fn from(unary: Unary) -> Self {
-        match unary {
-            Unary::Negate => Self::Negate,
-            Unary::Sin => Self::Sin,
-            Unary::Cos => Self::Cos,
-            Unary::Tan => Self::Tan,
-            Unary::Asin => Self::Asin,
-            Unary::Acos => Self::Acos,
-            Unary::Atan => Self::Atan,
-            Unary::Tanh => Self::Tanh,
-            Unary::Exp => Self::Exp,
-            Unary::Ln => Self::Ln,
-            Unary::Sqrt => Self::Sqrt,
-            Unary::Abs => Self::Abs,
-            Unary::Sign => Self::Sign,
-        }
-    }
-}
-
-impl From<Binary> for Operation {
-    fn from(binary: Binary) -> Self {
-        match binary {
-            Binary::Add => Self::Add,
-            Binary::Subtract => Self::Subtract,
-            Binary::Multiply => Self::Multiply,
-            Binary::Divide => Self::Divide,
-            Binary::Power => Self::Power,
-            Binary::Atan2 => Self::Atan2,
-            Binary::Less => Self::Less,
-            Binary::LessOrEqual => Self::LessOrEqual,
-        }
-    }
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Instruction {
-    operation: Operation,
-    target: u32,
-    a: u32,
-    b: u32,
-    c: u32,
-}
-
 /// Compiled equations: f(x, u, t, θ) for some list of results.
 #[derive(Clone, Debug)]
 pub struct Program {
     slots: Slots,
     registers: usize,
     constants: Vec<(u32, f64)>,
-    prelude: Vec<Instruction>,
-    body: Vec<Instruction>,
+    prelude: Instructions,
+    body: Instructions,
     results: Vec<u32>,
     /// By result: does it change from sample to sample, or only with θ?
     varies: Vec<bool>,
@@ -131,8 +57,8 @@ impl Program {
             slots,
             registers: slots.count(),
             constants: Vec::new(),
-            prelude: Vec::new(),
-            body: Vec::new(),
+            prelude: Instructions::default(),
+            body: Instructions::default(),
             results: Vec::new(),
             varies: Vec::new(),
         };
@@ -245,18 +171,13 @@ impl Program {
     pub fn set_parameters<T: Scalar>(&self, workspace: &mut Workspace<T>, parameters: &[T]) {
         let first = self.slots.parameter(0) as usize;
         workspace.0[first..first + self.slots.parameters].copy_from_slice(parameters);
-        execute(&self.prelude, &mut workspace.0);
+        self.prelude.interpret(&mut workspace.0);
     }
 
     /// Evaluates for the state, inputs and time that stand in the workspace.
     #[inline]
     pub fn run<T: Scalar>(&self, workspace: &mut Workspace<T>) {
-        execute(&self.body, &mut workspace.0);
-    }
-
-    /// As [`Self::run`], with the widest vectors that the machine has; the numbers are the same.
-    pub fn run_lanes(&self, workspace: &mut Workspace<Lanes>) {
-        execute_lanes(&self.body, &mut workspace.0);
+        T::execute(&self.body, &mut workspace.0);
     }
 
     /// Result `i` of the last run.
@@ -313,43 +234,4 @@ fn operands(node: Node) -> impl Iterator<Item = NodeId> {
         Node::Select(a, b, c) => [Some(a), Some(b), Some(c)],
     };
     list.into_iter().flatten()
-}
-
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
-fn execute_lanes(instructions: &[Instruction], registers: &mut [Lanes]) {
-    execute(instructions, registers);
-}
-
-#[inline(always)]
-fn execute<T: Scalar>(instructions: &[Instruction], registers: &mut [T]) {
-    for instruction in instructions {
-        let a = registers[instruction.a as usize];
-        let b = registers[instruction.b as usize];
-        registers[instruction.target as usize] = match instruction.operation {
-            Operation::Add => a + b,
-            Operation::Subtract => a - b,
-            Operation::Multiply => a * b,
-            Operation::MultiplyAdd => registers[instruction.c as usize] + a * b,
-            Operation::MultiplySubtract => registers[instruction.c as usize] - a * b,
-            Operation::Divide => a / b,
-            Operation::Power => a.power(b),
-            Operation::Atan2 => a.atan2(b),
-            Operation::Less => a.less(b),
-            Operation::LessOrEqual => a.less_or_equal(b),
-            Operation::Select => a.select(b, registers[instruction.c as usize]),
-            Operation::Negate => -a,
-            Operation::Sin => a.sin(),
-            Operation::Cos => a.cos(),
-            Operation::Tan => a.tan(),
-            Operation::Asin => a.asin(),
-            Operation::Acos => a.acos(),
-            Operation::Atan => a.atan(),
-            Operation::Tanh => a.tanh(),
-            Operation::Exp => a.exp(),
-            Operation::Ln => a.ln(),
-            Operation::Sqrt => a.sqrt(),
-            Operation::Abs => a.abs(),
-            Operation::Sign => a.sign(),
-        };
-    }
 }

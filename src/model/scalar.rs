@@ -4,6 +4,9 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use num_complex::Complex64;
 
+use super::instruction::Instructions;
+use super::trigonometry;
+
 /// A number as compiled equations need it.
 pub trait Scalar:
     Copy
@@ -36,10 +39,23 @@ pub trait Scalar:
     fn less_or_equal(self, other: Self) -> Self;
     /// `yes` where self is not 0, else `no`.
     fn select(self, yes: Self, no: Self) -> Self;
+    /// self * factor + addend, rounded once where the number is real: the same on every machine, and one
+    /// instruction on those made since 2013. Where there is none it is slow, but the numbers are the same.
+    fn multiply_add(self, factor: Self, addend: Self) -> Self;
+    /// Does what a program says, with the widest vectors that the machine has; the numbers do not depend on them.
+    fn execute(body: &Instructions, registers: &mut [Self]) {
+        body.interpret(registers);
+    }
 }
 
 fn truth(value: bool) -> f64 {
     f64::from(u8::from(value))
+}
+
+/// Whether an angle is one that needs no help from the system library.
+#[inline(always)]
+fn is_small(angle: f64) -> bool {
+    angle.abs() <= trigonometry::LARGEST_ANGLE
 }
 
 macro_rules! forward {
@@ -54,7 +70,23 @@ impl Scalar for f64 {
     fn real(self) -> f64 {
         self
     }
-    forward!(f64: sin cos tan asin acos atan tanh exp ln sqrt abs);
+    forward!(f64: tan asin acos atan tanh exp ln sqrt abs);
+    #[inline(always)]
+    fn sin(self) -> Self {
+        if is_small(self) {
+            trigonometry::sin(self)
+        } else {
+            f64::sin(self)
+        }
+    }
+    #[inline(always)]
+    fn cos(self) -> Self {
+        if is_small(self) {
+            trigonometry::cos(self)
+        } else {
+            f64::cos(self)
+        }
+    }
     #[inline(always)]
     fn sign(self) -> Self {
         if self == 0.0 { 0.0 } else { self.signum() }
@@ -78,6 +110,13 @@ impl Scalar for f64 {
     #[inline(always)]
     fn select(self, yes: Self, no: Self) -> Self {
         if self != 0.0 { yes } else { no }
+    }
+    #[inline(always)]
+    fn multiply_add(self, factor: Self, addend: Self) -> Self {
+        self.mul_add(factor, addend)
+    }
+    fn execute(body: &Instructions, registers: &mut [Self]) {
+        body.execute_one(registers);
     }
 }
 
@@ -135,6 +174,9 @@ impl Scalar for Complex64 {
     fn select(self, yes: Self, no: Self) -> Self {
         if self.re != 0.0 { yes } else { no }
     }
+    fn multiply_add(self, factor: Self, addend: Self) -> Self {
+        self * factor + addend
+    }
 }
 
 /// How many samples are evaluated side by side.
@@ -145,15 +187,22 @@ pub const LANES: usize = 16;
 #[repr(align(64))]
 pub struct Lanes(pub [f64; LANES]);
 
+// Loops, not `map` or `from_fn`: those may stay functions of their own, compiled for the least of machines.
 impl Lanes {
     #[inline(always)]
-    fn map(self, f: impl Fn(f64) -> f64) -> Self {
-        Self(self.0.map(f))
+    fn map(mut self, f: impl Fn(f64) -> f64) -> Self {
+        for value in &mut self.0 {
+            *value = f(*value);
+        }
+        self
     }
 
     #[inline(always)]
-    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
+    fn zip(mut self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        for (value, other) in self.0.iter_mut().zip(other.0) {
+            *value = f(*value, other);
+        }
+        self
     }
 }
 
@@ -193,10 +242,41 @@ impl Scalar for Lanes {
     fn real(self) -> f64 {
         self.0[0]
     }
-    lanes_unary!(sin cos tan asin acos atan tanh exp ln sqrt abs sign);
+    lanes_unary!(tan asin acos atan tanh exp ln sqrt abs sign);
+    #[inline(always)]
+    fn sin(self) -> Self {
+        if self.0.iter().all(|&angle| is_small(angle)) {
+            self.map(trigonometry::sin)
+        } else {
+            self.map(Scalar::sin)
+        }
+    }
+    #[inline(always)]
+    fn cos(self) -> Self {
+        if self.0.iter().all(|&angle| is_small(angle)) {
+            self.map(trigonometry::cos)
+        } else {
+            self.map(Scalar::cos)
+        }
+    }
     lanes_binary!(power atan2 less less_or_equal);
     #[inline(always)]
     fn select(self, yes: Self, no: Self) -> Self {
-        Self(std::array::from_fn(|i| self.0[i].select(yes.0[i], no.0[i])))
+        let mut chosen = no;
+        for i in 0..LANES {
+            chosen.0[i] = self.0[i].select(yes.0[i], no.0[i]);
+        }
+        chosen
+    }
+    #[inline(always)]
+    fn multiply_add(self, factor: Self, addend: Self) -> Self {
+        let mut sum = addend;
+        for i in 0..LANES {
+            sum.0[i] = self.0[i].mul_add(factor.0[i], addend.0[i]);
+        }
+        sum
+    }
+    fn execute(body: &Instructions, registers: &mut [Self]) {
+        body.execute_lanes(registers);
     }
 }

@@ -5,7 +5,7 @@
 use super::columns::Columns;
 use super::interpolation::{At, Axis};
 use super::linearised::BLOCK;
-use super::pack::{Pack, add_scaled, packs};
+use super::pack::{Pack, multiply_add, packs};
 use super::segment::Segment;
 use super::sensitivity::Block;
 use crate::model::Model;
@@ -145,12 +145,13 @@ impl<'m> DelayLine<'m> {
                 add_scaled(to, -rate, &self.derivatives[output]);
             }
         }
+        let rows: Vec<&[Pack]> = self.delayed_rows.iter().map(Vec::as_slice).collect();
         sink(&Block {
             first: self.next,
             len,
             outputs: &self.delayed_values,
             columns: self.columns,
-            rows: &self.delayed_rows,
+            rows: &rows,
         });
         self.next += len;
     }
@@ -177,5 +178,12 @@ impl<'m> DelayLine<'m> {
             rows.drain(..dropped * stride);
         }
         self.first += dropped;
+    }
+}
+
+/// to += factor * from
+fn add_scaled(to: &mut [Pack], factor: f64, from: &[Pack]) {
+    for (to, from) in to.iter_mut().zip(from) {
+        *to = multiply_add(factor, *from, *to);
     }
 }

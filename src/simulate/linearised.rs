@@ -1,5 +1,6 @@
 //! The results of a program over a block of samples, evaluated side by side.
 
+use super::course::Course;
 use crate::model::{LANES, Lanes, Program, Workspace};
 
 /// Samples in a block.
@@ -44,22 +45,25 @@ impl<'m> Linearised<'m> {
         }
     }
 
-    /// Evaluates the samples of the block from `group` on; `set` puts states, inputs and time in place.
-    pub fn evaluate(
-        &mut self,
-        stage: usize,
-        group: usize,
-        set: &impl Fn(&Program, &mut Workspace<Lanes>),
-    ) {
+    /// Evaluates the `len` samples of a block at one stage.
+    pub fn evaluate(&mut self, stage: usize, len: usize, course: &Course<'_>) {
         if self.varying.is_empty() {
             return;
         }
-        set(self.program, &mut self.workspace);
-        self.program.run_lanes(&mut self.workspace);
-        for &i in &self.varying {
-            let result = self.program.result(&self.workspace, i);
-            self.values[stage * self.results + i][group..group + LANES].copy_from_slice(&result.0);
+        for group in (0..len).step_by(LANES) {
+            course.place(stage, group, self.program, &mut self.workspace);
+            self.program.run(&mut self.workspace);
+            for &i in &self.varying {
+                let result = self.program.result(&self.workspace, i);
+                self.values[stage * self.results + i][group..group + LANES]
+                    .copy_from_slice(&result.0);
+            }
         }
+    }
+
+    /// How many results there are.
+    pub fn results(&self) -> usize {
+        self.results
     }
 
     #[inline(always)]

@@ -7,6 +7,7 @@
 
 mod adjoint;
 mod columns;
+mod course;
 mod delay_line;
 mod delayed_inputs;
 mod input_design;
@@ -15,12 +16,17 @@ mod linearised;
 mod march;
 mod method;
 mod noise;
+mod one_step;
+mod one_step_recursion;
+mod output_rows;
+mod outputs;
 mod pack;
 mod recursion;
 mod scenario;
 mod segment;
 mod sensitivity;
 mod side_by_side;
+mod state_sensitivities;
 mod stepper;
 mod trajectory;
 
@@ -31,7 +37,8 @@ pub use input_design::InputDesign;
 pub use march::{March, Standing};
 pub use method::{InputInterpolation, Integrator, Stage};
 pub use noise::NoiseColour;
-pub use pack::{PACK, Pack, add_scaled, packs, plus, scaled};
+pub use outputs::Outputs;
+pub use pack::{PACK, Pack, multiply_add, packs};
 pub use scenario::{Scenario, ScenarioError};
 pub use segment::{Segment, Steps};
 pub use sensitivity::{Block, Sensitivities};

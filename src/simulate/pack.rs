@@ -9,21 +9,13 @@ pub fn packs(width: usize) -> usize {
     width.div_ceil(PACK)
 }
 
-/// to += factor * from
+/// factor * pack + addend, each number rounded once. By value, so that nothing can alias and a pack is one
+/// register.
 #[inline(always)]
-pub fn add_scaled(to: &mut [Pack], factor: f64, from: &[Pack]) {
-    for (to, from) in to.iter_mut().zip(from) {
-        *to = plus(*to, scaled(factor, *from));
+pub fn multiply_add(factor: f64, pack: Pack, mut addend: Pack) -> Pack {
+    // a loop, not `from_fn`: that may stay a function of its own, compiled for the least of machines
+    for i in 0..PACK {
+        addend[i] = factor.mul_add(pack[i], addend[i]);
     }
-}
-
-/// By value, so that nothing can alias and a pack is one register.
-#[inline(always)]
-pub fn scaled(factor: f64, pack: Pack) -> Pack {
-    pack.map(|value| factor * value)
-}
-
-#[inline(always)]
-pub fn plus(a: Pack, b: Pack) -> Pack {
-    std::array::from_fn(|i| a[i] + b[i])
+    addend
 }

@@ -48,7 +48,7 @@ impl<'m> SideBySide<'m> {
             return;
         }
         set(self.program, &mut self.workspace);
-        self.program.run_lanes(&mut self.workspace);
+        self.program.run(&mut self.workspace);
         for &i in &self.varying {
             let result = self.program.result(&self.workspace, i);
             let values = &mut self.values[stage * self.program.len() + i];

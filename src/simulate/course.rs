@@ -1,0 +1,253 @@
+//! The states along a segment, a block of samples at a time: sequential, and what all else is built on.
+
+use multiversion::multiversion;
+
+use super::linearised::BLOCK;
+use super::method::{InputInterpolation, Integrator, Stage};
+use super::one_step::OneStep;
+use super::segment::{Segment, Steps};
+use super::stepper::{Stepper, between};
+use super::trajectory::{Diverged, initial_state};
+use crate::model::{LANES, Lanes, Model, Program, Workspace};
+
+/// The course of a model along a segment: states, inputs and times at the samples of a block.
+pub(super) struct Course<'m> {
+    model: &'m Model,
+    interpolation: InputInterpolation,
+    pub stages: &'static [Stage],
+    stepper: Stepper<'m, f64>,
+    one_step: Option<OneStep<'m>>,
+    /// The constant step, where the model and the segment have one.
+    even: Option<f64>,
+    /// The state at the first sample behind the block.
+    state: Vec<f64>,
+    elapsed: f64,
+    /// By stage, then state: values over the block. Values behind the end repeat the last.
+    pub stage_states: Vec<[f64; BLOCK]>,
+    /// By stage, then input.
+    stage_inputs: Vec<[f64; BLOCK]>,
+    /// By stage: time since the start of the segment.
+    stage_times: Vec<[f64; BLOCK]>,
+}
+
+impl<'m> Course<'m> {
+    pub fn new(
+        model: &'m Model,
+        integrator: Integrator,
+        interpolation: InputInterpolation,
+    ) -> Self {
+        let stages = integrator.stages();
+        let over_block = |count: usize| vec![[0.0; BLOCK]; stages.len() * count];
+        Self {
+            model,
+            interpolation,
+            stages,
+            stepper: Stepper::new(model, integrator, interpolation),
+            one_step: OneStep::of(model),
+            even: None,
+            state: Vec::new(),
+            elapsed: 0.0,
+            stage_states: over_block(model.states.len()),
+            stage_inputs: over_block(model.inputs.len()),
+            stage_times: over_block(1),
+        }
+    }
+
+    /// Goes to the first sample of a segment. `parameters` are all of the model's, SI.
+    pub fn start(&mut self, segment: &Segment, parameters: &[f64]) {
+        self.state = initial_state(self.model, parameters);
+        self.elapsed = 0.0;
+        self.even = None;
+        if let (Some(one_step), &Steps::Even(h)) = (&mut self.one_step, &segment.steps) {
+            one_step.set(parameters, h, self.stages, self.interpolation);
+            self.even = Some(h);
+        } else {
+            self.stepper.set_parameters(parameters);
+        }
+    }
+
+    /// The one-step map of the segment, if one serves all of it.
+    pub fn one_step(&self) -> Option<(&OneStep<'m>, f64)> {
+        self.one_step.as_ref().zip(self.even)
+    }
+
+    pub fn interpolation(&self) -> InputInterpolation {
+        self.interpolation
+    }
+
+    /// Stages whose states, inputs and times are known at each sample.
+    fn known_stages(&self) -> usize {
+        if self.even.is_some() {
+            1
+        } else {
+            self.stages.len()
+        }
+    }
+
+    /// The next block.
+    ///
+    /// # Errors
+    /// The state leaves the range of numbers.
+    pub fn advance(&mut self, segment: &Segment, first: usize, len: usize) -> Result<(), Diverged> {
+        self.place_inputs(segment, first, len);
+        if let Some(h) = self.even {
+            self.multiply(segment, first, len, h);
+        } else {
+            self.integrate(segment, first, len);
+        }
+        if self.state.iter().all(|x| x.is_finite()) {
+            return Ok(());
+        }
+        let known = self.known_stages() * self.state.len();
+        let finite = |k: &usize| {
+            self.stage_states[..known]
+                .iter()
+                .all(|values| values[*k].is_finite())
+        };
+        Err(Diverged {
+            sample: first + (0..len).take_while(finite).count(),
+        })
+    }
+
+    /// Puts states, inputs and times of `LANES` samples from `group` on into a program's registers.
+    pub fn place(
+        &self,
+        stage: usize,
+        group: usize,
+        program: &Program,
+        workspace: &mut Workspace<Lanes>,
+    ) {
+        let lanes = |values: &[f64; BLOCK]| {
+            let mut lanes = Lanes([0.0; LANES]);
+            lanes.0.copy_from_slice(&values[group..group + LANES]);
+            lanes
+        };
+        let (states, inputs) = (self.model.states.len(), self.model.inputs.len());
+        let from = &self.stage_states[stage * states..(stage + 1) * states];
+        for (to, values) in program.states(workspace).iter_mut().zip(from) {
+            *to = lanes(values);
+        }
+        let from = &self.stage_inputs[stage * inputs..(stage + 1) * inputs];
+        for (to, values) in program.inputs(workspace).iter_mut().zip(from) {
+            *to = lanes(values);
+        }
+        *program.time(workspace) = lanes(&self.stage_times[stage]);
+    }
+
+    fn place_inputs(&mut self, segment: &Segment, first: usize, len: usize) {
+        let last = segment.len() - 1;
+        let count = segment.inputs.len();
+        for (s, stage) in self.stages[..self.known_stages()].iter().enumerate() {
+            let share = self.interpolation.share_of_next(stage.node);
+            for (to, samples) in self.stage_inputs[s * count..(s + 1) * count]
+                .iter_mut()
+                .zip(&segment.inputs)
+            {
+                let steps = len.min(last - first);
+                let next = &samples[first + 1..];
+                for ((to, &now), &next) in to[..steps].iter_mut().zip(&samples[first..]).zip(next) {
+                    *to = between(now, next, share);
+                }
+                to[steps..].fill(samples[first + len - 1]);
+            }
+        }
+    }
+
+    /// States at all stages, by the integrator.
+    fn integrate(&mut self, segment: &Segment, first: usize, len: usize) {
+        let n = self.state.len();
+        for k in 0..len {
+            if first + k + 1 < segment.len() {
+                let h = segment.steps.length(first + k);
+                self.stepper
+                    .step(segment, first + k, self.elapsed, &mut self.state);
+                for (to, &from) in self.stage_states.iter_mut().zip(&self.stepper.stage_states) {
+                    to[k] = from;
+                }
+                for (to, stage) in self.stage_times.iter_mut().zip(self.stages) {
+                    to[k] = self.elapsed + h * stage.node;
+                }
+                self.elapsed += h;
+            } else {
+                // the last sample has outputs but no step
+                for (i, to) in self.stage_states.iter_mut().enumerate() {
+                    to[k] = self.state[i % n];
+                }
+                self.stage_times
+                    .iter_mut()
+                    .for_each(|to| to[k] = self.elapsed);
+            }
+        }
+        for values in self.stage_states.iter_mut().chain(&mut self.stage_times) {
+            let last = values[len - 1];
+            values[len..].fill(last);
+        }
+    }
+
+    /// States at the samples, by the one-step map.
+    fn multiply(&mut self, segment: &Segment, first: usize, len: usize, h: f64) {
+        let Some(one_step) = &self.one_step else {
+            return;
+        };
+        let steps = len.min(segment.len() - 1 - first);
+        let n = self.state.len();
+        march(
+            one_step.matrix(),
+            &segment.inputs,
+            first,
+            (len, steps),
+            &mut self.state,
+            &mut self.stage_states[..n],
+        );
+        for to in &mut self.stage_times[0][..len] {
+            *to = self.elapsed;
+            self.elapsed += h;
+        }
+        for values in self.stage_states[..n]
+            .iter_mut()
+            .chain(&mut self.stage_times[..1])
+        {
+            let last = values[len - 1];
+            values[len..].fill(last);
+        }
+    }
+}
+
+/// x(k+1) = M (x(k), u(k), u(k+1), 1) over `steps` of the `len` samples from `first` on.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
+fn march(
+    matrix: &[f64],
+    inputs: &[Vec<f64>],
+    first: usize,
+    (len, steps): (usize, usize),
+    state: &mut [f64],
+    states: &mut [[f64; BLOCK]],
+) {
+    let (n, m) = (state.len(), inputs.len());
+    let factors = n + 2 * m + 1;
+    // what drives each state does not depend on the states: all samples side by side
+    for (row, driven) in matrix.chunks_exact(factors).zip(states.iter_mut()) {
+        driven.fill(row[factors - 1]);
+        for (j, samples) in inputs.iter().enumerate() {
+            let (now, next) = (&samples[first..first + steps], &samples[first + 1..]);
+            for ((to, &now), &next) in driven.iter_mut().zip(now).zip(next) {
+                *to = row[n + j].mul_add(now, row[n + m + j].mul_add(next, *to));
+            }
+        }
+    }
+    let mut next = [0.0; super::one_step::MOST_STATES];
+    for k in 0..len {
+        for (i, row) in matrix.chunks_exact(factors).enumerate() {
+            next[i] = states[i][k];
+            for (&factor, &x) in row[..n].iter().zip(&*state) {
+                next[i] = factor.mul_add(x, next[i]);
+            }
+        }
+        for (values, &x) in states.iter_mut().zip(&*state) {
+            values[k] = x;
+        }
+        if k < steps {
+            state.copy_from_slice(&next[..n]);
+        }
+    }
+}
