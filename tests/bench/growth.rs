@@ -21,7 +21,12 @@ fn main() {
     println!("problem        samples  ns/sample  peak MB before  after  d(y)/d(theta) MB");
     for name in ["short-period", "hfb320"] {
         let step = if name == "hfb320" { 0.1 } else { 0.04 };
+        // with its controls held, the nonlinear airplane does not stay in flight for hours
+        let most = if name == "hfb320" { 10_000 } else { 1_000_000 };
         for samples in [1_000, 10_000, 100_000, 1_000_000] {
+            if samples > most {
+                break;
+            }
             let plan = simulated::plan(name, Some(f64::from(samples - 1) * step));
             let problem = &plan.problem;
             let theta = problem.unknowns.start();
