@@ -9,6 +9,7 @@ mod printed_adjoint;
 #[path = "../common/study_problems.rs"]
 mod study_problems;
 
+use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
@@ -71,7 +72,9 @@ fn printed(name: &str, problem: Problem) {
         (Update::None, Line25::Added),
         (Update::None, Line25::AsPrinted),
     ] {
+        let gradients = Cell::new(0);
         let mut evaluate = |theta: &[f64]| {
+            gradients.set(gradients.get() + 1);
             let (cost, by_parameter) = algorithm_3(&problem, theta, &inverse, line_25);
             let parameter = |place: usize| problem.unknowns.at(place).parameter;
             let gradient = DVector::from_fn(n, |place, _| by_parameter[parameter(place)]);
@@ -88,18 +91,22 @@ fn printed(name: &str, problem: Problem) {
         let start = (theta.clone(), cost, gradient);
         let mut descent = Descent::new(start, open, DMatrix::identity(n, n), true, update);
         let mut iterations = 0;
-        while iterations < 3000 && descent.cost > lowest + 0.5e-4 {
+        while gradients.get() < MOST_GRADIENTS && descent.cost > lowest + 0.5e-4 {
             if descent.step(&mut evaluate).is_err() {
                 break;
             }
             iterations += 1;
         }
         println!(
-            "{name:14} {line_25:?} {update:?}: cosine to the gradient {cosine:.3}, {iterations} iterations, {:.1e} above the minimum",
+            "{name:14} {line_25:?} {update:?}: cosine to the gradient {cosine:.3}, {iterations} iterations, {} gradients, {:.1e} above the minimum",
+            gradients.get(),
             descent.cost - lowest
         );
     }
 }
+
+/// Gradients after which a descent is given up.
+const MOST_GRADIENTS: usize = 1000;
 
 fn euler(mut problem: Problem) -> Problem {
     let outputs = problem.model.outputs.len();
