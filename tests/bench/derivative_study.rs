@@ -1,15 +1,18 @@
 //! The derivative study on four problems, and why an adjoint run once took thousands of iterations.
 //!
-//! `cargo bench --bench derivative_study [-- DIRECTORY]` prints tables and writes two figures for each problem to
-//! the directory (`target/derivative-study` without one).
+//! `cargo bench --bench derivative_study [-- PROBLEM ...]` prints the cost of one gradient for all problems, then
+//! the tables of those named (all without a name; `none` for none), and writes two figures for each to
+//! `target/derivative-study`.
 
 #[path = "../common/printed_adjoint.rs"]
 mod printed_adjoint;
 #[path = "../common/study_problems.rs"]
 mod study_problems;
 
+use std::cell::Cell;
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::time::Instant;
 
 use nalgebra::{DMatrix, DVector};
 use printed_adjoint::{Line25, algorithm_3};
@@ -17,8 +20,10 @@ use trimtab::cli::study_tables;
 use trimtab::dashboard::{cost_figure, error_figure};
 use trimtab::estimate::derivatives::CostAndGradient;
 use trimtab::estimate::quasi_newton::{Descent, Update};
-use trimtab::estimate::study::study;
-use trimtab::estimate::{Noise, Options, Problem, output_error};
+use trimtab::estimate::study::{operations, study};
+use trimtab::estimate::{
+    Derivatives, Evaluator, Noise, NormalEquations, Options, Problem, output_error,
+};
 use trimtab::simulate::Integrator;
 use trimtab::work::ThreadClock;
 
@@ -61,8 +66,15 @@ fn printed(name: &str, problem: Problem) {
         CostAndGradient::new(&problem).at(&theta).expect("a cost").0 - own
     };
     let n = theta.len();
-    for line_25 in [Line25::Added, Line25::AsPrinted] {
+    for (update, line_25) in [
+        (Update::Bfgs, Line25::Added),
+        (Update::Bfgs, Line25::AsPrinted),
+        (Update::None, Line25::Added),
+        (Update::None, Line25::AsPrinted),
+    ] {
+        let gradients = Cell::new(0);
         let mut evaluate = |theta: &[f64]| {
+            gradients.set(gradients.get() + 1);
             let (cost, by_parameter) = algorithm_3(&problem, theta, &inverse, line_25);
             let parameter = |place: usize| problem.unknowns.at(place).parameter;
             let gradient = DVector::from_fn(n, |place, _| by_parameter[parameter(place)]);
@@ -70,29 +82,31 @@ fn printed(name: &str, problem: Problem) {
                 .is_finite()
                 .then_some((cost + constant, gradient))
         };
-        for update in [Update::Bfgs, Update::None] {
-            let (cost, gradient) = evaluate(&theta).expect("a cost");
-            let (_, exact) = CostAndGradient::new(&problem)
-                .at(&theta)
-                .expect("a gradient");
-            let cosine = gradient.dot(&exact) / (gradient.norm() * exact.norm());
-            let open = (vec![f64::NEG_INFINITY; n], vec![f64::INFINITY; n]);
-            let start = (theta.clone(), cost, gradient);
-            let mut descent = Descent::new(start, open, DMatrix::identity(n, n), true, update);
-            let mut iterations = 0;
-            while iterations < 3000 && descent.cost > lowest + 0.5e-4 {
-                if descent.step(&mut evaluate).is_err() {
-                    break;
-                }
-                iterations += 1;
+        let (cost, gradient) = evaluate(&theta).expect("a cost");
+        let (_, exact) = CostAndGradient::new(&problem)
+            .at(&theta)
+            .expect("a gradient");
+        let cosine = gradient.dot(&exact) / (gradient.norm() * exact.norm());
+        let open = (vec![f64::NEG_INFINITY; n], vec![f64::INFINITY; n]);
+        let start = (theta.clone(), cost, gradient);
+        let mut descent = Descent::new(start, open, DMatrix::identity(n, n), true, update);
+        let mut iterations = 0;
+        while gradients.get() < MOST_GRADIENTS && descent.cost > lowest + 0.5e-4 {
+            if descent.step(&mut evaluate).is_err() {
+                break;
             }
-            println!(
-                "{name:14} {line_25:?} {update:?}: cosine to the gradient {cosine:.3}, {iterations} iterations, {:.1e} above the minimum",
-                descent.cost - lowest
-            );
+            iterations += 1;
         }
+        println!(
+            "{name:14} {line_25:?} {update:?}: cosine to the gradient {cosine:.3}, {iterations} iterations, {} gradients, {:.1e} above the minimum",
+            gradients.get(),
+            descent.cost - lowest
+        );
     }
 }
+
+/// Gradients after which a descent is given up.
+const MOST_GRADIENTS: usize = 1000;
 
 fn euler(mut problem: Problem) -> Problem {
     let outputs = problem.model.outputs.len();
@@ -106,21 +120,56 @@ fn euler(mut problem: Problem) -> Problem {
     problem
 }
 
-fn main() {
-    let named = std::env::args()
-        .skip(1)
-        .find(|argument| !argument.starts_with("--"));
-    let directory = named.map_or("target/derivative-study".into(), PathBuf::from);
-    std::fs::create_dir_all(&directory).expect("a directory to write to");
-    compare("short-period", &study_problems::short_period(), &directory);
-    compare("lateral", &study_problems::lateral(), &directory);
-    compare("flight-path", &study_problems::flight_path(), &directory);
-    compare(
-        "flexible-aircraft",
-        &study_problems::flexible_aircraft(),
-        &directory,
+/// One gradient: direct with the information matrix that comes with it, and by the adjoint.
+fn glance(name: &str, problem: &Problem) {
+    let theta = problem.unknowns.start();
+    let mut evaluator = Evaluator::new(problem);
+    let direct = least(|| drop(NormalEquations::at(&mut evaluator, &theta).expect("a cost")));
+    let adjoint = least(|| drop(CostAndGradient::new(problem).at(&theta).expect("a cost")));
+    let counted = |technique| operations(problem, &technique) as f64;
+    let ratio = counted(Derivatives::default()) / counted(Derivatives::adjoint());
+    println!(
+        "{name:18} n_x {:2} n_y {:2} n_theta {:3}: operations direct/adjoint {ratio:5.2}; direct with information matrix {direct:8.3} ms, adjoint {adjoint:7.3} ms, ratio {:.2}",
+        problem.model.states.len(),
+        problem.model.outputs.len(),
+        problem.unknowns.len(),
+        direct / adjoint
     );
-    println!("\n== algorithm 3 as printed, and with line 25 adding");
-    printed("short-period", study_problems::short_period());
-    printed("lateral", study_problems::lateral());
+}
+
+/// Least wall time of some calls, ms.
+fn least(mut call: impl FnMut()) -> f64 {
+    let time = |_| {
+        let began = Instant::now();
+        call();
+        began.elapsed().as_secs_f64() * 1e3
+    };
+    (0..20).map(time).fold(f64::INFINITY, f64::min)
+}
+
+fn main() {
+    let named: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|argument| !argument.starts_with("--"))
+        .collect();
+    let wanted = |name: &str| named.is_empty() || named.iter().any(|own| own == name);
+    let directory = Path::new("target/derivative-study");
+    std::fs::create_dir_all(directory).expect("a directory to write to");
+    let problems = [
+        ("short-period", study_problems::short_period()),
+        ("lateral", study_problems::lateral()),
+        ("flight-path", study_problems::flight_path()),
+        ("flexible-aircraft", study_problems::flexible_aircraft()),
+    ];
+    for (name, problem) in &problems {
+        glance(name, problem);
+    }
+    if wanted("printed") {
+        println!("\n== algorithm 3 as printed, and with line 25 adding");
+        printed("short-period", study_problems::short_period());
+        printed("lateral", study_problems::lateral());
+    }
+    for (name, problem) in problems.iter().filter(|(name, _)| wanted(name)) {
+        compare(name, problem, directory);
+    }
 }
