@@ -60,6 +60,13 @@ pub struct Model {
     pub delays: Delays,
 }
 
+impl Model {
+    /// What its equations see as inputs: those of the document, then the rates of those that are delayed.
+    pub fn driven_inputs(&self) -> usize {
+        self.inputs.len() + self.delays.inputs.len()
+    }
+}
+
 /// A named quantity of a model and the unit its document gives it.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Quantity {

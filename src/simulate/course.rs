@@ -48,7 +48,7 @@ impl<'m> Course<'m> {
             state: Vec::new(),
             elapsed: 0.0,
             stage_states: over_block(model.states.len()),
-            stage_inputs: over_block(model.inputs.len()),
+            stage_inputs: over_block(model.driven_inputs()),
             stage_times: over_block(1),
         }
     }
@@ -122,7 +122,7 @@ impl<'m> Course<'m> {
             lanes.0.copy_from_slice(&values[group..group + LANES]);
             lanes
         };
-        let (states, inputs) = (self.model.states.len(), self.model.inputs.len());
+        let (states, inputs) = (self.model.states.len(), self.model.driven_inputs());
         let from = &self.stage_states[stage * states..(stage + 1) * states];
         for (to, values) in program.states(workspace).iter_mut().zip(from) {
             *to = lanes(values);

@@ -32,7 +32,7 @@ pub(super) struct OneStep<'m> {
 impl<'m> OneStep<'m> {
     /// `None` for a model that is not affine, or too large for dense matrices to pay.
     pub fn of(model: &'m Model) -> Option<Self> {
-        let (states, inputs) = (model.states.len(), model.inputs.len());
+        let (states, inputs) = (model.states.len(), model.driven_inputs());
         let pays = (1..=MOST_STATES).contains(&states) && states + 2 * inputs < MOST_FACTORS;
         let affine = model.affine_dynamics.as_ref().filter(|_| pays)?;
         Some(Self {
