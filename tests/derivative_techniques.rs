@@ -49,7 +49,8 @@ fn problem(model: &Model, options: Options, samples: usize, uneven: bool) -> Pro
         let info = &model.parameters[parameter];
         let start = match info.document.start {
             Start::Value(value) => info.unit.to_si(value),
-            Start::FromData(_) if info.name == "V_e" => 130.0,
+            // a speed, which must not be near zero
+            Start::FromData(_) if info.document.unit == "m/s" => 130.0,
             Start::FromData(_) => 0.04,
         };
         Ok::<_, std::convert::Infallible>(start * 1.1 + 0.01 * (1.0 + parameter as f64 / 7.0))

@@ -100,7 +100,7 @@ fn every_kind_of_fault_names_its_place_and_the_remedy() {
             changed("/states/alpha/initial", json!("de")),
             "/states/alpha/initial",
             "initial_depends_on_data",
-            "make a parameter with start = \"first(de)\"",
+            "'de' is not a parameter or constant; make a parameter with start = \"first(<channel>)\"",
         ),
         (
             changed("/outputs", json!({})),

@@ -13,6 +13,8 @@ use trimtab::estimate::{Estimate, ParameterEstimate};
 /// The reference stops at a relative change of the cost of 1e-4, which leaves it this far (in standard
 /// errors) from the optimum that we converge to.
 const WITHIN_STANDARD_ERRORS: f64 = 0.05;
+/// Standard errors are taken at points that far apart.
+const BOUNDS: f64 = 0.01;
 
 async fn estimate(server: &Server, case: &Case, method: &str) -> Estimate {
     let mut maneuvers = Vec::new();
@@ -50,7 +52,8 @@ fn by_name(estimate: &Estimate) -> HashMap<(&str, Option<&str>), &ParameterEstim
     .collect()
 }
 
-async fn reproduces(name: &str, within: f64) {
+/// `within` standard errors, which themselves agree to `bounds`, a share.
+async fn reproduces(name: &str, within: f64, bounds: f64) {
     let Some(directory) = common::flight_data::directory(name) else {
         return;
     };
@@ -80,7 +83,7 @@ async fn reproduces(name: &str, within: f64) {
             );
             let ratio = standard_error / deviation;
             assert!(
-                (ratio - 1.0).abs() < 0.01,
+                (ratio - 1.0).abs() < bounds,
                 "{name} {parameter}: standard errors differ by {ratio}"
             );
         }
@@ -89,45 +92,45 @@ async fn reproduces(name: &str, within: f64) {
 
 #[tokio::test]
 async fn lateral_directional_with_accelerations() {
-    reproduces("TC01", WITHIN_STANDARD_ERRORS).await;
+    reproduces("TC01", WITHIN_STANDARD_ERRORS, BOUNDS).await;
 }
 
 #[tokio::test]
 async fn lateral_directional_two_states() {
-    reproduces("TC03_ailrud1", WITHIN_STANDARD_ERRORS).await;
+    reproduces("TC03_ailrud1", WITHIN_STANDARD_ERRORS, BOUNDS).await;
 }
 
 #[tokio::test]
 async fn nonlinear_longitudinal() {
-    reproduces("TC04", WITHIN_STANDARD_ERRORS).await;
+    reproduces("TC04", WITHIN_STANDARD_ERRORS, BOUNDS).await;
 }
 
 #[tokio::test]
 async fn short_period() {
-    reproduces("TC11_elv1", WITHIN_STANDARD_ERRORS).await;
+    reproduces("TC11_elv1", WITHIN_STANDARD_ERRORS, BOUNDS).await;
 }
 
 #[tokio::test]
 async fn flight_path_reconstruction_of_three_maneuvers() {
-    reproduces("TC22", WITHIN_STANDARD_ERRORS).await;
+    reproduces("TC22", WITHIN_STANDARD_ERRORS, BOUNDS).await;
 }
 
 #[tokio::test]
 async fn flight_path_reconstruction_with_initial_states_of_each_maneuver() {
-    reproduces("TC22_x0free", WITHIN_STANDARD_ERRORS).await;
+    reproduces("TC22_x0free", WITHIN_STANDARD_ERRORS, BOUNDS).await;
 }
 
 #[tokio::test]
 async fn flight_path_reconstruction_with_biases_of_each_maneuver() {
-    reproduces("TC32", WITHIN_STANDARD_ERRORS).await;
+    reproduces("TC32", WITHIN_STANDARD_ERRORS, BOUNDS).await;
 }
 
 /// No states; smoothed and differentiated channels. The reference stops further out than elsewhere: its det R is 2.0e-5
 /// above ours, which with N = 3001 samples is about √(N 2.0e-5) = 0.25 standard errors from the minimum (the cost is not
-/// quite a parabola there). Farthest is tau2, 0.288 apart.
+/// quite a parabola there). Farthest is tau2, 0.288 apart, over which its standard error changes by 1.03 %.
 #[tokio::test]
 async fn quasi_steady_stall() {
-    reproduces("TC27_qst01", 0.3).await;
+    reproduces("TC27_qst01", 0.3, 0.02).await;
 }
 
 /// The reference takes a delayed signal from a straight line through the last two samples, which for the two negative

@@ -2,9 +2,11 @@
 //! status, and the pure function from a spec and its data to a result.
 
 mod bounds;
+mod checks;
 mod event;
 mod filter;
 mod missing;
+mod prepare;
 mod resolve;
 mod run;
 mod spec;
@@ -12,8 +14,10 @@ mod status;
 mod study;
 
 pub use crate::flight::Fault;
+pub use checks::MOST_MANEUVERS;
 pub use event::{Event, EventBody, Prepared};
-pub use run::{JobResult, MOST_MANEUVERS, Plan, prepare, run};
+pub use prepare::{Plan, prepare};
+pub use run::{JobResult, run};
 pub use spec::{Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride};
 pub use status::Status;
 pub use study::{Progress, run_study};

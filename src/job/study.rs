@@ -3,7 +3,8 @@
 use std::ops::ControlFlow;
 
 use super::Fault;
-use super::run::{JobResult, Plan, no_start, run};
+use super::prepare::Plan;
+use super::run::{JobResult, no_start, run};
 use crate::estimate::study::{self, Clock, NoStudy, StudyStep};
 use crate::estimate::{self, Derivatives, Outcome, Problem};
 
