@@ -178,7 +178,7 @@ fn has_its_order(problem: &Problem, of: fn(f64) -> Derivatives, order: i32, step
 fn differences_have_their_orders(problem: &Problem) {
     let forward = |step| Derivatives::ForwardDifference { step };
     let central = |step| Derivatives::CentralDifference { step };
-    has_its_order(problem, forward, 1, [1e-4, 1e-5]);
+    has_its_order(problem, forward, 1, [1e-3, 1e-4]);
     has_its_order(problem, central, 2, [1e-2, 1e-3]);
 }
 
@@ -280,7 +280,10 @@ fn correlated_and_given_noise() {
                 );
                 assert!(error <= most, "{name} {}: {error:.1e}", technique.name());
             }
-            differences_have_their_orders(&problem);
+            // rounding, amplified by the condition of R, hides the order where outputs are nearly dependent
+            if !problem.options.noise.is_full() {
+                differences_have_their_orders(&problem);
+            }
         }
     }
 }

@@ -171,12 +171,14 @@ fn of_matrix(
     Some(modes)
 }
 
+type Eigenvector = DVector<Complex<f64>>;
+
 /// Left and right eigenvectors by inverse iteration: with the eigenvalue known to rounding, each solution of the
 /// nearly singular equations is longer by its inverse distance, in the direction of the eigenvector.
 fn eigenvectors(
     matrix: &DMatrix<f64>,
     eigenvalue: Complex<f64>,
-) -> Option<(DVector<Complex<f64>>, DVector<Complex<f64>>)> {
+) -> Option<(Eigenvector, Eigenvector)> {
     const ITERATIONS: usize = 3;
     let n = matrix.nrows();
     // off the eigenvalue by rounding, so that the equations can be solved

@@ -63,8 +63,8 @@ pub fn solve(
     // a log that nobody reads any more means that the job was abandoned: the observer stops then
     let _ = log.blocking_send(EventBody::Prepared(plan.prepared.clone()));
     let tell = |event: Option<EventBody>| {
-        let told = event.map_or(Ok(()), |event| log.blocking_send(event));
-        if told.is_err() || stop.asked().is_some() {
+        let is_lost = event.is_some_and(|event| log.blocking_send(event).is_err());
+        if is_lost || stop.asked().is_some() {
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())

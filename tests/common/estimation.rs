@@ -36,7 +36,7 @@ pub fn solve(model: &str, maneuver: &Arc<Maneuver>, changes: &Value) -> JobResul
     for (key, value) in changes.as_object().expect("an object") {
         spec[key] = value.clone();
     }
-    solve_all(model, &[maneuver.clone()], &spec)
+    solve_all(model, std::slice::from_ref(maneuver), &spec)
 }
 
 pub fn solve_all(model: &str, maneuvers: &[Arc<Maneuver>], spec: &Value) -> JobResult {
