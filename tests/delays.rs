@@ -340,7 +340,7 @@ fn an_edit_adds_a_delay() {
         prompt["parameters"].as_object_mut().unwrap().remove(name);
     }
     let maneuver = flown(1.0, 0.37, 1.0);
-    let edits = json!([{"kind": "input_delay", "target": "de"}, {"kind": "output_delay", "target": "a", "parameter": "lag"}]);
+    let edits = json!([{"kind": "input_delay", "target": "de"}, {"kind": "sensor_delay", "target": "a", "parameter": "lag"}]);
     let held = json!({"edits": edits, "parameters": {"de_delay": {"fixed": true}, "lag": {"fixed": true}}});
     let before = solve(prompt.clone(), json!({}), std::slice::from_ref(&maneuver));
     let zero = solve(prompt.clone(), held, std::slice::from_ref(&maneuver));

@@ -15,7 +15,7 @@ use crate::flight::{Dimension, Unit};
 #[serde(deny_unknown_fields)]
 pub struct Edit {
     pub kind: EditKind,
-    /// An output for `sensor_*` and `output_delay`, an input for `input_*`, a state (its equation), a definition or an
+    /// An output for `sensor_*`, an input for `input_*`, a state (its equation), a definition or an
     /// output for `missing_term`.
     #[schema(example = "q")]
     pub target: String,
@@ -45,7 +45,7 @@ pub enum EditKind {
     /// u(t - τ)
     InputDelay,
     /// y(t - τ)
-    OutputDelay,
+    SensorDelay,
     /// ψ term, added to an equation
     MissingTerm,
 }
@@ -143,7 +143,7 @@ impl Edit {
                 };
                 later(&mut input.delay, &name)
             }
-            EditKind::OutputDelay => {
+            EditKind::SensorDelay => {
                 let Some(output) = edited.outputs.get_mut(&self.target) else {
                     return Err(self.no_target("output", document.outputs.keys()));
                 };
@@ -212,7 +212,7 @@ impl Edit {
             EditKind::SensorBias | EditKind::InputBias => format!("{}_bias", self.target),
             EditKind::SensorScale | EditKind::InputScale => format!("{}_scale", self.target),
             EditKind::SensorDrift => format!("{}_drift", self.target),
-            EditKind::InputDelay | EditKind::OutputDelay => format!("{}_delay", self.target),
+            EditKind::InputDelay | EditKind::SensorDelay => format!("{}_delay", self.target),
             EditKind::MissingTerm => format!("{}_term", self.target),
         };
         let numbered = (2..).map(|n| format!("{base}_{n}"));
@@ -250,7 +250,7 @@ impl EditKind {
             Self::SensorBias | Self::InputBias => "bias",
             Self::SensorScale | Self::InputScale => "scale factor, less one,",
             Self::SensorDrift => "drift",
-            Self::InputDelay | Self::OutputDelay => "time delay",
+            Self::InputDelay | Self::SensorDelay => "time delay",
             Self::MissingTerm => "missing term",
         }
     }
