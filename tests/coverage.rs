@@ -54,10 +54,10 @@ fn intervals_hold_for_white_and_coloured_noise() {
 fn a_reconstruction_is_as_accurate_as_it_says() {
     let truth = reconstruction::Truth::new();
     let document = reconstruction::document();
-    let spec = json!({"model": "in the file", "maneuvers": [{"id": "x"}]});
+    let spec = json!({"model": "flight-path-reconstruction", "maneuvers": [{"id": "x"}]});
     let spec: JobSpec = serde_json::from_value(spec).expect("a spec");
     let coverage = over_seeds(24, &truth.parameters, |seed| {
-        fit(&document, &spec, truth.recording(seed))
+        fit(&document, &spec, truth.recording(seed, 1.0))
     });
     coverage.print("flight path reconstruction");
     assert_eq!(coverage.0.len(), 25);
@@ -76,15 +76,15 @@ fn redundant_position_biases_are_named() {
     let freed = json!({"fixed": false});
     let spec = |iterations: usize| -> JobSpec {
         let spec = json!({
-            "model": "in the file", "maneuvers": [{"id": "x"}],
-            "parameters": {"b_xE": freed, "b_yE": freed, "b_zE": freed},
+            "model": "flight-path-reconstruction", "maneuvers": [{"id": "x"}],
+            "parameters": {"x_bias": freed, "y_bias": freed, "z_bias": freed},
             "options": {"max_iterations": iterations},
         });
         serde_json::from_value(spec).expect("a spec")
     };
-    let pairs: BTreeSet<BTreeSet<String>> = ["xE", "yE", "zE"]
+    let pairs: BTreeSet<BTreeSet<String>> = ["x", "y", "z"]
         .iter()
-        .map(|name| BTreeSet::from([format!("b_{name}"), format!("{name}_0")]))
+        .map(|name| BTreeSet::from([format!("{name}_bias"), format!("{name}_0")]))
         .collect();
     let named = |sets: &[trimtab::estimate::CollinearSet]| -> BTreeSet<BTreeSet<String>> {
         sets.iter()
@@ -92,7 +92,7 @@ fn redundant_position_biases_are_named() {
             .collect()
     };
 
-    let looked = fit(&document, &spec(0), truth.recording(1));
+    let looked = fit(&document, &spec(0), truth.recording(1, 1.0));
     assert_eq!((looked.outcome, looked.iterations), (Outcome::Budget, 0));
     let identifiability = looked.identifiability.expect("it");
     assert_eq!(named(&identifiability.before.redundant), pairs);
@@ -100,7 +100,7 @@ fn redundant_position_biases_are_named() {
     assert!(identifiability.before.condition_number.is_nan());
     assert!(identifiability.before.unseen.is_empty() && identifiability.after.is_none());
 
-    let fitted = fit(&document, &spec(50), truth.recording(1));
+    let fitted = fit(&document, &spec(50), truth.recording(1, 1.0));
     assert_eq!(fitted.outcome, Outcome::Singular, "{}", fitted.reason);
     assert_eq!(named(&fitted.collinear), pairs);
     let after = fitted

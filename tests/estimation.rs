@@ -292,7 +292,9 @@ fn an_effect_is_an_edit_whose_zero_is_the_model_before() {
     fixed["parameters"] = json!({"y_scale": {"fixed": true}, "axx": {"fixed": true}});
     let before = solve(model(), json!({}), &maneuver(0.01));
     let same = solve(model(), fixed, &maneuver(0.01));
-    assert_eq!(before.estimate.cost, same.estimate.cost);
+    // not to the last bit: one more parameter is other work, whose sums are in another order
+    let (cost, with_zero) = (before.estimate.cost, same.estimate.cost);
+    assert!((with_zero / cost - 1.0).abs() < 1e-12, "{cost} {with_zero}");
     assert_eq!(same.model.outputs["y"].equation, "(1 + y_scale)*(x + c)");
     assert_eq!(same.model.states["x"].derivative, "a*x + b*u + axx*(x^2)");
     assert_eq!(same.model.parameters["axx"].unit, "1/s");

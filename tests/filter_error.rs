@@ -203,7 +203,8 @@ fn the_gradient_is_that_of_the_likelihood() {
     }
 }
 
-/// Without process noise the gain is 0, and the estimate that of output error.
+/// Without process noise the gain is 0, and the estimate that of output error. So are the conventional error bounds:
+/// output error's own are corrected for the colour of its residuals.
 #[test]
 fn without_process_noise_it_is_output_error() {
     let calm = flown(3, 20.0, json!({}));
@@ -214,7 +215,7 @@ fn without_process_noise_it_is_output_error() {
     assert_eq!(filter.outcome, Outcome::Converged);
     assert!((filter.cost - output.cost).abs() < 1e-6);
     for (a, b) in filter.parameters.iter().zip(&output.parameters) {
-        let error = b.standard_error.expect("a bound");
+        let error = b.conventional_standard_error.expect("a bound");
         assert!((a.estimate - b.estimate).abs() < 1e-4 * error, "{}", a.name);
         assert!((a.standard_error.expect("a bound") / error - 1.0).abs() < 1e-6);
     }

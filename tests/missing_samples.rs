@@ -98,7 +98,9 @@ fn a_channel_at_a_tenth_of_the_rate_weighs_as_it_does_by_hand() {
     let result = solve(linear(), changes, std::slice::from_ref(&recording));
     for (i, name) in ["a", "b", "c"].into_iter().enumerate() {
         let ours = parameter(&result, name);
-        let (bound, reference) = (ours.standard_error.unwrap(), covariance[(i, i)].sqrt());
+        // for white residuals, as by hand
+        let bound = ours.conventional_standard_error.unwrap();
+        let reference = covariance[(i, i)].sqrt();
         println!(
             "{name}: {} against {}, ± {bound} against {reference}",
             ours.estimate, theta[i]

@@ -50,7 +50,8 @@ pub(super) fn answer(
         .collect();
     let collinear = bounds.collinear(|place| problem.name_and_scale(place));
     let (outcome, reason) = stopped.say(problem.options.method, iterations, &held, &collinear);
-    let after = (iterations > 0).then(|| DataInformation::of(problem, &at.information));
+    let after =
+        (problem.options.max_iterations > 0).then(|| DataInformation::of(problem, &at.information));
     let identifiability = before.map(|before| Identifiability {
         before,
         after: after.flatten(),

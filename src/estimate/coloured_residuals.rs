@@ -10,6 +10,7 @@
 //! where Γ is R at lag 0 and nothing else. Γ comes from an autoregressive model of each output's residual (den
 //! Haan, Levin 1997) rather than from a window of its sample values: B then is a sum of squares of filtered
 //! sensitivities, never negative, in a memory of as many rows as the model's order however long the recording is.
+//! What the fit absorbed of the noise is put back first (`absorbed`).
 //! Residuals of different outputs are correlated as their white innovations are.
 
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -34,15 +35,25 @@ pub(super) struct Colour {
 }
 
 impl Colour {
-    /// Of the residuals of all segments; lags count in samples. Missing samples (NaN) do not count.
+    /// Of the residuals of all segments as they are; lags count in samples. Missing samples (NaN) do not count.
     pub fn of(histories: &[TimeHistory]) -> Self {
+        Self::of_noise(histories, &[])
+    }
+
+    /// Of the noise that left these residuals to a fit which absorbed some of it: by output, then lag, a sum over
+    /// samples.
+    pub fn of_noise(histories: &[TimeHistory], absorbed: &[Vec<f64>]) -> Self {
         let outputs = histories.first().map_or(0, |history| history.outputs.len());
         let model = |i: usize| {
             let series = || histories.iter().map(move |h| &*h.outputs[i].residual);
             let count = series().flatten().filter(|e| e.is_finite()).count();
             let lags = 0..=most_lags(count);
             let autocovariance: Vec<f64> = lags
-                .map(|lag| series().map(|e| lagged(e, lag)).sum::<f64>() / count as f64)
+                .map(|lag| {
+                    let missing = absorbed.get(i).map_or(0.0, |by_lag| by_lag[lag]);
+                    let seen: f64 = series().map(|e| lagged(e, lag)).sum();
+                    (seen + missing) / count as f64
+                })
                 .collect();
             Autoregression::fit(&autocovariance, count)
         };

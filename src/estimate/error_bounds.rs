@@ -4,8 +4,9 @@ use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::absorbed::absorbed;
 use super::coloured_residuals::{Colour, gradient_covariance};
-use super::evaluation::Evaluator;
+use super::evaluation::{Evaluator, Unusable};
 use super::information::Spectrum;
 use super::iterate::Iterate;
 use super::options::Noise;
@@ -17,10 +18,11 @@ use super::report::{Bound, CollinearSet, TimeHistory};
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ErrorBoundsKind {
-    /// Corrected for coloured residuals: F⁻¹ B F⁻¹, B from the autocorrelation of the residuals.
+    /// Corrected for coloured residuals: F⁻¹ B F⁻¹, B from the autocorrelation of the residuals and of what the fit
+    /// absorbed of the noise.
     #[default]
     Corrected,
-    /// The Cramér-Rao bound F⁻¹, for white residuals. Spares two looks at the data.
+    /// The Cramér-Rao bound F⁻¹, for white residuals. Spares three looks at the data.
     Conventional,
 }
 
@@ -60,7 +62,7 @@ impl ErrorBounds {
                 bounds.mean_nothing();
             }
         } else if problem.options.error_bounds == ErrorBoundsKind::Corrected {
-            bounds.correct(evaluator, iterate, colour);
+            bounds.correct(evaluator, iterate, colour, histories);
         }
         bounds
     }
@@ -98,24 +100,46 @@ impl ErrorBounds {
         bounds
     }
 
-    /// F⁻¹ becomes F⁻¹ B F⁻¹; what priors know is in B as it is in F.
-    fn correct(&mut self, evaluator: &mut Evaluator<'_>, iterate: &Iterate, colour: &Colour) {
-        let inverse = &iterate.weighting.inverse;
-        let Ok(mut scatter) = gradient_covariance(evaluator, &iterate.theta, inverse, colour)
-        else {
+    /// F⁻¹ becomes F⁻¹ B F⁻¹: with the colour of the residuals, and with what the fit absorbed by that put back.
+    fn correct(
+        &mut self,
+        evaluator: &mut Evaluator<'_>,
+        iterate: &Iterate,
+        colour: &Colour,
+        histories: &[TimeHistory],
+    ) {
+        let corrected = self.sandwich(evaluator, iterate, colour).and_then(|first| {
+            let absorbed = absorbed(evaluator, &iterate.theta, &first)?;
+            let noise = Colour::of_noise(histories, &absorbed);
+            self.sandwich(evaluator, iterate, &noise)
+        });
+        let Ok(corrected) = corrected else {
             return;
         };
-        priors::add_information(&evaluator.problem().unknowns, &mut scatter);
-        let corrected = &self.covariance * scatter * &self.covariance;
-        if corrected.iter().any(|v| !v.is_finite()) {
-            return;
-        }
         let determined = |i: &usize| self.conventional[*i].is_some();
         let places: Vec<usize> = (0..self.conventional.len()).filter(determined).collect();
-        self.covariance = (&corrected + corrected.transpose()) * 0.5;
+        self.covariance = corrected;
         self.standard_errors = self.errors(&places);
         self.correlation = self.correlations();
         self.kind = Some(ErrorBoundsKind::Corrected);
+    }
+
+    /// F⁻¹ B F⁻¹; what priors know is in B as it is in F.
+    fn sandwich(
+        &self,
+        evaluator: &mut Evaluator<'_>,
+        iterate: &Iterate,
+        colour: &Colour,
+    ) -> Result<DMatrix<f64>, Unusable> {
+        let inverse = &iterate.weighting.inverse;
+        let mut scatter = gradient_covariance(evaluator, &iterate.theta, inverse, colour)?;
+        priors::add_information(&evaluator.problem().unknowns, &mut scatter);
+        let corrected = &self.covariance * scatter * &self.covariance;
+        if corrected.iter().all(|v| v.is_finite()) {
+            Ok((&corrected + corrected.transpose()) * 0.5)
+        } else {
+            Err(Unusable::NotFinite)
+        }
     }
 
     fn mean_nothing(&mut self) {

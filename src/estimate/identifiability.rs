@@ -27,7 +27,7 @@ const HIGH_CORRELATION: f64 = 0.99;
 pub struct Identifiability {
     /// At the start values.
     pub before: DataInformation,
-    /// At the estimate; absent where no iteration was made (`max_iterations` 0).
+    /// At the estimate; absent where none was asked for (`max_iterations` 0).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<DataInformation>,
 }

@@ -10,6 +10,7 @@
 //! [`filter_error`] does so with one-step predictions in place of the simulation, for states that are disturbed,
 //! and [`Estimate`] is the answer, with the reason why the solver stopped.
 
+mod absorbed;
 mod answer;
 mod autoregression;
 mod coefficients;

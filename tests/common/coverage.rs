@@ -50,7 +50,7 @@ impl Coverage {
     pub fn print(&self, title: &str) {
         println!("\n{title}");
         println!(
-            "{:10} {:>5} {:>9} {:>12} {:>11} {:>11} {:>11} {:>11}",
+            "{:12} {:>5} {:>9} {:>12} {:>11} {:>11} {:>11} {:>11}",
             "parameter",
             "seeds",
             "corrected",
@@ -63,7 +63,7 @@ impl Coverage {
         for (name, row) in &self.0 {
             let mean_error = mean(&row.corrected);
             println!(
-                "{name:10} {:5} {:8.1}% {:11.1}% {:11.2e} {:11.2} {:11.3e} {mean_error:11.3e}",
+                "{name:12} {:5} {:8.1}% {:11.1}% {:11.2e} {:11.2} {:11.3e} {mean_error:11.3e}",
                 row.errors.len(),
                 100.0 * row.share(|row| &row.corrected),
                 100.0 * row.share(|row| &row.conventional),
@@ -73,7 +73,7 @@ impl Coverage {
             );
         }
         println!(
-            "{:10} {:5} {:8.1}% {:11.1}%",
+            "{:12} {:5} {:8.1}% {:11.1}%",
             "all",
             "",
             100.0 * self.pooled(|row| &row.corrected),

@@ -1,4 +1,4 @@
-//! The 28-parameter flight path reconstruction on simulated data of known truth.
+//! The catalog's 28-parameter flight path reconstruction on simulated data of known truth.
 //!
 //! Profiles of airspeed, flow angles and attitude are prescribed (straight flight, steep turn and reversal, pitch
 //! 3-2-1-1, rudder doublets, bank to bank, in 60 s); the kinematic equations give the rates and specific forces that
@@ -12,7 +12,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use trimtab::flight::{Channel, Maneuver, Unit};
-use trimtab::model::{Model, ModelDocument};
+use trimtab::model::{Model, ModelDocument, catalog};
 use trimtab::simulate::{InputInterpolation, Integrator, Segment, Steps, simulate};
 
 const STEP: f64 = 0.05;
@@ -21,10 +21,10 @@ const SUBSTEPS: usize = 10;
 const G: f64 = 9.80665;
 
 /// Standard deviation of the noise of each output, SI.
-const NOISE: [f64; 6] = [3.0e-3, 3.0e-3, 0.30, 1.0, 1.0, 1.5];
+pub const NOISE: [f64; 6] = [3.0e-3, 3.0e-3, 0.30, 1.0, 1.0, 1.5];
 
 pub fn document() -> ModelDocument {
-    toml::from_str(include_str!("flight-path-reconstruction.toml")).expect("a document")
+    catalog::find("flight-path-reconstruction").expect("a catalog model")
 }
 
 /// A maneuver without noise, to which each seed adds its own.
@@ -93,34 +93,34 @@ impl Truth {
         let [_, _, _, phi, theta] = profile(0.0);
         let [u, v, w] = velocity(0.0);
         let parameters = [
-            ("b_ax", 0.08),
-            ("b_ay", -0.05),
-            ("b_az", 0.12),
-            ("b_p", 1.2e-3),
-            ("b_q", -0.9e-3),
-            ("b_r", 0.7e-3),
-            ("K_az", 1.01),
-            ("W_N", 4.0),
-            ("W_E", -3.0),
-            ("W_D", 0.2),
+            ("ax_bias", 0.08),
+            ("ay_bias", -0.05),
+            ("az_bias", 0.12),
+            ("p_bias", 1.2e-3),
+            ("q_bias", -0.9e-3),
+            ("r_bias", 0.7e-3),
+            ("alpha_bias", 0.012),
+            ("beta_bias", -0.010),
+            ("K_alpha", 0.08),
+            ("K_beta_alpha", 0.03),
+            ("K_beta", -0.05),
+            ("V_bias", -0.8),
+            ("K_V", 1.02),
+            ("W_x", 4.0),
+            ("W_y", -3.0),
+            ("W_z", 0.2),
+            ("x_bias", 0.0),
+            ("y_bias", 0.0),
+            ("z_bias", 0.0),
             ("u_0", u),
             ("v_0", v),
             ("w_0", w),
             ("phi_0", phi),
             ("theta_0", theta),
             ("psi_0", 0.7),
-            ("xE_0", 120.0),
-            ("yE_0", -80.0),
-            ("zE_0", -2000.0),
-            ("K_alpha", 1.08),
-            ("b_alpha", 0.012),
-            ("K_beta", 0.95),
-            ("b_beta", -0.010),
-            ("K_V", 1.02),
-            ("b_V", -0.8),
-            ("b_xE", 0.0),
-            ("b_yE", 0.0),
-            ("b_zE", 0.0),
+            ("x_0", 120.0),
+            ("y_0", -80.0),
+            ("z_0", -2000.0),
         ];
         let parameters: IndexMap<String, f64> = parameters
             .map(|(name, value)| (name.to_string(), value))
@@ -129,12 +129,12 @@ impl Truth {
         let recorded = |k: usize| {
             let [ax, ay, az, p, q, r] = flown(k as f64 * STEP);
             [
-                ax + value("b_ax"),
-                ay + value("b_ay"),
-                (az + value("b_az")) / value("K_az"),
-                p + value("b_p"),
-                q + value("b_q"),
-                r + value("b_r"),
+                ax + value("ax_bias"),
+                ay + value("ay_bias"),
+                az + value("az_bias"),
+                p + value("p_bias"),
+                q + value("q_bias"),
+                r + value("r_bias"),
             ]
         };
         let samples: Vec<[f64; 6]> = (0..SAMPLES).map(recorded).collect();
@@ -152,8 +152,8 @@ impl Truth {
         }
     }
 
-    /// The recording with the noise of a seed.
-    pub fn recording(&self, seed: u64) -> Arc<Maneuver> {
+    /// The recording with the noise of a seed, times `share`.
+    pub fn recording(&self, seed: u64, share: f64) -> Arc<Maneuver> {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut channels = IndexMap::new();
         let mut add = |name: &str, unit: &str, values: Vec<f64>| {
@@ -168,7 +168,7 @@ impl Truth {
         for ((output, values), deviation) in outputs.zip(NOISE) {
             let noisy = values.iter().map(|y| {
                 let unit: f64 = StandardNormal.sample(&mut random);
-                y + deviation * unit
+                y + share * deviation * unit
             });
             add(&output.name, &output.si, noisy.collect());
         }

@@ -66,22 +66,22 @@ pub fn lateral() -> Problem {
     )
 }
 
-/// Góes, Hemerly, Maciel eq. 18-23: nine states, position biases left out since initial positions say the same.
+/// Góes, Hemerly, Maciel eq. 18-23: nine states, position biases held since initial positions say the same.
 pub fn flight_path() -> Problem {
-    let document: ModelDocument =
-        toml::from_str(include_str!("../bench/flight-path.toml")).expect("a document");
+    let document = catalog::find("flight-path-reconstruction").expect("a catalog model");
     let truth = |name: &str| match name {
-        "K_az" | "K_alpha" | "K_beta" | "K_V" => 1.02,
-        "W_N" => 4.0,
-        "W_E" => -3.0,
-        "W_D" => 0.5,
+        "K_V" => 1.02,
+        "W_x" => 4.0,
+        "W_y" => -3.0,
+        "W_z" => 0.5,
+        "x_bias" | "y_bias" | "z_bias" => 0.0,
         "u_0" => 100.0,
         "v_0" => 1.0,
         "w_0" => 5.0,
         "psi_0" => 0.5,
         "z_0" => -1000.0,
-        "b_ax" | "b_ay" | "b_az" => 0.02,
-        "b_p" | "b_q" | "b_r" => 5e-4,
+        "ax_bias" | "ay_bias" | "az_bias" => 0.02,
+        "p_bias" | "q_bias" | "r_bias" => 5e-4,
         _ => 0.01,
     };
     made(
