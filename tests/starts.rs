@@ -162,7 +162,10 @@ fn wrong(seed: usize) -> impl Fn(usize) -> f64 {
 
 #[test]
 fn multiple_shooting_and_the_automatic_start_find_an_unstable_aircraft() {
-    let (mut alone, seeds) = (0, 10);
+    // more seeds, in release: TRIMTAB_SEEDS=30
+    let asked = std::env::var("TRIMTAB_SEEDS").ok();
+    let seeds = asked.and_then(|n| n.parse().ok()).unwrap_or(10);
+    let mut alone = 0;
     for seed in 0..seeds {
         let recording = maneuver(16.0, seed as u64, 1.0);
         for start in [
@@ -295,10 +298,10 @@ fn equation_error_is_an_estimator_of_its_own() {
             .iter()
             .find(|row| row.name == *name)
             .expect("a row");
-        // smoothing takes from the states the steps that the held elevator keeps: biased (seen: 22 % of Ma, 36 % of
-        // Mq), near enough only to start from
+        // the motion within a window that a cubic does not follow is what is left
+        println!("{name}: {:.4} of the truth", row.estimate / truth);
         assert!(
-            (row.estimate / truth - 1.0).abs() < 0.5,
+            (row.estimate / truth - 1.0).abs() < 0.05,
             "{name}: {}",
             row.estimate
         );

@@ -6,15 +6,13 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::answer::Solution;
-use super::derivatives::Derivatives;
 use super::equation_error::equation_error;
 use super::evaluation::Unusable;
 use super::filter_error::filter_error;
-use super::output_error::descend;
 use super::problem::Problem;
-use super::quasi_newton;
 use super::report::Iteration;
-use super::start::{StartReport, find_start};
+use super::second_try;
+use super::start::StartReport;
 
 /// The statistical model behind the estimate.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
@@ -49,25 +47,7 @@ pub type Watcher<'o> = dyn FnMut(Progress<'_>) -> ControlFlow<()> + 'o;
 /// There is nothing to begin with: why.
 pub fn estimate(problem: &Problem, watcher: &mut Watcher<'_>) -> Result<Solution, Unusable> {
     match problem.options.estimator {
-        Estimator::OutputError => {
-            let start = find_start(problem, watcher)?;
-            let mut stopped = start.stopped;
-            let mut observer = |iteration: &Iteration| {
-                let told = watcher(Progress::Iteration(iteration));
-                // who asked to stop during the search for a start gets what was found so far
-                if std::mem::take(&mut stopped) {
-                    ControlFlow::Break(())
-                } else {
-                    told
-                }
-            };
-            match problem.options.derivatives {
-                Derivatives::Adjoint { scaling } => {
-                    quasi_newton::solve(problem, start.theta, scaling, &mut observer)
-                }
-                _ => Ok(descend(problem, start.theta, &mut observer)?.solution(problem)),
-            }
-        }
+        Estimator::OutputError => second_try::from_start(problem, watcher),
         Estimator::FilterError => filter_error(problem, &mut |iteration| {
             watcher(Progress::Iteration(iteration))
         }),

@@ -39,6 +39,7 @@ mod products;
 pub mod quasi_newton;
 mod report;
 mod role;
+mod second_try;
 mod shooting;
 mod start;
 mod state_matrix;

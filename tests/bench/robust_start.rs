@@ -1,6 +1,6 @@
 //! HFB-320, published case TC04, from random starts: how many end in the best known optimum, by start method.
 //!
-//! `cargo bench --bench robust_start [starts]` needs the flight data. Each of the 11 derivatives is drawn evenly from a
+//! `cargo bench --bench robust_start [starts] [method]` needs the flight data. Each of the 11 derivatives is drawn evenly from a
 //! range of multiples of its published estimate; initial states are those of the case. The best optimum is reached
 //! when det R is within 1e-4 of the published one.
 
@@ -49,8 +49,17 @@ fn main() {
         ),
         ("automatic", StartMethod::Automatic {}, starts),
     ];
+    // part of a method's name chooses methods, as in "shooting"
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let chosen: Vec<&String> = words
+        .iter()
+        .filter(|word| word.parse::<usize>().is_err() && !word.starts_with("--"))
+        .collect();
     for share in [0.0..=2.0, -1.0..=3.0, -3.0..=3.0] {
         for (name, method, starts) in &methods {
+            if !chosen.is_empty() && !chosen.iter().any(|word| name.contains(word.as_str())) {
+                continue;
+            }
             let began = Instant::now();
             let count =
                 random_starts::count(&problem, &reference, &share, *starts, method, case.det_r);

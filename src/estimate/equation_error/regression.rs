@@ -10,10 +10,10 @@ use crate::estimate::problem::Problem;
 use crate::estimate::unknowns::Unknowns;
 use crate::flight::{Dimension, Unit};
 use crate::model::{Input, Model, ModelDocument, Output};
-use crate::simulate::Segment;
+use crate::simulate::{InputInterpolation, Segment};
 
 use super::measured::{MeasuredState, measured_states};
-use super::smoothing::smoothed;
+use super::smoothing::{half_width, smoothed_over};
 
 /// The regression problem of an output-error problem.
 pub(in crate::estimate) struct Regression {
@@ -48,7 +48,7 @@ impl Regression {
         let mut initial = InitialStates::new(problem);
         for (index, segment) in problem.segments.iter().enumerate() {
             problem.unknowns.parameters(index, &start, &mut parameters);
-            let (segment, first) = with_states(&problem.model, segment, &measured, &parameters);
+            let (segment, first) = with_states(problem, segment, &measured, &parameters);
             segments.push(segment);
             for (at, value) in measured.iter().zip(first) {
                 initial.add(problem, &model, index, at.state, value);
@@ -74,6 +74,8 @@ impl Regression {
             .collect::<Option<Vec<usize>>>()?;
         let options = Options {
             noise: Noise::default(),
+            // smoothed inputs are held no more
+            input_interpolation: InputInterpolation::Linear,
             ..problem.options.clone()
         };
         let states = problem.model.states.iter().enumerate();
@@ -164,27 +166,57 @@ fn fix_unused(model: &mut Model) {
 }
 
 /// The segment as the edited model wants it, and the first value of each measured state.
+///
+/// States, inputs and outputs pass through the same local polynomials as the derivatives. An equation linear in them
+/// holds for what a linear filter leaves as it held before; with the states alone smoothed, an input that jumps, or
+/// that feeds back the states' noise, would drive a motion that the filter took away.
 fn with_states(
-    model: &Model,
+    problem: &Problem,
     segment: &Segment,
     measured: &[MeasuredState],
     parameters: &[f64],
 ) -> (Segment, Vec<f64>) {
     let time = segment.elapsed();
+    let read = |at: &MeasuredState| at.read(&problem.model, segment, parameters);
+    let states: Vec<Vec<f64>> = measured.iter().map(read).collect();
+    let series: Vec<&[f64]> = states.iter().map(Vec::as_slice).collect();
+    let half = half_width(&time, &series);
     let mut made = segment.clone();
+    for input in &mut made.inputs {
+        let seen = match problem.options.input_interpolation {
+            InputInterpolation::Linear => input.clone(),
+            InputInterpolation::Hold => around_samples(input),
+        };
+        *input = smoothed_over(&time, &seen, half).value;
+    }
     made.measured.clear();
     let mut first = Vec::new();
-    for at in measured {
-        let smooth = smoothed(&time, &at.read(model, segment, parameters));
+    for state in &states {
+        let smooth = smoothed_over(&time, state, half);
         first.push(smooth.value.first().copied().unwrap_or(0.0));
         made.inputs.push(smooth.value);
         made.measured.push(smooth.slope);
     }
     let others = segment.measured.iter().enumerate();
     let others = others.filter(|(i, _)| measured.iter().all(|at| at.output != *i));
-    made.measured
-        .extend(others.map(|(_, values)| values.clone()));
+    made.measured.extend(others.map(|(_, values)| {
+        let smooth = smoothed_over(&time, values, half).value;
+        let numbers = values.iter().zip(smooth);
+        // what was not measured is not made up
+        numbers
+            .map(|(z, smooth)| if z.is_finite() { smooth } else { *z })
+            .collect()
+    }));
     (made, first)
+}
+
+/// A held input as it acts around each sample: the mean of what is held before and after.
+fn around_samples(input: &[f64]) -> Vec<f64> {
+    let before = input.iter().take(1).chain(input);
+    before
+        .zip(input)
+        .map(|(before, after)| 0.5 * (before + after))
+        .collect()
 }
 
 /// Initial states that are parameters of nothing else: read off the data, the mean where segments share one.

@@ -25,22 +25,39 @@ const MOST_LOOKS: usize = 2_000;
 
 /// Smooths `values`, measured at `time`. Values that are no numbers are left out and filled in.
 pub(in crate::estimate) fn smoothed(time: &[f64], values: &[f64]) -> Smoothed {
-    let stride = values.len().div_ceil(MOST_LOOKS);
+    smoothed_over(time, values, half_width(time, &[values]))
+}
+
+/// The half width that suits all of some series best: the product of their leave-one-out errors is least, so that
+/// their sizes do not matter.
+pub(super) fn half_width(time: &[f64], series: &[&[f64]]) -> usize {
     let error = |half: usize| {
-        let looks = (0..values.len()).step_by(stride);
-        let errors = looks.filter_map(|k| local(time, values, k, half)?.left_out(values[k]));
-        let (sum, count) = errors.fold((0.0, 0), |(sum, count), e| (sum + e * e, count + 1));
-        if count > 0 {
-            sum / f64::from(count)
-        } else {
-            f64::INFINITY
-        }
+        let all = series.iter();
+        all.map(|values| left_out_error(time, values, half).ln())
+            .sum::<f64>()
     };
-    let widths = HALF_WIDTHS.iter().filter(|&&half| 2 * half < values.len());
-    let half = widths
+    let widths = HALF_WIDTHS.iter().filter(|&&half| 2 * half < time.len());
+    widths
         .map(|&half| (half, error(half)))
         .min_by(|a, b| a.1.total_cmp(&b.1))
-        .map_or(HALF_WIDTHS[0], |(half, _)| half);
+        .map_or(HALF_WIDTHS[0], |(half, _)| half)
+}
+
+/// Mean square of the leave-one-out errors.
+fn left_out_error(time: &[f64], values: &[f64], half: usize) -> f64 {
+    let looks = (0..values.len()).step_by(values.len().div_ceil(MOST_LOOKS).max(1));
+    let errors = looks.filter_map(|k| local(time, values, k, half)?.left_out(values[k]));
+    let (sum, count) = errors.fold((0.0, 0), |(sum, count), e| (sum + e * e, count + 1));
+    if count > 0 {
+        // an exact fit is no better than rounding
+        f64::max(sum / f64::from(count), f64::MIN_POSITIVE)
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// Smooths with windows of a half width, in samples.
+pub(super) fn smoothed_over(time: &[f64], values: &[f64], half: usize) -> Smoothed {
     let mut result = Smoothed {
         value: Vec::with_capacity(values.len()),
         slope: Vec::with_capacity(values.len()),
@@ -131,6 +148,9 @@ fn local(time: &[f64], values: &[f64], k: usize, half: usize) -> Option<Local> {
 
 #[cfg(test)]
 mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
     use super::*;
 
     #[test]
@@ -154,12 +174,10 @@ mod tests {
     #[test]
     fn noise_widens_the_window_and_a_missing_value_is_filled_in() {
         let time: Vec<f64> = (0..400).map(|k| f64::from(k) * 0.02).collect();
-        let scatter = |k: usize| ((k as f64 * 12.9898).sin() * 43_758.547).fract();
-        let mut values: Vec<f64> = time
-            .iter()
-            .enumerate()
-            .map(|(k, t)| t.sin() + 0.05 * scatter(k))
-            .collect();
+        // white: what is correlated from sample to sample looks like motion, and narrows the window
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        let mut scatter = || random.random_range(-0.05..0.05);
+        let mut values: Vec<f64> = time.iter().map(|t| t.sin() + scatter()).collect();
         values[100] = f64::NAN;
         let smooth = smoothed(&time, &values);
         // differences of neighbours err by 0.05/0.02, about 2; a window of 65 samples by some hundredths
@@ -167,7 +185,7 @@ mod tests {
         let mean = (32..368).map(error).sum::<f64>() / 336.0;
         assert!(mean < 0.1, "{mean}");
         assert!((smooth.value[100] - time[100].sin()).abs() < 0.05);
-        // the scatter is uniform in ±1, or nearly: its deviation is 0.05/√3
+        // the scatter is uniform in ±0.05: its deviation is 0.05/√3
         assert!((0.02..0.04).contains(&smooth.noise), "{}", smooth.noise);
     }
 }

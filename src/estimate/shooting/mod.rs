@@ -12,16 +12,17 @@
 //!
 //! With R estimated, the optima along that way need not lead to the lowest one of the whole trajectory, and from an
 //! early one the way down may be long. So output error is tried from more than one ρ, as soon as the whole trajectory
-//! explains something, and the best is kept.
+//! explains something, and the best is kept. Where none explains anything, all is done again with R held at what
+//! smoothing takes from the measurements.
 
 mod elimination;
 mod intervals;
+mod measured;
 
 use std::ops::ControlFlow;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::equation_error::{measured_states, smoothed};
 use super::evaluation::{Evaluator, Unusable};
 use super::likelihood::Weighting;
 use super::output_error::descend;
@@ -30,6 +31,7 @@ use super::start::{Start, StartKind, StartReport, cost, cost_of_constants, unobs
 use super::step::{Newton, advanced, held};
 use elimination::{Beginning, eliminate};
 use intervals::{Cut, Nodes};
+use measured::{first_nodes, with_measured_noise};
 
 /// Penalties: the first, how they grow, and the last.
 const PENALTY_START: f64 = 1e-2;
@@ -56,11 +58,6 @@ const MOST_TRIALS: usize = 10;
 const MOST_HALVINGS: usize = 8;
 const RUN_AWAY: f64 = 1e4;
 
-/// A state's noise is taken as at least this share of its range.
-const LEAST_NOISE: f64 = 1e-3;
-/// For states that no output measures.
-const UNMEASURED_NOISE: f64 = 1e-2;
-
 /// Told of each step; may stop.
 pub(super) type Told<'o> = dyn FnMut(&StartReport) -> ControlFlow<()> + 'o;
 
@@ -74,12 +71,57 @@ pub(super) fn multiple_shooting(
     interval: f64,
     told: &mut Told<'_>,
 ) -> Result<Start, Unusable> {
+    let constants = cost_of_constants(problem).unwrap_or(f64::INFINITY);
+    let mut best: Option<Closed> = None;
+    let mut stopped = false;
+    // the second way only where the first leads nowhere: it costs as much again
+    for measured_noise in [false, true] {
+        let way = match measured_noise {
+            false => problem.clone(),
+            true => with_measured_noise(problem),
+        };
+        let Some(closed) = shoot(&way, problem, &theta, interval, told) else {
+            continue;
+        };
+        stopped = closed.stopped;
+        if best.as_ref().is_none_or(|best| closed.cost < best.cost) {
+            best = Some(closed);
+        }
+        if stopped || best.as_ref().is_some_and(|best| best.cost < constants) {
+            break;
+        }
+    }
+    let best = best.ok_or(Unusable::NotFinite)?;
+    Ok(Start {
+        theta: best.theta,
+        stopped,
+        may_shoot: false,
+    })
+}
+
+/// What closing the jumps led to.
+struct Closed {
+    theta: Vec<f64>,
+    /// -ln L of the whole trajectory, infinite where it leaves the range of numbers.
+    cost: f64,
+    stopped: bool,
+}
+
+/// Shoots along the costs of `way`, the problem or one with another R; `None` where even the shortest intervals leave
+/// the range of numbers.
+fn shoot(
+    way: &Problem,
+    problem: &Problem,
+    theta: &[f64],
+    interval: f64,
+    told: &mut Told<'_>,
+) -> Option<Closed> {
     let halves = (0..=MOST_HALVINGS).map(|i| interval / f64::from(1 << i));
     let mut found = None;
     for length in halves {
-        let cut = Cut::new(problem, length).ok_or(Unusable::NotFinite)?;
-        let (nodes, noise) = first_nodes(&cut, &theta);
-        if let Some(point) = Point::at(&cut, theta.clone(), nodes, &noise) {
+        let cut = Cut::new(way, length)?;
+        let (nodes, noise) = first_nodes(&cut, theta);
+        if let Some(point) = Point::at(&cut, theta.to_vec(), nodes, &noise) {
             let runs_away = point.jump(&cut) > RUN_AWAY;
             found = Some((cut, point, noise));
             if !runs_away {
@@ -87,8 +129,8 @@ pub(super) fn multiple_shooting(
             }
         }
     }
-    let (cut, point, noise) = found.ok_or(Unusable::NotFinite)?;
-    Ok(close(&cut, point, &noise, told))
+    let (cut, point, noise) = found?;
+    Some(close(&cut, problem, point, &noise, told))
 }
 
 /// θ and nodes, and what is known there.
@@ -135,14 +177,20 @@ impl Point {
 }
 
 /// Closes the jumps, penalty by penalty.
-fn close(cut: &Cut<'_>, mut point: Point, noise: &DVector<f64>, told: &mut Told<'_>) -> Start {
+fn close(
+    cut: &Cut<'_>,
+    problem: &Problem,
+    mut point: Point,
+    noise: &DVector<f64>,
+    told: &mut Told<'_>,
+) -> Closed {
     let mut evaluator = Evaluator::new(cut.problem);
     let constants = cost_of_constants(cut.problem);
     let (mut damping, mut penalty) = (DAMPING_START, PENALTY_START);
     let (mut steps, mut descents) = (0, 0);
     let mut stopped = false;
     let mut best: Option<(f64, Vec<f64>)> = None;
-    let mut short = cut.problem.clone();
+    let mut short = problem.clone();
     short.options.max_iterations = DESCENT_ITERATIONS;
     while penalty <= PENALTY_END {
         let most = if penalty > PENALTY_START {
@@ -181,8 +229,13 @@ fn close(cut: &Cut<'_>, mut point: Point, noise: &DVector<f64>, told: &mut Told<
         }
         penalty *= PENALTY_GROWTH;
     }
-    Start {
-        theta: best.map_or(point.theta, |(_, theta)| theta),
+    let (cost, theta) = best.unwrap_or_else(|| {
+        let cost = cost(&mut Evaluator::new(problem), &point.theta);
+        (cost.unwrap_or(f64::INFINITY), point.theta)
+    });
+    Closed {
+        theta,
+        cost,
         stopped,
     }
 }
@@ -253,64 +306,6 @@ fn beginning(
     let jump = initial - node;
     let finite = jump.iter().chain(slopes.iter()).all(|v| v.is_finite());
     finite.then_some(Beginning { jump, slopes })
-}
-
-/// Nodes from measured states, and the noise of each state; states that no output measures are simulated from interval
-/// to interval.
-fn first_nodes(cut: &Cut<'_>, theta: &[f64]) -> (Nodes, DVector<f64>) {
-    let problem = cut.problem;
-    let model = &problem.model;
-    let states = model.states.len();
-    let mut noise = DVector::zeros(states);
-    let mut nodes: Nodes = Vec::new();
-    let mut parameters = Vec::new();
-    for (segment, intervals) in cut.intervals.iter().enumerate() {
-        problem.unknowns.parameters(segment, theta, &mut parameters);
-        let data = &problem.segments[segment];
-        let time = data.elapsed();
-        let mut known = vec![None; states];
-        for at in measured_states(model, &parameters) {
-            let smooth = smoothed(&time, &at.read(model, data, &parameters));
-            noise[at.state] = f64::max(noise[at.state], smooth.noise);
-            known[at.state] = Some(smooth.value);
-        }
-        let zero = DVector::zeros(states);
-        let initial = beginning(problem, segment, theta, &zero).map_or(zero, |own| own.jump);
-        let mut own: Vec<DVector<f64>> = Vec::new();
-        for (index, interval) in intervals.iter().enumerate() {
-            let mut node = match own.last() {
-                Some(last) => cut.end(segment, index - 1, theta, last, None),
-                None => initial.clone(),
-            };
-            for (state, values) in known.iter().enumerate() {
-                if let Some(values) = values {
-                    node[state] = values[interval.first];
-                } else if !node[state].is_finite() {
-                    node[state] = own.last().map_or(0.0, |last| last[state]);
-                }
-            }
-            own.push(node);
-        }
-        nodes.push(own);
-    }
-    for state in 0..states {
-        let all = || nodes.iter().flatten().map(|node| node[state]);
-        let (low, high) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-            (low.min(x), high.max(x))
-        });
-        let size = all().fold(0.0, |size: f64, x| size.max(x.abs()));
-        let range = if high > low { high - low } else { size };
-        let least = if noise[state] > 0.0 {
-            LEAST_NOISE
-        } else {
-            UNMEASURED_NOISE
-        };
-        noise[state] = f64::max(noise[state], least * range);
-        if noise[state] == 0.0 {
-            noise[state] = 1.0;
-        }
-    }
-    (nodes, noise)
 }
 
 fn report(cut: &Cut<'_>, point: &Point, steps: usize, penalty: f64) -> StartReport {

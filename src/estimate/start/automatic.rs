@@ -35,7 +35,8 @@ pub(super) fn automatic(problem: &Problem, watcher: &mut Watcher<'_>) -> Result<
         }
     }
     let mut stopped = false;
-    if regression.is_some() && !is_lower(best.cost, cost_of_constants(problem)) {
+    let shoots = regression.is_some() && !is_lower(best.cost, cost_of_constants(problem));
+    if shoots {
         let mut told = |report: &StartReport| watcher(Progress::Start(report));
         let shot = multiple_shooting(problem, best.theta.clone(), INTERVAL, &mut told);
         if let Ok(shot) = shot {
@@ -63,6 +64,7 @@ pub(super) fn automatic(problem: &Problem, watcher: &mut Watcher<'_>) -> Result<
     Ok(Start {
         theta: best.theta,
         stopped,
+        may_shoot: regression.is_some() && !shoots,
     })
 }
 

@@ -8,7 +8,8 @@ use utoipa::ToSchema;
 #[serde(rename_all = "snake_case", tag = "kind", deny_unknown_fields)]
 pub enum StartMethod {
     /// The document's start values or those of equation error, whichever has the lower output-error cost. Where both
-    /// fit worse than constant outputs would, multiple shooting from the better of them is tried too.
+    /// fit worse than constant outputs would, multiple shooting from the better of them is tried too, and
+    /// so it is where the iteration ends `diverged` or `stalled` short of a minimum.
     Automatic {},
     /// The document's start values, or those that the job gives in their place, as they are.
     Document {},

@@ -16,6 +16,7 @@ use super::evaluation::{Evaluator, Unusable};
 use super::likelihood::Weighting;
 use super::problem::Problem;
 use super::shooting::multiple_shooting;
+pub(super) use method::INTERVAL;
 pub use method::StartMethod;
 pub use report::{StartKind, StartReport};
 
@@ -25,6 +26,8 @@ pub(super) struct Start {
     pub theta: Vec<f64>,
     /// Somebody asked to stop on the way.
     pub stopped: bool,
+    /// Multiple shooting has not been tried, and may be where the iteration from here fails.
+    pub may_shoot: bool,
 }
 
 /// Finds the start that the options ask for.
@@ -33,12 +36,13 @@ pub(super) struct Start {
 /// The method asked for finds no θ that gives a cost.
 pub(super) fn find_start(problem: &Problem, watcher: &mut Watcher<'_>) -> Result<Start, Unusable> {
     let theta = problem.unknowns.start();
-    let unstopped = |theta| Start {
+    let found = |theta, stopped| Start {
         theta,
-        stopped: false,
+        stopped,
+        may_shoot: false,
     };
     match &problem.options.start {
-        StartMethod::Document {} => Ok(unstopped(theta)),
+        StartMethod::Document {} => Ok(found(theta, false)),
         StartMethod::Automatic {} => automatic::automatic(problem, watcher),
         StartMethod::EquationError {} => {
             let (theta, evaluations) = equation_error_start(problem, &mut unobserved)?;
@@ -50,7 +54,7 @@ pub(super) fn find_start(problem: &Problem, watcher: &mut Watcher<'_>) -> Result
                 text: "start values from equation error".to_string(),
             };
             let stopped = watcher(Progress::Start(&report)).is_break();
-            Ok(Start { theta, stopped })
+            Ok(found(theta, stopped))
         }
         StartMethod::NelderMead { max_evaluations } => {
             nelder_mead::nelder_mead(problem, theta, *max_evaluations, watcher)

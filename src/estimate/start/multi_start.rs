@@ -77,11 +77,16 @@ pub(super) fn multi_start(
     });
     let stopped = stop.load(Ordering::Relaxed);
     match tally.best {
-        Some((theta, _)) => Ok(Start { theta, stopped }),
+        Some((theta, _)) => Ok(Start {
+            theta,
+            stopped,
+            may_shoot: false,
+        }),
         // the document's own values then say what is wrong
         None => Ok(Start {
             theta: problem.unknowns.start(),
             stopped,
+            may_shoot: false,
         }),
     }
 }

@@ -52,6 +52,7 @@ pub(super) fn nelder_mead(
         true => Ok(Start {
             theta: best.theta,
             stopped,
+            may_shoot: false,
         }),
         // says what is wrong there
         false => cost(&mut search.evaluator, &best.theta).and(Err(Unusable::NotFinite)),
