@@ -50,12 +50,8 @@ pub(super) fn cos(x: f64) -> f64 {
 fn reduced(x: f64) -> (f64, f64) {
     let n = (x * FRAC_2_PI).round_ties_even();
     let r = (-n).mul_add(FRAC_PI_2, x);
-    // near a multiple of π/2 what is left is all of the result: the rounding of the second difference is kept
-    let part = n * FRAC_PI_2_REST;
-    let rest = r - part;
-    let back = rest - r;
-    let lost = (r - (rest - back)) - (part + back) - n.mul_add(FRAC_PI_2_REST, -part);
-    (n, rest + (-n).mul_add(FRAC_PI_2_LAST, lost))
+    let r = (-n).mul_add(FRAC_PI_2_REST, r);
+    (n, (-n).mul_add(FRAC_PI_2_LAST, r))
 }
 
 /// sin(n π/2 + r)
