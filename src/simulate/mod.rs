@@ -29,6 +29,8 @@ mod side_by_side;
 mod state_sensitivities;
 mod stepper;
 mod trajectory;
+mod transition;
+mod transition_recursion;
 
 pub use adjoint::{Adjoint, Checkpoints};
 pub use columns::Columns;

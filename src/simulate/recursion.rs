@@ -7,6 +7,7 @@ use super::linearised::{BLOCK, Linearised};
 use super::method::Stage;
 use super::pack::{PACK, Pack, multiply_add, packs};
 use super::segment::Segment;
+use super::transition::{meets, moved};
 use crate::model::Model;
 
 /// One product of the recursion: an entry of ∂f/∂x times a row of ∂x/∂θ.
@@ -86,6 +87,11 @@ impl Recursion {
                 sum: zeros(),
             },
         }
+    }
+
+    /// Products of a pack at each stage.
+    pub fn products(&self) -> usize {
+        self.by_state.iter().map(Vec::len).sum()
     }
 
     /// Puts ∂f/∂θ into packs: entries that only θ changes when `constant`, all others otherwise. Places are
@@ -183,24 +189,11 @@ fn products(model: &Model, columns: &Columns, width: usize) -> Vec<Vec<Product>>
     let states = model.states.len();
     let dynamics = &model.dynamics_jacobian;
     let mut products = vec![Vec::new(); width * states];
+    let moved = moved(model, columns);
     for (pack, products) in products.chunks_exact_mut(states.max(1)).enumerate() {
-        let of_pack = |parameter: usize| {
-            let column = columns.dynamic.iter().position(|&p| p == parameter);
-            column.is_some_and(|column| column / PACK == pack)
-        };
-        let direct = (dynamics.by_parameter.iter()).chain(&model.initial_jacobian.by_parameter);
-        let mut moves = vec![false; states];
-        for &(row, parameter) in direct {
-            moves[row] |= of_pack(parameter);
-        }
-        // what depends on a state that moves, moves: at most as many rounds as there are states
-        for _ in 0..states {
-            for &(row, state) in &dynamics.by_state {
-                moves[row] |= moves[state];
-            }
-        }
+        let moves = |state: usize| meets(&moved[state], pack);
         for (entry, &(row, state)) in dynamics.by_state.iter().enumerate() {
-            if moves[state] {
+            if moves(state) {
                 products[row].push(Product { entry, state });
             }
         }

@@ -4,10 +4,14 @@ use super::columns::Columns;
 use super::course::Course;
 use super::linearised::{BLOCK, Linearised};
 use super::one_step_recursion::OneStepRecursion;
-use super::pack::{Pack, packs};
+use super::pack::{PACK, Pack, packs};
 use super::recursion::Recursion;
 use super::segment::Segment;
+use super::transition_recursion::TransitionRecursion;
 use crate::model::Model;
+
+/// What a product costs where each stage waits for the one before it, beside one that waits for nothing.
+const STAGE_COST: usize = 2;
 
 /// ∂x/∂θ at each sample of a block and at the first one behind it.
 pub(super) struct StateSensitivities {
@@ -16,8 +20,29 @@ pub(super) struct StateSensitivities {
     width: usize,
     /// By sample of the block, then state: a row of packs. One sample more than a block has.
     pub rows: Vec<Pack>,
-    stages: Recursion,
+    general: General,
     one_step: OneStepRecursion,
+}
+
+/// The way of a model that has no one-step matrix.
+pub(super) enum General {
+    StageByStage(Recursion),
+    Composed(TransitionRecursion),
+}
+
+impl General {
+    /// Whichever takes fewer vector operations: composing is side by side, but its cost grows with the cube of
+    /// the number of states.
+    fn new(model: &Model, columns: &Columns, stages: usize) -> Self {
+        let stage_by_stage = Recursion::new(model, columns, stages);
+        let composed = TransitionRecursion::new(model, columns, stages);
+        let (side_by_side, in_turn) = composed.products();
+        if side_by_side / PACK + in_turn <= STAGE_COST * stages * stage_by_stage.products() {
+            Self::Composed(composed)
+        } else {
+            Self::StageByStage(stage_by_stage)
+        }
+    }
 }
 
 impl StateSensitivities {
@@ -28,7 +53,7 @@ impl StateSensitivities {
             states,
             width,
             rows: vec![Pack::default(); (BLOCK + 1) * states * width],
-            stages: Recursion::new(model, columns, stages),
+            general: General::new(model, columns, stages),
             one_step: OneStepRecursion::default(),
         }
     }
@@ -54,11 +79,12 @@ impl StateSensitivities {
                 row.as_flattened_mut()[column] = jacobian.program.result(&workspace, result);
             }
         }
-        match course.one_step() {
-            Some((one_step, h)) => {
+        match (course.one_step(), &mut self.general) {
+            (Some((one_step, h)), _) => {
                 self.one_step.set(one_step, h, course, columns, self.width);
             }
-            None => self.stages.place(true, dynamics, BLOCK),
+            (None, General::StageByStage(stages)) => stages.place(true, dynamics, BLOCK),
+            (None, General::Composed(_)) => {}
         }
     }
 
@@ -71,18 +97,18 @@ impl StateSensitivities {
         dynamics: &Linearised<'_>,
     ) {
         let steps = len.min(segment.len() - 1 - first);
-        if let Some((one_step, _)) = course.one_step() {
-            self.one_step
-                .sweep(one_step, segment, first, steps, course, &mut self.rows);
-        } else {
-            self.stages.place(false, dynamics, steps);
-            self.stages.sweep(
-                course.stages,
-                segment,
-                (first, steps),
-                dynamics,
-                &mut self.rows,
-            );
+        let (stages, range, rows) = (course.stages, (first, steps), &mut self.rows);
+        match (course.one_step(), &mut self.general) {
+            (Some((one_step, _)), _) => {
+                (self.one_step).sweep(one_step, segment, first, steps, course, rows);
+            }
+            (None, General::StageByStage(general)) => {
+                general.place(false, dynamics, steps);
+                general.sweep(stages, segment, range, dynamics, rows);
+            }
+            (None, General::Composed(general)) => {
+                general.sweep(stages, segment, range, dynamics, rows);
+            }
         }
     }
 
