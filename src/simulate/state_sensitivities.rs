@@ -123,3 +123,90 @@ impl StateSensitivities {
         self.rows.copy_within(BLOCK * sample.., 0);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::method::{InputInterpolation, Integrator};
+    use super::super::segment::Steps;
+    use super::*;
+    use crate::model::{Start, catalog};
+
+    const SAMPLES: usize = 150;
+
+    /// Uneven steps, so that no model goes by a matrix.
+    fn segment(model: &Model) -> Segment {
+        let steps: Vec<f64> = (0..SAMPLES - 1)
+            .map(|k| 0.02 + 0.001 * (k % 7) as f64)
+            .collect();
+        let wave = |channel: usize, k: usize| 0.05 * ((1 + channel) as f64 * 0.03 * k as f64).sin();
+        Segment {
+            label: "test".into(),
+            time: (0..SAMPLES).map(|k| k as f64).collect(),
+            steps: Steps::Uneven(steps),
+            inputs: (0..model.driven_inputs())
+                .map(|channel| (0..SAMPLES).map(|k| wave(channel, k)).collect())
+                .collect(),
+            measured: vec![vec![0.0; SAMPLES]; model.outputs.len()],
+        }
+    }
+
+    /// ∂x/∂θ behind each sample.
+    fn rows(model: &Model, columns: &Columns, parameters: &[f64], general: General) -> Vec<Pack> {
+        let mut course = Course::new(model, Integrator::Rk4, InputInterpolation::Linear);
+        let stages = course.stages.len();
+        let mut dynamics = Linearised::new(&model.dynamics_jacobian.program, stages);
+        let mut states = StateSensitivities::new(model, columns, stages);
+        states.general = general;
+        let segment = segment(model);
+        course.start(&segment, parameters);
+        dynamics.set_parameters(parameters);
+        states.start(model, columns, parameters, &course, &dynamics);
+        let sample = states.states * states.width;
+        let mut all = Vec::new();
+        for first in (0..SAMPLES).step_by(BLOCK) {
+            let len = BLOCK.min(SAMPLES - first);
+            course.advance(&segment, first, len).expect("bounded");
+            (0..stages).for_each(|stage| dynamics.evaluate(stage, len, &course));
+            states.sweep(&segment, (first, len), &course, &dynamics);
+            all.extend_from_slice(&states.rows[..len * sample]);
+            states.carry_over();
+        }
+        all
+    }
+
+    /// Some hundred roundings of 1e-16 a step over 150 steps, relative to the largest value of an entry.
+    #[test]
+    fn composed_steps_agree_with_stage_by_stage() {
+        for document in catalog::all() {
+            let model = Model::compile(&document).expect("a catalog model");
+            let value = |(i, info): (usize, &crate::model::ParameterInfo)| match info.document.start
+            {
+                Start::Value(value) => info.unit.to_si(value) * 1.1 + 0.01 * (1.0 + i as f64 / 7.0),
+                // a speed, which must not be near zero
+                Start::FromData(_) if info.document.unit == "m/s" => 130.0,
+                Start::FromData(_) => 0.04,
+            };
+            let parameters: Vec<f64> = model.parameters.iter().enumerate().map(value).collect();
+            let columns = Columns::new(&model, &(0..parameters.len()).collect::<Vec<_>>());
+            let stages = Integrator::Rk4.stages().len();
+            let stage_by_stage = General::StageByStage(Recursion::new(&model, &columns, stages));
+            let composed = General::Composed(TransitionRecursion::new(&model, &columns, stages));
+            let expected = rows(&model, &columns, &parameters, stage_by_stage);
+            let found = rows(&model, &columns, &parameters, composed);
+            assert_eq!(expected.len(), found.len());
+            let entries = expected.len() / SAMPLES * PACK;
+            let (expected, found) = (expected.as_flattened(), found.as_flattened());
+            for entry in 0..entries {
+                let of = |all: &[f64]| -> Vec<f64> {
+                    all[entry..].iter().step_by(entries).copied().collect()
+                };
+                let (expected, found) = (of(expected), of(found));
+                let largest = expected.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+                for (a, b) in expected.iter().zip(&found) {
+                    let error = (a - b).abs();
+                    assert!(error <= 1e-10 * largest, "{}: {a:e} {b:e}", document.name);
+                }
+            }
+        }
+    }
+}
