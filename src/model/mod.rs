@@ -29,7 +29,7 @@ pub use delays::Delays;
 pub use document::{
     Constant, Definition, Input, ModelDocument, Output, Parameter, Per, Prior, Start, State,
 };
-pub use edit::{Edit, EditError, EditKind};
+pub use edit::{Added, Edit, EditError, EditKind};
 pub use formula::{ChannelFormula, FormulaError, Recorded};
 pub use jacobian::Jacobian;
 pub use program::{Program, Workspace};

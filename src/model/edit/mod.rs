@@ -1,0 +1,250 @@
+//! Edits: an effect is a function from a model document to a model document with a few parameters more,
+//! which at their values of no effect is the model before.
+//!
+//! The added parameters carry units, start values and their physical range. At its start a bias, scale, drift, delay,
+//! missing term, gust, wind, initial state or structural mode is without effect; a lag, a rate limit, a backlash
+//! or a stall starts at a usual value and tends to the model before with its time to 0, its limit or its angle to
+//! the largest. A time constant must stay above about 0.4 of the time between samples: what is faster than that
+//! an explicit integrator cannot follow.
+
+mod dynamics;
+mod error;
+mod inputs;
+mod position;
+mod pressure;
+mod sensors;
+mod sheet;
+mod stall;
+mod text;
+mod wind;
+
+pub use error::EditError;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::document::ModelDocument;
+use sheet::Sheet;
+
+/// One edit. `kind` and `target` are the words of the effect catalogue.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Edit {
+    pub kind: EditKind,
+    /// An output for `sensor_*` (or an input that is measured, as the accelerometers of a reconstruction), an input
+    /// for `input_*`, `actuator_*` and `backlash`, a state or definition (its equation) for the others. Several
+    /// joined by `+` for `sensor_delay` and `stall_hysteresis`; `all` for the `missing_term` `qbar`.
+    #[schema(example = "q")]
+    pub target: String,
+    /// What else the kind needs: the term of a `missing_term` (`alpha^2`, `de*abs(de)`, `alphadot`, `qbar`), the arm of a
+    /// `sensor_position` (`x`, `y`, `z`), the channel of an `unrecorded_input` (`dt` or `dt[rad]`), the angle of
+    /// `unsteady_aero` and `stall_hysteresis` (`alpha`), the course of a `wind` (`constant`, `ramp`, `shear`), the input
+    /// that drives a `structural_mode`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "alpha^2")]
+    pub term: Option<String>,
+    /// Name of the (first) parameter that is added; absent: made from kind and target.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "Maa")]
+    pub parameter: Option<String>,
+    /// The unit of the channel of an `unrecorded_input`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "rad")]
+    pub unit: Option<String>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum EditKind {
+    /// y + b
+    SensorBias,
+    /// (1 + k) y
+    SensorScale,
+    /// y + d t, t from the start of the segment
+    SensorDrift,
+    /// y(t - τ)
+    SensorDelay,
+    /// T ẏ_m = y - y_m
+    SensorLag,
+    /// The lever arm of a vane or an accelerometer: α - x q/V + y p/V, β + x r/V - z p/V, a + ω̇ × r + ω × (ω × r)
+    SensorPosition,
+    /// u + b
+    InputBias,
+    /// (1 + k) u
+    InputScale,
+    /// u(t - τ)
+    InputDelay,
+    /// T δ̇ = u - δ
+    ActuatorLag,
+    /// δ̇ = r tanh((u - δ)/(r T))
+    ActuatorRateLimit,
+    /// T δ̇ = max(0, u - b - δ) + min(0, u + b - δ)
+    Backlash,
+    /// ψ u2, a recorded channel that the model does not use
+    UnrecordedInput,
+    /// ψ term, added to an equation
+    MissingTerm,
+    /// ψ (α - w), T ẇ = α - w
+    UnsteadyAero,
+    /// τ1 Ẋ + X = ½ (1 - tanh a1 (α - τ2 α̇ - α*)), lift by ((1 + √X)/2)² α, moment + C (1 - X)
+    StallHysteresis,
+    /// α + A/2 (1 - cos 2π (t - t0)/L)
+    Gust,
+    /// W + c, W + d t or W + s (h - h0)
+    Wind,
+    /// x0 + dx0
+    InitialState,
+    /// y + η, η̈ = -ω² η - 2 ζ ω η̇ + ω² k (u - u0)
+    StructuralMode,
+}
+
+impl EditKind {
+    pub const ALL: [Self; 20] = [
+        Self::SensorBias,
+        Self::SensorScale,
+        Self::SensorDrift,
+        Self::SensorDelay,
+        Self::SensorLag,
+        Self::SensorPosition,
+        Self::InputBias,
+        Self::InputScale,
+        Self::InputDelay,
+        Self::ActuatorLag,
+        Self::ActuatorRateLimit,
+        Self::Backlash,
+        Self::UnrecordedInput,
+        Self::MissingTerm,
+        Self::UnsteadyAero,
+        Self::StallHysteresis,
+        Self::Gust,
+        Self::Wind,
+        Self::InitialState,
+        Self::StructuralMode,
+    ];
+
+    /// The word of the catalogue.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::SensorBias => "sensor_bias",
+            Self::SensorScale => "sensor_scale",
+            Self::SensorDrift => "sensor_drift",
+            Self::SensorDelay => "sensor_delay",
+            Self::SensorLag => "sensor_lag",
+            Self::SensorPosition => "sensor_position",
+            Self::InputBias => "input_bias",
+            Self::InputScale => "input_scale",
+            Self::InputDelay => "input_delay",
+            Self::ActuatorLag => "actuator_lag",
+            Self::ActuatorRateLimit => "actuator_rate_limit",
+            Self::Backlash => "backlash",
+            Self::UnrecordedInput => "unrecorded_input",
+            Self::MissingTerm => "missing_term",
+            Self::UnsteadyAero => "unsteady_aero",
+            Self::StallHysteresis => "stall_hysteresis",
+            Self::Gust => "gust",
+            Self::Wind => "wind",
+            Self::InitialState => "initial_state",
+            Self::StructuralMode => "structural_mode",
+        }
+    }
+
+    pub fn find(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+}
+
+/// What an edited document has that the one before had not, by name.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct Added {
+    /// The effect's size comes first. Fixed ones among them are held or read off the data.
+    pub parameters: Vec<String>,
+    /// Channels that a recording must have besides.
+    pub inputs: Vec<String>,
+    pub states: Vec<String>,
+}
+
+impl Added {
+    pub fn between(before: &ModelDocument, after: &ModelDocument) -> Self {
+        fn new<'n>(
+            after: impl Iterator<Item = &'n String>,
+            is_old: impl Fn(&str) -> bool,
+        ) -> Vec<String> {
+            after.filter(|name| !is_old(name)).cloned().collect()
+        }
+        Self {
+            parameters: new(after.parameters.keys(), |name| {
+                before.parameters.contains_key(name)
+            }),
+            inputs: new(after.inputs.keys(), |name| before.inputs.contains_key(name)),
+            states: new(after.states.keys(), |name| before.states.contains_key(name)),
+        }
+    }
+}
+
+impl Edit {
+    /// An edit of a kind and a target; parameters have their usual names.
+    pub fn new(kind: EditKind, target: impl Into<String>) -> Self {
+        Self {
+            kind,
+            target: target.into(),
+            term: None,
+            parameter: None,
+            unit: None,
+        }
+    }
+
+    #[must_use]
+    pub fn with_term(self, term: impl Into<String>) -> Self {
+        Self {
+            term: Some(term.into()),
+            ..self
+        }
+    }
+
+    /// The document with the effect in it. What it has more: [`Added::between`].
+    ///
+    /// # Errors
+    /// The target is not in the model or not fit for the kind, the term cannot be read, or the parameter's name is taken.
+    pub fn apply(&self, document: &ModelDocument) -> Result<ModelDocument, EditError> {
+        let mut sheet = Sheet::new(self, document);
+        match self.kind {
+            EditKind::SensorBias => sensors::bias(&mut sheet),
+            EditKind::SensorScale => sensors::scale(&mut sheet),
+            EditKind::SensorDrift => sensors::drift(&mut sheet),
+            EditKind::SensorDelay => sensors::delay(&mut sheet),
+            EditKind::SensorLag => sensors::lag(&mut sheet),
+            EditKind::SensorPosition => position::lever_arm(&mut sheet),
+            EditKind::InputBias => inputs::bias(&mut sheet),
+            EditKind::InputScale => inputs::scale(&mut sheet),
+            EditKind::InputDelay => inputs::delay(&mut sheet),
+            EditKind::ActuatorLag => inputs::lag(&mut sheet),
+            EditKind::ActuatorRateLimit => inputs::rate_limit(&mut sheet),
+            EditKind::Backlash => inputs::backlash(&mut sheet),
+            EditKind::UnrecordedInput => dynamics::unrecorded_input(&mut sheet),
+            EditKind::MissingTerm if self.target == "all" => pressure::scaled(&mut sheet),
+            EditKind::MissingTerm => dynamics::missing_term(&mut sheet),
+            EditKind::UnsteadyAero => dynamics::unsteady(&mut sheet),
+            EditKind::StallHysteresis => stall::hysteresis(&mut sheet),
+            EditKind::Gust => wind::gust(&mut sheet),
+            EditKind::Wind => wind::wind(&mut sheet),
+            EditKind::InitialState => dynamics::initial_state(&mut sheet),
+            EditKind::StructuralMode => sensors::structural_mode(&mut sheet),
+        }?;
+        Ok(sheet.document)
+    }
+
+    /// The term, or that it is needed.
+    fn needed_term(&self, wanted: &'static str) -> Result<&str, EditError> {
+        self.term.as_deref().ok_or(EditError::NoTerm {
+            kind: self.kind.name(),
+            wanted,
+        })
+    }
+
+    fn bad_term(&self, message: impl Into<String>) -> EditError {
+        EditError::BadTerm {
+            term: self.term.clone().unwrap_or_default(),
+            message: message.into(),
+        }
+    }
+}

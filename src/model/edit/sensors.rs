@@ -1,0 +1,193 @@
+//! Effects of sensors: what is recorded is not what is.
+//!
+//! The target is an output, or an input that is measured: there the model sees the recorded value less the error.
+
+use super::EditError;
+use super::sheet::{Sheet, dimension, of_a_difference, per_second, unknown};
+use crate::flight::Dimension;
+use crate::model::document::Parameter;
+
+/// Usual bounds of a scale factor, less one, and of a delay, s.
+pub(super) const SCALE: (f64, f64) = (-0.9, 2.0);
+pub(super) const DELAY: (f64, f64) = (-0.2, 0.5);
+/// Start and bounds of a first-order lag, s.
+pub(super) const LAG: f64 = 0.05;
+pub(super) const LAGS: (f64, f64) = (0.005, 2.0);
+
+/// A sensor: how a document has it.
+pub(super) enum Sensor {
+    Output { unit: String },
+    Input { unit: String },
+}
+
+impl Sensor {
+    pub fn find(sheet: &Sheet, target: &str) -> Result<Self, EditError> {
+        let document = &sheet.document;
+        if let Some(output) = document.outputs.get(target) {
+            let unit = output.unit.clone();
+            return Ok(Self::Output { unit });
+        }
+        if let Some(input) = document.inputs.get(target) {
+            let unit = input.unit.clone();
+            return Ok(Self::Input { unit });
+        }
+        let known = document.outputs.keys().chain(document.inputs.keys());
+        Err(sheet.no_target("output or measured input", target, known))
+    }
+
+    pub fn unit(&self) -> &str {
+        match self {
+            Self::Output { unit } | Self::Input { unit } => unit,
+        }
+    }
+
+    /// Adds an error to what is recorded; `error` can stand behind a plus sign, or a minus sign in brackets.
+    pub fn add(&self, sheet: &mut Sheet, target: &str, error: &str) {
+        match self {
+            Self::Output { .. } => observe(sheet, target, |y| format!("{y} + {error}")),
+            Self::Input { .. } => {
+                (sheet.document).substitute(target, &format!("({target} - ({error}))"));
+            }
+        }
+    }
+}
+
+fn observe(sheet: &mut Sheet, target: &str, change: impl Fn(&str) -> String) {
+    if let Some(output) = sheet.document.outputs.get_mut(target) {
+        output.equation = change(&output.equation);
+    }
+}
+
+pub(super) fn bias(sheet: &mut Sheet) -> Result<(), EditError> {
+    let target = sheet.target();
+    let sensor = Sensor::find(sheet, target)?;
+    let name = sheet.name(&format!("{target}_bias"))?;
+    sensor.add(sheet, target, &name);
+    let unit = of_a_difference(sensor.unit());
+    sheet.add(&name, unknown(unit, 0.0, None, format!("bias of {target}")));
+    Ok(())
+}
+
+pub(super) fn scale(sheet: &mut Sheet) -> Result<(), EditError> {
+    let target = sheet.target();
+    let sensor = Sensor::find(sheet, target)?;
+    let name = sheet.name(&format!("{target}_scale"))?;
+    match sensor {
+        Sensor::Output { .. } => observe(sheet, target, |y| format!("(1 + {name})*({y})")),
+        Sensor::Input { .. } => {
+            (sheet.document).substitute(target, &format!("({target}/(1 + {name}))"));
+        }
+    }
+    let words = format!("scale factor, less one, of {target}");
+    sheet.add(&name, unknown("-", 0.0, Some(SCALE), words));
+    Ok(())
+}
+
+pub(super) fn drift(sheet: &mut Sheet) -> Result<(), EditError> {
+    let target = sheet.target();
+    let sensor = Sensor::find(sheet, target)?;
+    let name = sheet.name(&format!("{target}_drift"))?;
+    sensor.add(sheet, target, &format!("{name}*t"));
+    let unit = per_second(sensor.unit());
+    sheet.add(
+        &name,
+        unknown(unit, 0.0, None, format!("drift of {target}")),
+    );
+    Ok(())
+}
+
+/// One delay for all targets, which share a clock.
+pub(super) fn delay(sheet: &mut Sheet) -> Result<(), EditError> {
+    let name = sheet.name(&format!("{}_delay", sheet.stem()))?;
+    for target in sheet.edit.target.split('+').map(str::trim) {
+        match Sensor::find(sheet, target)? {
+            Sensor::Output { .. } => {
+                if let Some(output) = sheet.document.outputs.get_mut(target) {
+                    later(&mut output.delay, &name);
+                }
+            }
+            // the value that was recorded late is the one to be used earlier
+            Sensor::Input { .. } => {
+                if let Some(input) = sheet.document.inputs.get_mut(target) {
+                    later(&mut input.delay, &format!("-{name}"));
+                }
+            }
+        }
+    }
+    let words = format!("time delay of {}", sheet.edit.target);
+    sheet.add(&name, unknown("s", 0.0, Some(DELAY), words));
+    Ok(())
+}
+
+/// Adds a term to a delay.
+pub(super) fn later(delay: &mut Option<String>, term: &str) {
+    *delay = Some(match delay {
+        Some(before) => format!("{before} + ({term})"),
+        None => term.to_string(),
+    });
+}
+
+pub(super) fn lag(sheet: &mut Sheet) -> Result<(), EditError> {
+    let target = sheet.target();
+    let Some(output) = sheet.document.outputs.get(target) else {
+        return Err(sheet.no_target("output", target, sheet.document.outputs.keys()));
+    };
+    let (equation, unit) = (output.equation.clone(), output.unit.clone());
+    let name = sheet.name(&format!("{target}_lag"))?;
+    let words = format!("time constant of the sensor of {target}");
+    sheet.add(&name, unknown("s", LAG, Some(LAGS), words));
+    let state = sheet.free(&format!("{target}_lagged"));
+    let initial = sheet.at_start(&equation, &unit, target);
+    let derivative = format!("({equation} - {state})/{name}");
+    let words = format!("{target} behind its sensor's lag");
+    sheet.add_state(&state, &unit, initial, derivative, words);
+    observe(sheet, target, |_| state.clone());
+    Ok(())
+}
+
+/// A lightly damped mode of the structure, driven by an input, on top of what the sensor sees.
+pub(super) fn structural_mode(sheet: &mut Sheet) -> Result<(), EditError> {
+    let target = sheet.target();
+    let driver = (sheet.edit).needed_term("the input that drives the mode, such as \"de\"")?;
+    let Some(output) = sheet.document.outputs.get(target) else {
+        return Err(sheet.no_target("output", target, sheet.document.outputs.keys()));
+    };
+    let unit = of_a_difference(&output.unit);
+    if !sheet.document.inputs.contains_key(driver) {
+        let known: Vec<_> = sheet.document.inputs.keys().map(String::as_str).collect();
+        let message = format!("the model has no such input; it has {}", known.join(", "));
+        return Err(sheet.edit.bad_term(message));
+    }
+    let of_gain = dimension(&unit).over(dimension(&sheet.input(driver)?));
+    let gain = sheet.name(&format!("{target}_mode_gain"))?;
+    let words = format!("static gain of the structural mode from {driver} to {target}");
+    sheet.add(&gain, unknown(of_gain.to_string(), 0.0, None, words));
+    let frequency = sheet.free(&format!("{target}_mode_frequency"));
+    let words = "natural frequency of the structural mode".to_string();
+    sheet.add(&frequency, unknown("rad/s", 12.0, Some((3.0, 60.0)), words));
+    let damping = sheet.free(&format!("{target}_mode_damping"));
+    let words = "damping ratio of the structural mode".to_string();
+    sheet.add(&damping, unknown("-", 0.02, Some((0.001, 0.3)), words));
+    let first = sheet.first_of(driver);
+    let eta = sheet.free(&format!("{target}_mode"));
+    let rate = sheet.free(&format!("{target}_mode_rate"));
+    let words = format!("structural mode in {target}");
+    sheet.add_state(&eta, &unit, "0".into(), rate.clone(), words);
+    let derivative = format!(
+        "{frequency}^2*({gain}*({driver} - {first}) - {eta}) - 2*{damping}*{frequency}*{rate}"
+    );
+    let words = format!("rate of the structural mode in {target}");
+    sheet.add_state(&rate, &per_second(&unit), "0".into(), derivative, words);
+    observe(sheet, target, |y| format!("{y} + {eta}"));
+    Ok(())
+}
+
+/// A length of a lever arm, m.
+pub(super) fn arm(description: String) -> Parameter {
+    unknown(
+        Dimension::METRE.to_string(),
+        0.0,
+        Some((-30.0, 30.0)),
+        description,
+    )
+}

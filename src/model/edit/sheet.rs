@@ -1,0 +1,338 @@
+//! A document while it is edited: free names, what a name measures, what a quantity is called.
+
+use super::text::{names, replace};
+use super::{Edit, EditError};
+use crate::flight::{Dimension, Unit};
+use crate::model::document::{Input, ModelDocument, Parameter, Per, Start, State};
+use crate::model::expression::{self, Function};
+use crate::model::names::Names;
+
+pub(super) struct Sheet<'a> {
+    pub edit: &'a Edit,
+    pub document: ModelDocument,
+}
+
+/// Names of a speed that varies, and of one that is held.
+const SPEEDS: [&str; 9] = [
+    "V", "V_true", "Vt", "V_t", "TAS", "V_TAS", "tas", "airspeed", "Va",
+];
+const STEADY_SPEEDS: [&str; 10] = [
+    "V_e", "V_ref", "Vbar", "V_bar", "V_0", "V0", "V_trim", "Ve", "U_0", "U0",
+];
+
+/// What a speed may be read from.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Speed {
+    /// A quantity that varies, or the steady flight's.
+    Any,
+    Varying,
+}
+
+impl<'a> Sheet<'a> {
+    pub fn new(edit: &'a Edit, document: &ModelDocument) -> Self {
+        Self {
+            edit,
+            document: document.clone(),
+        }
+    }
+
+    pub fn target(&self) -> &'a str {
+        &self.edit.target
+    }
+
+    /// The target as a part of names: `alpha+q` as `alpha_q`.
+    pub fn stem(&self) -> String {
+        self.edit.target.replace('+', "_").replace(' ', "")
+    }
+
+    /// The name of the first parameter: what the edit says, or the base, numbered where it is taken.
+    pub fn name(&self, base: &str) -> Result<String, EditError> {
+        match &self.edit.parameter {
+            Some(name) if self.is_taken(name) => Err(EditError::NameTaken { name: name.clone() }),
+            Some(name) => Ok(name.clone()),
+            None => Ok(self.free(base)),
+        }
+    }
+
+    /// A name that nothing has yet.
+    pub fn free(&self, base: &str) -> String {
+        let numbered = (2..).map(|n| format!("{base}_{n}"));
+        std::iter::once(base.to_string())
+            .chain(numbered)
+            .find(|name| !self.is_taken(name) && !self.document.outputs.contains_key(name))
+            .unwrap_or_else(|| base.to_string())
+    }
+
+    pub fn is_taken(&self, name: &str) -> bool {
+        let document = &self.document;
+        document.parameters.contains_key(name)
+            || document.constants.contains_key(name)
+            || document.inputs.contains_key(name)
+            || document.states.contains_key(name)
+            || document.definitions.contains_key(name)
+            || name == "t"
+            || name == "pi"
+            || Function::find(name).is_some()
+    }
+
+    pub fn add(&mut self, name: &str, parameter: Parameter) {
+        self.document.parameters.insert(name.to_string(), parameter);
+    }
+
+    pub fn add_state(
+        &mut self,
+        name: &str,
+        unit: &str,
+        initial: String,
+        derivative: String,
+        description: String,
+    ) {
+        let state = State {
+            unit: unit.to_string(),
+            initial,
+            derivative,
+            description,
+        };
+        self.document.states.insert(name.to_string(), state);
+    }
+
+    pub fn no_target<'n>(
+        &self,
+        wanted: &'static str,
+        target: &str,
+        known: impl Iterator<Item = &'n String>,
+    ) -> EditError {
+        EditError::NoTarget {
+            wanted,
+            target: target.to_string(),
+            known: known.cloned().collect(),
+        }
+    }
+
+    pub fn unfit(&self, message: impl Into<String>) -> EditError {
+        EditError::Unfit {
+            kind: self.edit.kind.name(),
+            target: self.edit.target.clone(),
+            message: message.into(),
+        }
+    }
+
+    /// The equation of a state (its derivative) or of a definition, and what it measures.
+    pub fn law(&mut self, target: &str) -> Result<(&mut String, Dimension), EditError> {
+        let known = (self.document.states.keys()).chain(self.document.definitions.keys());
+        let missing = self.no_target("state or definition", target, known);
+        let document = &mut self.document;
+        if let Some(state) = document.states.get_mut(target) {
+            let rate = dimension(&state.unit).over(Dimension::SECOND);
+            Ok((&mut state.derivative, rate))
+        } else if let Some(definition) = document.definitions.get_mut(target) {
+            Ok((&mut definition.equation, dimension(&definition.unit)))
+        } else {
+            Err(missing)
+        }
+    }
+
+    /// The unit of an input.
+    pub fn input(&self, target: &str) -> Result<String, EditError> {
+        match self.document.inputs.get(target) {
+            Some(input) => Ok(input.unit.clone()),
+            None => Err(self.no_target("input", target, self.document.inputs.keys())),
+        }
+    }
+
+    /// The dimension of a name that an equation may use.
+    pub fn measures(&self, name: &str) -> Option<Dimension> {
+        Names::collect(&self.document, &mut Vec::new()).dimension(name)
+    }
+
+    /// A quantity that varies with time under one of its names: a state, definition or input, or what an output says.
+    pub fn quantity(&self, candidates: &[&str], measures: Dimension) -> Option<String> {
+        let document = &self.document;
+        let drives = |name: &str| {
+            document.states.contains_key(name)
+                || document.definitions.contains_key(name)
+                || document.inputs.contains_key(name)
+        };
+        let fits = |name: &&&str| drives(name) && self.measures(name) == Some(measures);
+        if let Some(name) = candidates.iter().find(fits) {
+            return Some((*name).to_string());
+        }
+        let outputs = candidates
+            .iter()
+            .filter_map(|&name| document.outputs.get(name));
+        let mut outputs = outputs.filter(|output| dimension(&output.unit) == measures);
+        outputs
+            .next()
+            .map(|output| format!("({})", output.equation))
+    }
+
+    /// An airspeed for an equation. A speed that the document does not have becomes a recorded input `V`.
+    pub fn speed(&mut self, speed: Speed) -> Result<String, EditError> {
+        let measures = Dimension::METRE.over(Dimension::SECOND);
+        if let Some(found) = self.quantity(&SPEEDS, measures) {
+            return Ok(found);
+        }
+        if speed == Speed::Any
+            && let Some(steady) = self.steady_speed()
+        {
+            return Ok(steady);
+        }
+        self.channel("V", "m/s", "true airspeed")
+    }
+
+    /// The speed of the steady flight, a parameter or a constant.
+    pub fn steady_speed(&self) -> Option<String> {
+        let document = &self.document;
+        let held = |name: &str| {
+            document.parameters.contains_key(name) || document.constants.contains_key(name)
+        };
+        let measures = Some(Dimension::METRE.over(Dimension::SECOND));
+        let mut candidates = STEADY_SPEEDS.iter().chain(&SPEEDS);
+        candidates
+            .find(|&&name| held(name) && self.measures(name) == measures)
+            .map(|&name| name.to_string())
+    }
+
+    /// A recorded channel as an input, new where the document does not have it.
+    pub fn channel(
+        &mut self,
+        name: &str,
+        unit: &str,
+        description: &str,
+    ) -> Result<String, EditError> {
+        if self.document.inputs.contains_key(name) {
+            return Ok(name.to_string());
+        }
+        if self.is_taken(name) || self.document.outputs.contains_key(name) {
+            let message = format!(
+                "'{name}' is wanted as a recorded input, and is something else in this model"
+            );
+            return Err(self.unfit(message));
+        }
+        let input = Input {
+            unit: unit.to_string(),
+            delay: None,
+            description: description.to_string(),
+        };
+        self.document.inputs.insert(name.to_string(), input);
+        Ok(name.to_string())
+    }
+
+    /// What an expression is at the start of a segment, in parameters and constants: states are replaced by their
+    /// initial values, definitions written out, inputs replaced by fixed parameters that read their first sample.
+    /// Where that is too long, a free parameter of each maneuver that starts at the first sample of `channel`.
+    pub fn at_start(&mut self, text: &str, unit: &str, channel: &str) -> String {
+        let mut firsts = Vec::new();
+        let expanded = self.expanded(text, 0, &mut firsts);
+        if let Some(expanded) = expanded.filter(|text| expression::parse(text).is_ok()) {
+            for input in firsts {
+                self.first_of(&input);
+            }
+            return expanded;
+        }
+        let name = self.free(&format!("{channel}_first"));
+        let start = Start::FromData(format!("first({channel})"));
+        let unknown = Parameter {
+            start,
+            per: Per::Maneuver,
+            ..unknown(unit, 0.0, None, format!("{channel} at the start"))
+        };
+        self.add(&name, unknown);
+        name
+    }
+
+    fn expanded(&self, text: &str, depth: usize, firsts: &mut Vec<String>) -> Option<String> {
+        if depth > 24 {
+            return None;
+        }
+        let mut by = Vec::new();
+        for name in names(text) {
+            let document = &self.document;
+            let put = if name == "t" {
+                "0".to_string()
+            } else if let Some(state) = document.states.get(&name) {
+                format!("({})", state.initial)
+            } else if let Some(definition) = document.definitions.get(&name) {
+                format!(
+                    "({})",
+                    self.expanded(&definition.equation, depth + 1, firsts)?
+                )
+            } else if document.inputs.contains_key(&name) {
+                if !firsts.contains(&name) {
+                    firsts.push(name.clone());
+                }
+                self.name_of_first(&name)
+            } else {
+                continue;
+            };
+            by.push((name, put));
+        }
+        let put = |name: &str| {
+            let found = by.iter().find(|(replaced, _)| replaced == name);
+            found.map(|(_, put)| put.clone())
+        };
+        let expanded = replace(text, put);
+        (expanded.len() < expression::LONGEST / 2).then_some(expanded)
+    }
+
+    /// The fixed parameter that is an input's first sample, in each maneuver.
+    pub fn first_of(&mut self, input: &str) -> String {
+        let name = self.name_of_first(input);
+        if !self.document.parameters.contains_key(&name) {
+            let unit = (self.document.inputs.get(input)).map_or("", |input| &input.unit);
+            let parameter = Parameter {
+                start: Start::FromData(format!("first({input})")),
+                fixed: true,
+                per: Per::Maneuver,
+                ..unknown(unit, 0.0, None, format!("{input} at the start"))
+            };
+            self.add(&name, parameter);
+        }
+        name
+    }
+
+    fn name_of_first(&self, input: &str) -> String {
+        let start = Start::FromData(format!("first({input})"));
+        let mut parameters = self.document.parameters.iter();
+        let there = parameters.find(|(_, p)| p.start == start && p.fixed && p.per == Per::Maneuver);
+        there.map_or_else(
+            || self.free(&format!("{input}_first")),
+            |(name, _)| name.clone(),
+        )
+    }
+}
+
+/// A free parameter.
+pub(super) fn unknown(
+    unit: impl Into<String>,
+    start: f64,
+    bounds: Option<(f64, f64)>,
+    description: String,
+) -> Parameter {
+    Parameter {
+        unit: unit.into(),
+        start: Start::Value(start),
+        lower: bounds.map(|(lower, _)| lower),
+        upper: bounds.map(|(_, upper)| upper),
+        fixed: false,
+        per: Per::Job,
+        prior: None,
+        description,
+    }
+}
+
+pub(super) fn dimension(unit: &str) -> Dimension {
+    Unit::parse(unit).map_or(Dimension::NONE, |unit| unit.dimension)
+}
+
+/// The unit of a difference: a temperature in degC differs by kelvins.
+pub(super) fn of_a_difference(unit: &str) -> String {
+    match Unit::parse(unit) {
+        Ok(parsed) if parsed.offset != 0.0 => parsed.dimension.to_string(),
+        _ => unit.to_string(),
+    }
+}
+
+pub(super) fn per_second(unit: &str) -> String {
+    dimension(unit).over(Dimension::SECOND).to_string()
+}

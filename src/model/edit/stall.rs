@@ -1,0 +1,79 @@
+//! Stall: separation of the flow with hysteresis, after Kirchhoff, Goman and Khrabrov.
+
+use super::EditError;
+use super::dynamics::angle;
+use super::sheet::{Sheet, dimension, unknown};
+use super::text::replace_name;
+use crate::flight::Dimension;
+
+/// τ1 Ẋ = ½ (1 - tanh a1 (α - τ2 α̇ - α*)) - X; in a lift α becomes ((1 + √X)/2)² α, to a moment C (1 - X) is added.
+///
+/// A moment is a coefficient `Cm...` or the equation of a rate; all other targets are lifts, and must read α. α̇ is the
+/// derivative of the state α, or a definition `alphadot`; without either, τ2 is left out.
+pub(super) fn hysteresis(sheet: &mut Sheet) -> Result<(), EditError> {
+    let (angle, unit) = angle(sheet)?;
+    let targets: Vec<&str> = sheet.edit.target.split('+').map(str::trim).collect();
+    let separation = sheet.free("X");
+    let name = sheet.name(&format!("{angle}_stall"))?;
+    let words = format!("{angle} at which half the flow has separated");
+    sheet.add(&name, unknown("deg", 15.0, Some((5.0, 25.0)), words));
+    let steepness = sheet.free(&format!("{angle}_stall_steepness"));
+    let words = "steepness of the separation, a1".to_string();
+    sheet.add(&steepness, unknown("-", 20.0, Some((5.0, 80.0)), words));
+    let time = sheet.free(&format!("{angle}_stall_time"));
+    let words = "time constant of the separation, tau1".to_string();
+    sheet.add(&time, unknown("s", 0.2, Some((0.01, 2.0)), words));
+    let rate = match (sheet.document.states.get(angle), format!("{angle}dot")) {
+        (_, name) if sheet.document.definitions.contains_key(&name) => Some(name),
+        (Some(_), _) => Some(String::new()),
+        (None, _) => None,
+    };
+    for target in targets {
+        let is_rate = (sheet.document.states.get(target))
+            .is_some_and(|state| dimension(&state.unit) == Dimension::NONE.over(Dimension::SECOND));
+        if is_rate || target.to_lowercase().starts_with("cm") {
+            let (_, measures) = sheet.law(target)?;
+            let moment = sheet.free(&format!("{target}_{separation}"));
+            let words = format!("effect on {target} of the separation of the flow");
+            sheet.add(&moment, unknown(measures.to_string(), 0.0, None, words));
+            let (equation, _) = sheet.law(target)?;
+            *equation = format!("{equation} + {moment}*(1 - {separation})");
+        } else {
+            // the square root must stay a number that can be derived
+            let attached = format!("(((1 + sqrt(max({separation}, 0.0001)))/2)^2*{angle})");
+            let (equation, _) = sheet.law(target)?;
+            let changed = replace_name(equation, angle, &attached);
+            if changed == *equation {
+                let message = format!("the equation of '{target}' does not read '{angle}'");
+                return Err(sheet.unfit(message));
+            }
+            *equation = changed;
+        }
+    }
+    let initial = sheet.at_start(angle, &unit, angle);
+    let initial = format!("0.5*(1 - tanh({steepness}*({initial} - {name})))");
+    // the rate of a state is explicit in the states, of which the separation is one: it closes no circle
+    let late = match rate {
+        None => String::new(),
+        Some(definition) => {
+            let rate = if definition.is_empty() {
+                let state = sheet.document.states.get(angle);
+                state.map_or_else(
+                    || "0".to_string(),
+                    |state| format!("({})", state.derivative),
+                )
+            } else {
+                definition
+            };
+            let memory = sheet.free(&format!("{angle}_stall_delay"));
+            let words = "delay of the stall in pitching up, tau2".to_string();
+            sheet.add(&memory, unknown("s", 0.0, Some((-0.2, 2.0)), words));
+            format!(" - {memory}*{rate}")
+        }
+    };
+    let derivative =
+        format!("(0.5*(1 - tanh({steepness}*({angle}{late} - {name}))) - {separation})/{time}");
+    let words = "point of separation: 1 attached, 0 separated".to_string();
+    sheet.add_state(&separation, "-", initial, derivative, words);
+    Ok(())
+}
