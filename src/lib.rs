@@ -11,6 +11,7 @@
 //! | f, g, x0, θ | a model document and what it compiles to | [`model`] |
 //! | x, y, ∂y/∂θ | trajectories and sensitivities | [`simulate`] |
 //! | J, R, F, the estimate | cost, steps, error bounds | [`estimate`] |
+//! | S⊥, ψ, the effect that is missing | screening, trials, verdict | [`diagnose`] |
 //!
 //! Around them: what a job is ([`job`]), what keeps it ([`store`]), who runs it ([`work`]), how it is asked for
 //! ([`http`], [`cli`]), how its result looks ([`dashboard`]). Arrows go one way: `estimate → simulate → model → flight`, `ingest → flight`,
@@ -19,6 +20,7 @@
 
 pub mod cli;
 pub mod dashboard;
+pub mod diagnose;
 pub mod estimate;
 pub mod flight;
 pub mod http;

@@ -4,6 +4,7 @@
 mod client;
 mod demo;
 mod derivatives;
+mod diagnose;
 mod failure;
 mod fit;
 mod model;
@@ -42,6 +43,7 @@ enum Command {
     Demo(demo::Demo),
     Fit(fit::Fit),
     Study(study::Study),
+    Diagnose(diagnose::Diagnose),
     Submit(submit::Submit),
     Watch(watch::Watch),
     Simulate(simulate::Simulate),
@@ -61,6 +63,7 @@ pub fn main() -> ExitCode {
         Command::Demo(demo) => block_on(demo.run()),
         Command::Fit(fit) => fit.run(),
         Command::Study(study) => study.run(),
+        Command::Diagnose(diagnose) => diagnose.run(),
         Command::Submit(submit) => block_on(submit.run()),
         Command::Watch(watch) => block_on(watch.run()),
         Command::Simulate(simulate) => simulate.run(),

@@ -2,6 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use crate::diagnose::Step;
 use crate::estimate::{self, Iteration};
 
 /// Steps of this many standard errors count as the beginning of the way.
@@ -49,6 +50,25 @@ impl Progress {
             let position = (way.clamp(0.0, 1.0) * LENGTH as f64) as u64;
             // progress is not taken back: a long step now and then is part of the way
             self.bar.set_position(position.max(self.bar.position()));
+        }
+    }
+
+    /// A step of a diagnosis.
+    pub fn diagnosis(&self, step: &Step) {
+        match step {
+            Step::Fitted { cost, iterations, .. } => {
+                self.say(&format!("declared model fitted: -ln L {cost:.4}, {iterations} iterations"));
+            }
+            Step::Screened { round, candidates, visible } => self.say(&format!(
+                "round {round}: {candidates} candidates screened, {visible} of them can be seen in these data"
+            )),
+            Step::Tried { name, likelihood_ratio, .. } => {
+                self.bar.set_message(format!("tried {name}: likelihood ratio {likelihood_ratio:.1}"));
+            }
+            Step::Refused { name, sentence, .. } => self.say(&format!("refused {name}: {sentence}")),
+            Step::Accepted { name, likelihood_ratio, sentence, .. } => {
+                self.say(&format!("accepted {name} (likelihood ratio {likelihood_ratio:.1}): {sentence}"));
+            }
         }
     }
 

@@ -20,6 +20,9 @@ pub struct Request {
     /// A recording that the model is not fitted to but predicts, to see whether it holds.
     #[arg(long, value_name = "FILE")]
     pub validate: Vec<PathBuf>,
+    /// A recording that is predicted at the very end: a diagnosis makes no decision with it.
+    #[arg(long = "final", value_name = "FILE")]
+    pub last: Vec<PathBuf>,
     /// A catalog model (short-period, lateral-directional-2, ...) or a model document (.toml, .json).
     #[arg(long, short)]
     pub model: String,
@@ -60,7 +63,7 @@ pub struct Request {
 impl Request {
     /// All files: those to fit, then those to predict.
     pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
-        self.files.iter().chain(&self.validate)
+        self.files.iter().chain(&self.validate).chain(&self.last)
     }
 
     /// The recordings in all files.
@@ -149,6 +152,7 @@ impl Request {
         };
         let fitted = self.files.iter().map(|file| (file, Role::Estimation));
         let predicted = self.validate.iter().map(|file| (file, Role::Validation));
+        let last = self.last.iter().map(|file| (file, Role::Final));
         let gaps = if self.join { Gaps::Join } else { Gaps::Split };
         let usage = |(id, (file, role)): (&String, (&PathBuf, Role))| ManeuverUse {
             id: id.clone(),
@@ -163,9 +167,14 @@ impl Request {
             tags: Vec::new(),
             model: self.model()?,
             edits: Vec::new(),
-            maneuvers: ids.iter().zip(fitted.chain(predicted)).map(usage).collect(),
+            maneuvers: ids
+                .iter()
+                .zip(fitted.chain(predicted).chain(last))
+                .map(usage)
+                .collect(),
             channels: channels.collect::<Result<_, Failure>>()?,
             parameters,
+            candidates: Vec::new(),
             constants: constants.collect::<Result<_, Failure>>()?,
             options: Options {
                 method: if self.gauss_newton {

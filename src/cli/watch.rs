@@ -51,6 +51,7 @@ pub async fn follow(client: &Client, job: &str) -> Result<Estimate, Failure> {
             EventBody::Start(report) => progress.say(&report.text),
             EventBody::Iteration(iteration) => progress.iteration(iteration),
             EventBody::Finding(step) => progress.say(&step.finding),
+            EventBody::Diagnosis(step) => progress.diagnosis(step),
             EventBody::CancelRequested => progress.say("asked to stop"),
             EventBody::Succeeded { reason, .. } => {
                 progress.finish(reason);

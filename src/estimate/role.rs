@@ -11,4 +11,6 @@ pub enum Role {
     Estimation,
     /// It takes no part in the fit and is predicted with its result.
     Validation,
+    /// As validation, and no decision of a diagnosis looks at it either.
+    Final,
 }

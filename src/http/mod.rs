@@ -10,6 +10,7 @@ mod coefficients;
 mod compute;
 mod csv;
 mod decimate;
+mod diagnosis;
 mod events;
 mod format;
 mod health;

@@ -19,8 +19,8 @@ use utoipa_swagger_ui::SwaggerUi;
 use super::code::Code;
 use super::problem::{self, Problem};
 use super::{
-    Service, coefficients, events, health, histories, jobs, maneuvers, models, problems, results,
-    study, submit,
+    Service, coefficients, diagnosis, events, health, histories, jobs, maneuvers, models, problems,
+    results, study, submit,
 };
 
 /// Every resource.
@@ -33,6 +33,7 @@ pub(super) fn api() -> OpenApiRouter<Service> {
         .merge(events::router())
         .merge(results::router())
         .merge(study::router())
+        .merge(diagnosis::router())
         .merge(coefficients::router())
         .merge(histories::router())
         .merge(problems::router())

@@ -79,6 +79,7 @@ pub fn kind_name(kind: JobKind) -> &'static str {
     match kind {
         JobKind::Estimate => "estimate",
         JobKind::DerivativeStudy => "derivative_study",
+        JobKind::Diagnose => "diagnose",
     }
 }
 

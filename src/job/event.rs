@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::Fault;
+use crate::diagnose::Step;
 use crate::estimate::study::StudyStep;
 use crate::estimate::{Iteration, Outcome, Progress, StartReport};
 use crate::flight::Finding;
@@ -37,6 +38,8 @@ pub enum EventBody {
     Iteration(Iteration),
     /// A derivative study found something.
     Finding(StudyStep),
+    /// A diagnosis got on: a candidate was tried, refused or accepted.
+    Diagnosis(Step),
     /// Somebody asked to cancel.
     CancelRequested,
     /// The solver ended and its result is stored; `outcome` says how good it is.
@@ -85,6 +88,7 @@ impl EventBody {
             Self::Start(_) => "start",
             Self::Iteration(_) => "iteration",
             Self::Finding(_) => "finding",
+            Self::Diagnosis(_) => "diagnosis",
             Self::CancelRequested => "cancel_requested",
             Self::Succeeded { .. } => "succeeded",
             Self::Failed { .. } => "failed",

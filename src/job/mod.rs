@@ -3,6 +3,7 @@
 
 mod bounds;
 mod checks;
+mod diagnosis;
 mod event;
 mod filter;
 mod missing;
@@ -15,9 +16,10 @@ mod study;
 
 pub use crate::flight::Fault;
 pub use checks::MOST_MANEUVERS;
+pub use diagnosis::run_diagnosis;
 pub use event::{Event, EventBody, Prepared};
 pub use prepare::{Plan, prepare};
 pub use run::{JobResult, run};
-pub use spec::{Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride};
+pub use spec::{Candidate, Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride};
 pub use status::Status;
 pub use study::{Progress, run_study};

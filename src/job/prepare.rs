@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::resolve::{self, Named, Stretch};
-use super::{Fault, JobKind, JobSpec, Prepared, study};
+use super::{Fault, JobKind, JobSpec, Prepared, diagnosis, study};
 use super::{bounds, checks, filter, missing};
+use crate::diagnose::Case;
 use crate::estimate::{Problem, Role, Unknowns, Validation};
 use crate::flight::{Maneuver, escape};
 use crate::model::{ChannelFormula, Model, ModelDocument, Start};
@@ -18,6 +19,8 @@ pub struct Plan {
     pub problem: Problem,
     /// What is predicted with the estimate.
     pub validation: Vec<Validation>,
+    /// Of a diagnosis: all that it is made from.
+    pub case: Option<Case>,
 }
 
 /// Compiles the model, applies edits and overrides, makes inputs and outputs from recorded channels,
@@ -58,13 +61,17 @@ pub fn prepare(
     {
         return Err(faults);
     }
-    let (mut fitted, mut predicted) = (Vec::new(), Vec::new());
+    let (mut fitted, mut predicted, mut flights) = (Vec::new(), Vec::new(), Vec::new());
     for (index, stretches) in stretches.iter().enumerate() {
         for stretch in stretches {
             let segment = resolve::segment(spec, &model, stretch, index, &mut faults);
+            if spec.kind == JobKind::Diagnose {
+                let role = spec.maneuvers[index].role;
+                flights.push(diagnosis::flight(&model, &segment, stretch, role));
+            }
             match spec.maneuvers[index].role {
                 Role::Estimation => fitted.push((segment, stretch)),
-                Role::Validation => predicted.push((segment, stretch)),
+                Role::Validation | Role::Final => predicted.push((segment, stretch)),
             }
         }
     }
@@ -97,6 +104,10 @@ pub fn prepare(
         study::check(&problem)?;
     }
     checks::check_estimator(&problem)?;
+    let case = match spec.kind {
+        JobKind::Diagnose => Some(diagnosis::case(spec, &document, &problem, flights)?),
+        JobKind::Estimate | JobKind::DerivativeStudy => None,
+    };
     let prepared = Prepared {
         segments: problem
             .segments
@@ -124,6 +135,7 @@ pub fn prepare(
         model: document,
         problem,
         validation,
+        case,
     })
 }
 

@@ -7,6 +7,7 @@ use utoipa::ToSchema;
 
 use super::prepare::Plan;
 use super::{Fault, checks, filter};
+use crate::diagnose::Diagnosis;
 use crate::estimate::study::DerivativeStudy;
 use crate::estimate::{
     Estimate, Outcome, Problem, Progress, Solution, TimeHistory, Unusable, estimate, predict,
@@ -23,6 +24,9 @@ pub struct JobResult {
     /// Of a derivative study.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub study: Option<DerivativeStudy>,
+    /// Of a diagnosis.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub diagnosis: Option<Diagnosis>,
 }
 
 /// Runs a plan; `watcher` is told of its progress and may stop it.
@@ -50,6 +54,7 @@ pub fn run(
         histories,
         model: plan.model.clone(),
         study: None,
+        diagnosis: None,
     })
 }
 

@@ -54,8 +54,20 @@ pub struct JobSpec {
     )]
     #[schema(example = json!({"m": 17600.0}))]
     pub constants: IndexMap<String, f64>,
+    /// Of a diagnosis: effects of your own, tried beside those of the catalogue.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub candidates: Vec<Candidate>,
     #[serde(default)]
     pub options: Options,
+}
+
+/// An effect that a model may lack, as edits of it.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Candidate {
+    #[schema(example = "spoiler on the yawing moment")]
+    pub name: String,
+    pub edits: Vec<Edit>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
@@ -67,6 +79,9 @@ pub enum JobKind {
     /// Output-error estimation, and then all derivative techniques compared on the same problem: errors, costs,
     /// iterations. The result has a `derivative-study` beside the estimate.
     DerivativeStudy,
+    /// Output-error estimation, and then what the model lacks: the residual is traced to effects of the catalogue,
+    /// which are added one by one. The result has a `diagnosis`; its estimate is that of the model with the effects.
+    Diagnose,
 }
 
 /// A model by name or id, or written out.

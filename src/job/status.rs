@@ -35,7 +35,8 @@ impl Status {
                 EventBody::Prepared(_)
                 | EventBody::Start(_)
                 | EventBody::Iteration(_)
-                | EventBody::Finding(_),
+                | EventBody::Finding(_)
+                | EventBody::Diagnosis(_),
                 before,
             ) => before.unwrap_or(Self::Running),
         }

@@ -17,6 +17,8 @@ pub enum Part {
     Model,
     /// [`crate::estimate::study::DerivativeStudy`]; only of jobs of that kind.
     Study,
+    /// [`crate::diagnose::Diagnosis`]; only of jobs of that kind.
+    Diagnosis,
 }
 
 impl Part {
@@ -25,6 +27,7 @@ impl Part {
             Self::Estimate => "estimate",
             Self::Model => "model",
             Self::Study => "study",
+            Self::Diagnosis => "diagnosis",
         }
     }
 }
@@ -55,6 +58,10 @@ impl ResultParts {
         if let Some(study) = &result.study {
             let study = serde_json::to_vec(study);
             parts.push((Part::Study.name().to_string(), study));
+        }
+        if let Some(diagnosis) = &result.diagnosis {
+            let diagnosis = serde_json::to_vec(diagnosis);
+            parts.push((Part::Diagnosis.name().to_string(), diagnosis));
         }
         for (number, history) in result.histories.iter().enumerate() {
             parts.push((history_part(number), encode_history(history)));

@@ -78,6 +78,9 @@ pub fn solve(
                 Progress::Underway => None,
             })
         }),
+        JobKind::Diagnose => job::run_diagnosis(&plan, &mut |step| {
+            tell(Some(EventBody::Diagnosis(step.clone())))
+        }),
     };
     let result = result.map_err(Unanswered::Refused)?;
     let parts = ResultParts::encode(&result)?;

@@ -1,0 +1,125 @@
+//! `trimtab diagnose`: what a model lacks, here and now.
+
+use std::ops::ControlFlow;
+
+use comfy_table::Table;
+use comfy_table::presets::UTF8_BORDERS_ONLY;
+
+use super::progress::Progress;
+use super::request::Request;
+use super::{Failure, table};
+use crate::diagnose::{Diagnosis, FitChange, Refusal};
+use crate::estimate::{Role, five_digits};
+use crate::job::{self, JobKind};
+
+/// Fits a model, finds what it lacks, adds that, and shows the error before and after.
+#[derive(clap::Args, Debug)]
+pub struct Diagnose {
+    #[command(flatten)]
+    request: Request,
+    /// Show every candidate that was refused, with the reason.
+    #[arg(long)]
+    all: bool,
+    /// Print the whole result as JSON instead.
+    #[arg(long)]
+    json: bool,
+}
+
+impl Diagnose {
+    pub fn run(&self) -> Result<(), Failure> {
+        let maneuvers = self.request.recordings()?;
+        let ids: Vec<String> = maneuvers.iter().map(|maneuver| maneuver.digest()).collect();
+        let mut spec = self.request.spec(&ids)?;
+        spec.kind = JobKind::Diagnose;
+        let plan = job::prepare(&spec, &self.request.document()?, &maneuvers)
+            .map_err(|faults| Failure::faults("the job cannot start", &faults))?;
+        for finding in &plan.prepared.findings {
+            eprintln!("note: {}; {}", finding.message, finding.remedy);
+        }
+        let progress = Progress::new(spec.options.tolerance);
+        let result = job::run_diagnosis(&plan, &mut |step| {
+            progress.diagnosis(step);
+            ControlFlow::Continue(())
+        })
+        .map_err(|faults| Failure::faults("the job failed", &faults))?;
+        let Some(diagnosis) = &result.diagnosis else {
+            return Err(Failure::new(result.estimate.reason));
+        };
+        progress.finish(diagnosis.verdict.name());
+        if self.json {
+            let text = serde_json::to_string_pretty(&result)
+                .map_err(|error| Failure::new(error.to_string()))?;
+            println!("{text}");
+        } else {
+            println!("{}", table::result(&result.estimate, None));
+            println!("{}", conclusion(diagnosis, self.all));
+        }
+        Ok(())
+    }
+}
+
+/// The refused candidates, the error before and after, and the verdict last.
+pub fn conclusion(diagnosis: &Diagnosis, all: bool) -> String {
+    let mut text = String::new();
+    let shown =
+        |reason: Refusal| all || !matches!(reason, Refusal::NotSignificant | Refusal::NotFitted);
+    for refused in diagnosis
+        .refused
+        .iter()
+        .filter(|refused| shown(refused.reason))
+    {
+        text += &format!("refused {}: {}\n", refused.effect.name(), refused.sentence);
+    }
+    let mut shifts = Table::new();
+    shifts.load_style(UTF8_BORDERS_ONLY);
+    shifts.set_header([
+        "parameter",
+        "declared model",
+        "with effects",
+        "shift, standard errors",
+    ]);
+    for change in &diagnosis.parameters {
+        shifts.add_row([
+            change.name.clone(),
+            five_digits(change.before),
+            five_digits(change.after),
+            change
+                .shift
+                .map_or("-".to_string(), |shift| format!("{shift:+.1}")),
+        ]);
+    }
+    if !diagnosis.effects.is_empty() {
+        text += &format!("{shifts}\n");
+    }
+    let mut errors = Table::new();
+    errors.load_style(UTF8_BORDERS_ONLY);
+    errors.set_header(["RMS error", "output", "before", "after", "ratio"]);
+    for fit in &diagnosis.fits {
+        errors.add_row([
+            place(fit),
+            fit.before.name.clone(),
+            format!("{:.4e} {}", fit.before.rms, fit.before.unit),
+            format!("{:.4e} {}", fit.after.rms, fit.after.unit),
+            format!("{:.3}", fit.after.rms / fit.before.rms),
+        ]);
+    }
+    text += &format!("{errors}\n");
+    for remark in &diagnosis.remarks {
+        text += &format!("note: {remark}\n");
+    }
+    text += &format!(
+        "verdict: {}: {}",
+        diagnosis.verdict.name(),
+        diagnosis.sentence
+    );
+    text
+}
+
+fn place(fit: &FitChange) -> String {
+    let segment = fit.segment.as_deref().unwrap_or("all segments");
+    match fit.role {
+        Role::Estimation => "fit".to_string(),
+        Role::Validation => format!("prediction of {segment}"),
+        Role::Final => format!("prediction of {segment} (no decision saw it)"),
+    }
+}

@@ -1,0 +1,371 @@
+//! The answer, put together from what the rounds found.
+
+use std::ops::ControlFlow;
+
+use super::case::{Case, Unfit};
+use super::colour::Colour;
+use super::difference::difference;
+use super::fitted::Fitted;
+use super::report::{
+    Diagnosis, EffectParameter, FitChange, NamedEffect, ParameterChange, Refusal, RefusedEffect,
+    Verdict,
+};
+use super::residual::analyse;
+use super::round::Accepted;
+use super::screen::Screen;
+use super::stack::Layout;
+use super::{Conclusion, sentence};
+use crate::estimate::{
+    Estimate, OutputFit, ParameterEstimate, Problem, Role, Solution, TimeHistory, estimate, predict,
+};
+use crate::flight::Unit;
+use crate::model::{Model, ModelDocument, Start};
+
+/// What the rounds found.
+#[derive(Default)]
+pub struct Found {
+    pub accepted: Vec<Accepted>,
+    pub refused: Vec<RefusedEffect>,
+}
+
+impl Found {
+    pub fn needless(&mut self, removed: Accepted, cost: f64) {
+        self.refused.push(RefusedEffect {
+            sentence: format!(
+                "it was accepted in an earlier round; with the later effects in the model its likelihood ratio is only {cost:.1}"
+            ),
+            effect: removed.effect,
+            reason: Refusal::Needless,
+            likelihood_ratio: Some(cost),
+            visible_fraction: removed.evidence.visible_fraction,
+            smallest_seen: removed.evidence.smallest_seen,
+            held_out: removed.evidence.held_out,
+        });
+    }
+}
+
+/// Noise alone makes a residual look coherent with an input once in so many diagnoses.
+const COHERENT: f64 = 1e-3;
+
+/// Fewer samples than this for each free parameter decide nothing.
+const LEAST_SAMPLES: usize = 5;
+
+pub fn answer(
+    case: &Case,
+    declared: &Fitted,
+    last: &Fitted,
+    found: Found,
+) -> Result<Conclusion, Unfit> {
+    let after = full(case, declared, last)?;
+    let estimated = after.solution.estimate.clone();
+    let mut histories = after.solution.histories.clone();
+    let mut fits = Vec::new();
+    for (b, a) in declared.estimate.outputs.iter().zip(&estimated.outputs) {
+        fits.push(FitChange {
+            role: Role::Estimation,
+            segment: None,
+            before: b.clone(),
+            after: a.clone(),
+        });
+    }
+    for role in [Role::Validation, Role::Final] {
+        let before = predictions(case, role, &declared.problem, &declared.estimate)?;
+        let now = predictions(case, role, &after.problem, &estimated)?;
+        for ((label, b, _), (_, a, history)) in before.into_iter().zip(now) {
+            let of = |(before, after): (OutputFit, OutputFit)| FitChange {
+                role,
+                segment: Some(label.clone()),
+                before,
+                after,
+            };
+            fits.extend(b.into_iter().zip(a).map(of));
+            histories.extend(history.map(|history| TimeHistory { role, ..history }));
+        }
+    }
+    let residuals = analyse(&after.solution.histories);
+    let incoherent = if found.accepted.iter().any(|a| a.effect.edits.is_empty()) {
+        Vec::new()
+    } else {
+        coherent(case, last)
+    };
+    let verdict = verdict(case, declared, &found, &incoherent);
+    let mut remarks = remarks(case, &fits);
+    for (output, input) in &incoherent {
+        remarks.push(format!(
+            "what is left of {output} still follows {input}: something that no candidate of the catalogue explains"
+        ));
+    }
+    let effects: Vec<NamedEffect> = found
+        .accepted
+        .iter()
+        .map(|accepted| named(accepted, declared, &estimated))
+        .collect();
+    let diagnosis = Diagnosis {
+        verdict,
+        sentence: conclusion(verdict, &effects, &fits, &incoherent),
+        effects,
+        refused: found.refused,
+        parameters: changes(&declared.estimate, &estimated),
+        before: declared.estimate.clone(),
+        model: estimated_document(&after.problem.model, &estimated),
+        diff: difference(&case.document, &last.document),
+        fits,
+        residuals,
+        remarks,
+    };
+    Ok(Conclusion {
+        diagnosis,
+        estimate: estimated,
+        histories,
+    })
+}
+
+struct Full {
+    problem: Problem,
+    solution: Solution,
+}
+
+/// The last model, fitted to the job's own tolerance and with its error bounds.
+fn full(case: &Case, declared: &Fitted, last: &Fitted) -> Result<Full, Unfit> {
+    let mut problem = case.problem(&last.document, &last.values)?;
+    problem.options = last.problem.options.clone();
+    let asked = &declared.problem.options;
+    problem.options.tolerance = asked.tolerance;
+    problem.options.max_iterations = asked.max_iterations;
+    problem.options.error_bounds = asked.error_bounds;
+    problem.options.start = crate::estimate::StartMethod::Document {};
+    let solution = estimate(&problem, &mut |_| ControlFlow::Continue(()))
+        .map_err(|_| Unfit("the model with its effects cannot be fitted again".into()))?;
+    Ok(Full { problem, solution })
+}
+
+type Predicted = (String, Vec<OutputFit>, Option<TimeHistory>);
+
+fn predictions(
+    case: &Case,
+    role: Role,
+    problem: &Problem,
+    estimate: &Estimate,
+) -> Result<Vec<Predicted>, Unfit> {
+    let flights = case.held_out(role, problem)?;
+    let of = |validation| {
+        let (prediction, history) = predict(problem, estimate, validation);
+        (prediction.segment, prediction.outputs, history)
+    };
+    Ok(flights.iter().map(of).collect())
+}
+
+/// Outputs and inputs that the residual still is coherent with.
+fn coherent(case: &Case, last: &Fitted) -> Vec<(String, String)> {
+    let layout = Layout::of(&last.problem);
+    let colour = Colour::of_best_order(&layout, &last.residual);
+    let model = &last.problem.model;
+    let Some(screen) = Screen::new(case, last, &colour) else {
+        return Vec::new();
+    };
+    let mut found = Vec::new();
+    let questions = (model.outputs.len() * model.inputs.len()) as f64;
+    for (o, output) in model.outputs.iter().enumerate() {
+        for (i, input) in model.inputs.iter().enumerate() {
+            if screen.follows(o, i, COHERENT / questions) {
+                found.push((output.name.clone(), input.name.clone()));
+            }
+        }
+    }
+    found
+}
+
+fn verdict(
+    case: &Case,
+    declared: &Fitted,
+    found: &Found,
+    coherent: &[(String, String)],
+) -> Verdict {
+    let samples: usize = declared
+        .problem
+        .segments
+        .iter()
+        .map(|segment| segment.len())
+        .sum();
+    let still = (declared.problem.segments.iter())
+        .all(|segment| segment.inputs.iter().all(|u| u.iter().all(|v| *v == u[0])));
+    let moved = !declared.problem.model.inputs.is_empty();
+    if found.accepted.is_empty()
+        && (samples < LEAST_SAMPLES * declared.problem.unknowns.len() || (still && moved))
+    {
+        return Verdict::NotTestable;
+    }
+    if found.accepted.is_empty() && unrepeated(case, found) {
+        return Verdict::NotTestable;
+    }
+    if !coherent.is_empty() {
+        return Verdict::Unexplained;
+    }
+    match found
+        .accepted
+        .iter()
+        .map(|accepted| accepted.group.len())
+        .max()
+    {
+        None => Verdict::NothingMissing,
+        Some(1) => Verdict::Named,
+        Some(_) => Verdict::NamedGroup,
+    }
+}
+
+/// Something was significant, and there is but one maneuver on which to see whether it repeats.
+fn unrepeated(case: &Case, found: &Found) -> bool {
+    case.flights.len() == 1
+        && found
+            .refused
+            .iter()
+            .any(|refused| refused.reason == Refusal::NotRepeatable)
+}
+
+fn remarks(case: &Case, fits: &[FitChange]) -> Vec<String> {
+    let mut remarks = Vec::new();
+    if case.of_role(Role::Validation).next().is_none() {
+        remarks.push(
+            "no flight was left out of the fit: give one the role \"validation\" to see whether the effects predict it"
+                .to_string(),
+        );
+    }
+    for fit in fits
+        .iter()
+        .filter(|fit| fit.role != Role::Estimation && fit.after.rms > 1.02 * fit.before.rms)
+    {
+        let segment = fit.segment.as_deref().unwrap_or_default();
+        remarks.push(format!(
+            "{} of {segment} is predicted worse than before: RMS error {:.3e} instead of {:.3e} {}",
+            fit.after.name, fit.after.rms, fit.before.rms, fit.after.unit
+        ));
+    }
+    remarks
+}
+
+fn named(accepted: &Accepted, declared: &Fitted, estimated: &Estimate) -> NamedEffect {
+    // what this effect added, and none of the others
+    let own: Vec<&String> = accepted.fitted.document.parameters.keys().collect();
+    let before = accepted
+        .effect
+        .edits
+        .first()
+        .and_then(|_| Some(&declared.estimate));
+    let is_added = |row: &&ParameterEstimate| {
+        !row.fixed
+            && own.contains(&&row.name)
+            && before.is_some_and(|before| !before.parameters.iter().any(|p| p.name == row.name))
+    };
+    let parameters = estimated.parameters.iter().filter(is_added).map(|row| {
+        let unit = Unit::parse(&row.unit).unwrap_or(Unit::NONE);
+        EffectParameter {
+            name: row.name.clone(),
+            unit: Unit::si_name(&row.unit),
+            segment: row.segment.clone(),
+            estimate: unit.to_si(row.estimate),
+            standard_error: row.standard_error.map(|error| error * unit.scale),
+        }
+    });
+    NamedEffect {
+        effect: accepted.effect.clone(),
+        parameters: parameters.collect(),
+        group: accepted.group.clone(),
+        evidence: accepted.evidence.clone(),
+        sentence: sentence::of(&accepted.effect, estimated, &declared.estimate),
+    }
+}
+
+fn changes(before: &Estimate, after: &Estimate) -> Vec<ParameterChange> {
+    let of = |row: &ParameterEstimate| {
+        let now =
+            (after.parameters.iter()).find(|p| p.name == row.name && p.segment == row.segment)?;
+        let shift = now
+            .standard_error
+            .filter(|e| *e > 0.0)
+            .map(|e| (now.estimate - row.estimate) / e);
+        Some(ParameterChange {
+            name: row.name.clone(),
+            unit: row.unit.clone(),
+            segment: row.segment.clone(),
+            before: row.estimate,
+            after: now.estimate,
+            standard_error: now.standard_error,
+            shift,
+        })
+    };
+    before
+        .parameters
+        .iter()
+        .filter(|row| !row.fixed)
+        .filter_map(of)
+        .collect()
+}
+
+/// The document with the estimates as start values, to be saved and fitted again.
+fn estimated_document(model: &Model, estimate: &Estimate) -> ModelDocument {
+    let mut document = model.document.clone();
+    for row in estimate
+        .parameters
+        .iter()
+        .filter(|row| !row.fixed && row.segment.is_none())
+    {
+        if let Some(parameter) = document.parameters.get_mut(&row.name) {
+            parameter.start = Start::Value(row.estimate);
+        }
+    }
+    document
+}
+
+fn conclusion(
+    verdict: Verdict,
+    effects: &[NamedEffect],
+    fits: &[FitChange],
+    coherent: &[(String, String)],
+) -> String {
+    let found: Vec<&str> = effects
+        .iter()
+        .map(|effect| effect.sentence.as_str())
+        .collect();
+    let found = found.join("; ");
+    let errors = || {
+        let role = [Role::Final, Role::Validation, Role::Estimation]
+            .into_iter()
+            .find(|role| fits.iter().any(|fit| fit.role == *role))?;
+        let of: Vec<String> = (fits.iter().filter(|fit| fit.role == role))
+            .map(|fit| {
+                format!(
+                    "{} {:.3e} to {:.3e} {}",
+                    fit.before.name, fit.before.rms, fit.after.rms, fit.after.unit
+                )
+            })
+            .collect();
+        let on = match role {
+            Role::Estimation => "of the fit",
+            Role::Validation => "of the prediction",
+            Role::Final => "of the prediction of data that took no part in any decision",
+        };
+        Some(format!("RMS error {on}: {}", of.join(", ")))
+    };
+    let errors = errors().unwrap_or_default();
+    match verdict {
+        Verdict::Named => format!("{found}. {errors}"),
+        Verdict::NamedGroup => {
+            let group = effects.iter().find(|effect| effect.group.len() > 1);
+            let names: Vec<String> = (group.iter().flat_map(|effect| &effect.group))
+                .map(|member| format!("{} ({:.0} %)", member.effect.name(), 100.0 * member.weight))
+                .collect();
+            format!("{found}. The data cannot tell apart: {}. {errors}", names.join(", "))
+        }
+        Verdict::NothingMissing => {
+            "no effect of the catalogue is missing, and what is left follows no input".to_string()
+        }
+        Verdict::Unexplained => {
+            let left: Vec<String> = coherent.iter().map(|(o, i)| format!("{o} follows {i}")).collect();
+            let found = if found.is_empty() { String::new() } else { format!("{found}. ") };
+            format!("{found}Something is missing that no candidate explains: what is left of {}", left.join(", "))
+        }
+        Verdict::NotTestable => {
+            "the data cannot decide: fly another maneuver that moves every input, at least some seconds long".to_string()
+        }
+    }
+}

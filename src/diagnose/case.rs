@@ -1,0 +1,122 @@
+//! A case: a declared model, what was flown, and how a fit of any edited model is made of them.
+
+use indexmap::IndexMap;
+
+use super::effect::Effect;
+use super::flight::Flight;
+use crate::estimate::{Estimate, Options, Problem, Role, Unknowns, Validation};
+use crate::flight::Dimension;
+use crate::model::{ChannelFormula, Model, ModelDocument, Start};
+
+/// Everything that a diagnosis is made from.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// The declared model, as it would be estimated.
+    pub document: ModelDocument,
+    pub flights: Vec<Flight>,
+    pub options: Options,
+    /// Candidates of the user's own, tried beside the catalogue's.
+    pub candidates: Vec<Effect>,
+}
+
+/// Values of parameters, SI: by name, and by segment where each has its own.
+pub type Values = IndexMap<(String, Option<String>), f64>;
+
+/// What is faster than this many samples an explicit integrator cannot follow.
+const SHORTEST_LAG: f64 = 0.45;
+
+/// Why a model cannot be fitted to the case.
+#[derive(Clone, PartialEq, Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct Unfit(pub String);
+
+impl Case {
+    pub fn of_role(&self, role: Role) -> impl Iterator<Item = &Flight> {
+        self.flights
+            .iter()
+            .filter(move |flight| flight.role == role)
+    }
+
+    /// The estimation problem of a model that is an edit of the declared one. Parameters start at `values`, those
+    /// that have none where the document says.
+    ///
+    /// # Errors
+    /// The model cannot be compiled, or needs a channel that is not recorded.
+    pub fn problem(&self, document: &ModelDocument, values: &Values) -> Result<Problem, Unfit> {
+        let flights: Vec<&Flight> = self.of_role(Role::Estimation).collect();
+        let model = compile(document)?;
+        let segments = flights.iter().map(|flight| flight.segment(&model));
+        let segments = segments.collect::<Result<_, _>>().map_err(Unfit)?;
+        let mut unknowns = unknowns(&model, &flights, values)?;
+        let step = flights
+            .iter()
+            .map(|flight| flight.step())
+            .fold(0.0, f64::max);
+        for unknown in &mut unknowns.all {
+            let info = &model.parameters[unknown.parameter];
+            let is_lag = info.unit.dimension == Dimension::SECOND && unknown.lower > 0.0;
+            if is_lag && !self.document.parameters.contains_key(&info.name) {
+                unknown.lower = unknown.lower.max(SHORTEST_LAG * step);
+                unknown.start = unknown.start.max(unknown.lower);
+            }
+        }
+        Ok(Problem::new(
+            model,
+            segments,
+            unknowns,
+            self.options.clone(),
+        ))
+    }
+
+    /// Flights of a role, to be predicted with a model's estimate.
+    ///
+    /// # Errors
+    /// As [`Self::problem`].
+    pub fn held_out(&self, role: Role, problem: &Problem) -> Result<Vec<Validation>, Unfit> {
+        let model = &problem.model;
+        let validation = |flight: &Flight| {
+            Ok(Validation {
+                segment: flight.segment(model).map_err(Unfit)?,
+                unknowns: unknowns(model, &[flight], &Values::new())?,
+            })
+        };
+        self.of_role(role).map(validation).collect()
+    }
+}
+
+pub(super) fn compile(document: &ModelDocument) -> Result<Model, Unfit> {
+    Model::compile(document).map_err(|faults| {
+        let faults: Vec<String> = faults.iter().map(ToString::to_string).collect();
+        Unfit(faults.join("; "))
+    })
+}
+
+fn unknowns(model: &Model, flights: &[&Flight], values: &Values) -> Result<Unknowns, Unfit> {
+    Unknowns::new(model, flights.len(), |parameter, segment| {
+        let info = &model.parameters[parameter];
+        let of_segment = || values.get(&(info.name.clone(), Some(flights[segment].label.clone())));
+        if let Some(value) = values.get(&(info.name.clone(), None)).or_else(of_segment) {
+            return Ok(*value);
+        }
+        match &info.document.start {
+            Start::Value(value) => Ok(info.unit.to_si(*value)),
+            Start::FromData(text) => ChannelFormula::parse(text)
+                .and_then(|formula| formula.number(flights[segment]))
+                .map_err(|error| Unfit(format!("start of {}: {error}", info.name))),
+        }
+    })
+}
+
+/// The values of an estimate, for another fit to start from.
+pub(super) fn values(problem: &Problem, estimate: &Estimate) -> Values {
+    let of = |row: &crate::estimate::ParameterEstimate| {
+        let info = problem
+            .model
+            .parameters
+            .iter()
+            .find(|p| p.name == row.name)?;
+        let key = (row.name.clone(), row.segment.clone());
+        Some((key, info.unit.to_si(row.estimate)))
+    };
+    estimate.parameters.iter().filter_map(of).collect()
+}

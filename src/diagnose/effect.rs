@@ -1,0 +1,111 @@
+//! An effect: a word of the catalogue, what it is aimed at, and what it changes.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::model::{Edit, EditError, EditKind, ModelDocument};
+
+/// What kind of effect. Most are edits of the model document; the others change how it is fitted.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(untagged)]
+pub enum EffectKind {
+    Edit(EditKind),
+    Treatment(Treatment),
+}
+
+/// Effects that no equation expresses.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Treatment {
+    /// Turbulence: the states are disturbed, and the filter-error method is needed.
+    ProcessNoise,
+    /// Spikes, dropouts and stuck values: samples that do not count.
+    SensorOutliers,
+    /// Edits of the user's own.
+    Own,
+}
+
+/// One candidate for what a model lacks.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct Effect {
+    pub kind: EffectKind,
+    /// An output, an input, a state or a named coefficient; the name of a candidate of the user's own.
+    #[schema(example = "alpha")]
+    pub target: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "alpha^2")]
+    pub term: Option<String>,
+    /// The edits that make it; none of a treatment.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub edits: Vec<Edit>,
+}
+
+impl Effect {
+    pub fn edit(kind: EditKind, target: impl Into<String>, term: Option<&str>) -> Self {
+        let target = target.into();
+        let edit = Edit {
+            kind,
+            target: target.clone(),
+            term: term.map(ToString::to_string),
+            parameter: None,
+            unit: None,
+        };
+        Self {
+            kind: EffectKind::Edit(kind),
+            target,
+            term: edit.term.clone(),
+            edits: vec![edit],
+        }
+    }
+
+    pub fn treatment(kind: Treatment, target: impl Into<String>) -> Self {
+        Self {
+            kind: EffectKind::Treatment(kind),
+            target: target.into(),
+            term: None,
+            edits: Vec::new(),
+        }
+    }
+
+    /// A candidate of the user's own.
+    pub fn own(name: impl Into<String>, edits: Vec<Edit>) -> Self {
+        Self {
+            edits,
+            ..Self::treatment(Treatment::Own, name)
+        }
+    }
+
+    /// The document with the effect in it.
+    ///
+    /// # Errors
+    /// An edit does not fit the document.
+    pub fn apply(&self, document: &ModelDocument) -> Result<ModelDocument, EditError> {
+        let apply = |document: ModelDocument, edit: &Edit| edit.apply(&document);
+        self.edits.iter().try_fold(document.clone(), apply)
+    }
+
+    /// The word of the catalogue.
+    pub fn word(&self) -> String {
+        let word = serde_json::to_value(self.kind).ok();
+        word.and_then(|word| word.as_str().map(ToString::to_string))
+            .unwrap_or_default()
+    }
+
+    /// `sensor_scale of q`, `missing_term alpha^2 in q`.
+    pub fn name(&self) -> String {
+        let word = self.word();
+        match (&self.term, self.kind) {
+            (Some(term), EffectKind::Edit(EditKind::MissingTerm)) => {
+                format!("{word} {term} in {}", self.target)
+            }
+            (Some(term), _) => format!("{word} of {} ({term})", self.target),
+            (None, EffectKind::Treatment(Treatment::Own)) => self.target.clone(),
+            (None, _) => format!("{word} of {}", self.target),
+        }
+    }
+
+    /// Whether it is the same but for the numbers in it.
+    pub fn is(&self, kind: EffectKind, target: &str) -> bool {
+        self.kind == kind && self.target == target
+    }
+}

@@ -1,0 +1,107 @@
+//! A model fitted to the case, with the likelihood that counts.
+
+use std::ops::ControlFlow;
+
+use super::case::{Case, Unfit, Values, values};
+use super::colour::Colour;
+use super::stack::Layout;
+use crate::estimate::{
+    ErrorBoundsKind, Estimate, Outcome, Problem, Role, TimeHistory, output_error, predict,
+};
+use crate::model::ModelDocument;
+
+/// A model and its fit to the estimation flights.
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    pub document: ModelDocument,
+    pub problem: Problem,
+    pub estimate: Estimate,
+    pub values: Values,
+    /// Over [`Layout::of`] the problem.
+    pub residual: Vec<f64>,
+}
+
+/// Trials are stopped at this many standard errors from their minimum: 1e-6 of a unit of the likelihood ratio.
+const TRIAL_TOLERANCE: f64 = 1e-3;
+const TRIAL_ITERATIONS: usize = 30;
+
+impl Fitted {
+    /// A quick fit from given values.
+    ///
+    /// # Errors
+    /// The model does not fit the recordings, or the fit came to nothing.
+    pub fn trial(case: &Case, document: ModelDocument, start: &Values) -> Result<Self, Unfit> {
+        let mut problem = case.problem(&document, start)?;
+        problem.options.error_bounds = ErrorBoundsKind::Conventional;
+        problem.options.tolerance = problem.options.tolerance.max(TRIAL_TOLERANCE);
+        problem.options.max_iterations = TRIAL_ITERATIONS;
+        let solution = output_error(&problem, &mut |_| ControlFlow::Continue(()))
+            .map_err(|_| Unfit("the simulation leaves the range of numbers".into()))?;
+        if solution.estimate.outcome == Outcome::Diverged {
+            return Err(Unfit(solution.estimate.reason));
+        }
+        Ok(Self::of(
+            document,
+            problem,
+            solution.estimate,
+            &solution.histories,
+        ))
+    }
+
+    pub fn of(
+        document: ModelDocument,
+        problem: Problem,
+        estimate: Estimate,
+        histories: &[TimeHistory],
+    ) -> Self {
+        Self {
+            residual: Layout::of(&problem).residual(histories),
+            values: values(&problem, &estimate),
+            document,
+            problem,
+            estimate,
+        }
+    }
+
+    pub fn theta(&self) -> Vec<f64> {
+        let problem = &self.problem;
+        let of = |place: usize| {
+            let unknown = problem.unknowns.at(place);
+            let name = problem.model.parameters[unknown.parameter].name.clone();
+            let segment = unknown
+                .segment
+                .map(|segment| problem.segments[segment].label.clone());
+            self.values
+                .get(&(name, segment))
+                .copied()
+                .unwrap_or(unknown.start)
+        };
+        (0..problem.unknowns.len()).map(of).collect()
+    }
+
+    /// ln L of its residuals by output, with noise of given orders.
+    pub fn ln_likelihood(&self, orders: &[usize]) -> f64 {
+        let layout = Layout::of(&self.problem);
+        Colour::of_orders(&layout, &self.residual, orders).ln_likelihood(&layout, &self.residual)
+    }
+
+    /// Predicts the flights of a role; ln L by output of the prediction's residuals, with noise of given orders.
+    ///
+    /// # Errors
+    /// The prediction leaves the range of numbers.
+    pub fn held_out(&self, case: &Case, role: Role, orders: &[usize]) -> Result<Vec<f64>, Unfit> {
+        let mut problem = self.problem.clone();
+        problem.options.error_bounds = ErrorBoundsKind::Conventional;
+        let mut histories = Vec::new();
+        for validation in case.held_out(role, &self.problem)? {
+            let (prediction, history) = predict(&problem, &self.estimate, &validation);
+            histories.push(history.ok_or(Unfit(prediction.reason))?);
+        }
+        let lengths: Vec<usize> = histories.iter().map(|history| history.time.len()).collect();
+        let layout = Layout::of_lengths(&lengths, self.problem.model.outputs.len());
+        let residual = layout.residual(&histories);
+        let colour = Colour::of_orders(&layout, &residual, orders);
+        let of = |output| colour.ln_likelihood_of(&layout, &residual, output);
+        Ok((0..layout.outputs).map(of).collect())
+    }
+}

@@ -1,0 +1,40 @@
+//! Alias groups: candidates that the data cannot tell apart.
+
+use super::projection::dot;
+use super::report::Member;
+use super::trial::Trial;
+
+/// Twice the difference of two log-likelihoods below which neither of two models is preferred.
+pub const ALIKE: f64 = 6.0;
+
+/// Directions with a larger cosine are one and the same to these data.
+const PARALLEL: f64 = 0.995;
+
+/// The members of the group that `best` leads, itself included, the likeliest first, with their weights.
+pub fn group(best: &Trial, others: &[&Trial]) -> Vec<Member> {
+    let is_alike = |trial: &&&Trial| {
+        best.merit() - trial.merit() < ALIKE
+            || cosine(best, trial).is_some_and(|cosine| cosine > PARALLEL)
+    };
+    let members: Vec<&Trial> = std::iter::once(best)
+        .chain(others.iter().filter(is_alike).copied())
+        .collect();
+    let shares: Vec<f64> = members
+        .iter()
+        .map(|trial| (0.5 * (trial.merit() - best.merit())).exp())
+        .collect();
+    let whole: f64 = shares.iter().sum();
+    let member = |(trial, share): (&&Trial, &f64)| Member {
+        effect: trial.effect.clone(),
+        weight: share / whole,
+    };
+    let mut members: Vec<Member> = members.iter().zip(&shares).map(member).collect();
+    members.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+    members
+}
+
+/// Of what two candidates would explain, the declared model projected out.
+fn cosine(a: &Trial, b: &Trial) -> Option<f64> {
+    let (a, b) = (a.screened.as_ref()?, b.screened.as_ref()?);
+    Some(dot(&a.direction, &b.direction).abs())
+}

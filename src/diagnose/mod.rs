@@ -1,0 +1,167 @@
+//! Closing the loop: what a model cannot explain, which effect it lacks, and what the error is with that effect added.
+//!
+//! [`diagnose`] fits the declared model, and goes in rounds: it screens the catalogue of effects against the residual
+//! (projecting out all that the declared parameters can imitate, the residual whitened), fits what is promising,
+//! accepts an effect that is significant by a colour-aware likelihood, within its physical range, alike in all parts
+//! of the data, and that helps to predict flights which were not fitted. What the data cannot tell apart is one alias
+//! group, what they cannot show is reported as invisible. An [`Effect`] is an edit of the model document, so that
+//! what results is a document again.
+
+mod answer;
+mod case;
+mod catalogue;
+mod colour;
+mod difference;
+mod effect;
+mod fitted;
+mod flight;
+mod group;
+mod projection;
+mod report;
+mod residual;
+mod round;
+mod screen;
+mod sentence;
+mod stack;
+mod terms;
+mod trial;
+
+pub use case::{Case, Unfit};
+pub use effect::{Effect, EffectKind, Treatment};
+pub use flight::Flight;
+pub use report::{
+    Diagnosis, DocumentChange, EffectParameter, Evidence, FitChange, Member, NamedEffect,
+    OutputGain, ParameterChange, Refusal, RefusedEffect, Step, Verdict,
+};
+pub use residual::{ResidualAnalysis, analyse};
+pub use round::Watcher;
+
+use answer::{Found, answer};
+use fitted::Fitted;
+use round::{Accepted, cost_of_removal, round};
+
+use crate::estimate::{Estimate, TimeHistory, estimate};
+
+/// Rounds, and so effects, at most: who lacks more than these has another model.
+const MOST_ROUNDS: usize = 4;
+
+/// Everything that a diagnosis comes to.
+pub struct Conclusion {
+    pub diagnosis: Diagnosis,
+    /// Of the model with the effects in it.
+    pub estimate: Estimate,
+    pub histories: Vec<TimeHistory>,
+}
+
+/// Why there is no conclusion.
+#[derive(Debug)]
+pub enum Inconclusive {
+    /// The declared model cannot be fitted.
+    Unfit(Unfit),
+    /// It was asked to stop.
+    Stopped,
+}
+
+impl From<Unfit> for Inconclusive {
+    fn from(why: Unfit) -> Self {
+        Self::Unfit(why)
+    }
+}
+
+/// Finds what the declared model of a case lacks.
+///
+/// # Errors
+/// The declared model cannot be fitted at all, or `watcher` stopped it.
+pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, Inconclusive> {
+    let declared = declared(case, watcher)?;
+    let mut found = Found::default();
+    let mut base = declared.clone();
+    for number in 1..=MOST_ROUNDS {
+        let round = round(case, &base, number, watcher);
+        if round.stopped {
+            return Err(Inconclusive::Stopped);
+        }
+        found.refused = round.refused;
+        let Some(accepted) = round.accepted else {
+            break;
+        };
+        let step = Step::Accepted {
+            round: number,
+            name: accepted.effect.name(),
+            likelihood_ratio: accepted.evidence.likelihood_ratio,
+            sentence: sentence::of(
+                &accepted.effect,
+                &accepted.fitted.estimate,
+                &declared.estimate,
+            ),
+        };
+        let last = accepted.effect.edits.is_empty();
+        base = accepted.fitted.clone();
+        found.accepted.push(accepted);
+        if watcher(&step).is_break() {
+            return Err(Inconclusive::Stopped);
+        }
+        if last {
+            break;
+        }
+    }
+    remove_needless(case, &declared, &mut base, &mut found);
+    Ok(answer(case, &declared, &base, found)?)
+}
+
+/// The declared model, fitted as the job's options say.
+fn declared(case: &Case, watcher: &mut Watcher<'_>) -> Result<Fitted, Inconclusive> {
+    let problem = case.problem(&case.document, &case::Values::new())?;
+    let mut stopped = false;
+    let solution = estimate(&problem, &mut |_| std::ops::ControlFlow::Continue(()));
+    let solution = solution.map_err(|_| {
+        Unfit("with the start values the simulation of the declared model leaves the range of numbers".into())
+    })?;
+    let step = Step::Fitted {
+        round: 0,
+        cost: solution.estimate.cost,
+        iterations: solution.estimate.iterations,
+    };
+    stopped |= watcher(&step).is_break();
+    if stopped {
+        return Err(Inconclusive::Stopped);
+    }
+    Ok(Fitted::of(
+        case.document.clone(),
+        problem,
+        solution.estimate,
+        &solution.histories,
+    ))
+}
+
+/// Takes out again what later effects made needless.
+fn remove_needless(case: &Case, declared: &Fitted, base: &mut Fitted, found: &mut Found) {
+    let mut at = 0;
+    while found.accepted.len() > 1 && at < found.accepted.len() {
+        let without = (found.accepted.iter().enumerate())
+            .filter(|(other, _)| *other != at)
+            .try_fold(declared.document.clone(), |document, (_, a)| {
+                a.effect.apply(&document)
+            });
+        let removal = without.ok().and_then(|without| {
+            Some((
+                cost_of_removal(case, base, without.clone(), &base.values)?,
+                without,
+            ))
+        });
+        let Accepted { evidence, .. } = &found.accepted[at];
+        match removal {
+            Some((cost, without)) if cost < evidence.threshold => {
+                let Ok(fitted) = Fitted::trial(case, without, &base.values) else {
+                    at += 1;
+                    continue;
+                };
+                *base = fitted;
+                let removed = found.accepted.remove(at);
+                found.needless(removed, cost);
+                at = 0;
+            }
+            _ => at += 1,
+        }
+    }
+}

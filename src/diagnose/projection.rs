@@ -1,0 +1,87 @@
+//! Projecting columns onto what a declared model can move, and off it.
+
+/// An orthonormal basis of the span of some columns.
+#[derive(Clone, Debug, Default)]
+pub struct Basis(Vec<Vec<f64>>);
+
+/// A column of which less than this is left by those before it is one of them.
+const DEPENDENT: f64 = 1e-7;
+
+impl Basis {
+    pub fn of(columns: impl IntoIterator<Item = Vec<f64>>) -> Self {
+        let mut basis = Self::default();
+        for column in columns {
+            basis.add(column);
+        }
+        basis
+    }
+
+    /// Adds what a column brings that is new; how long that is, over the length of the column.
+    pub fn add(&mut self, mut column: Vec<f64>) -> f64 {
+        let before = norm(&column);
+        if !(before > 0.0 && before.is_finite()) {
+            return 0.0;
+        }
+        self.remove_from(&mut column);
+        let left = norm(&column);
+        if left <= DEPENDENT * before {
+            return 0.0;
+        }
+        column.iter_mut().for_each(|value| *value /= left);
+        self.0.push(column);
+        left / before
+    }
+
+    /// Takes the span's part off a column. Twice, since once leaves rounding errors where little is left.
+    pub fn remove_from(&self, column: &mut [f64]) {
+        for _ in 0..2 {
+            for unit in &self.0 {
+                let share = dot(unit, column);
+                column
+                    .iter_mut()
+                    .zip(unit)
+                    .for_each(|(to, from)| *to -= share * from);
+            }
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    pub fn units(&self) -> &[Vec<f64>] {
+        &self.0
+    }
+}
+
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+pub fn norm(a: &[f64]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_in_the_span_is_no_news() {
+        let mut basis = Basis::of([
+            vec![1.0, 1.0, 0.0],
+            vec![1.0, -1.0, 0.0],
+            vec![3.0, 1.0, 0.0],
+        ]);
+        assert_eq!(basis.len(), 2);
+        let mut column = vec![5.0, 7.0, 2.0];
+        basis.remove_from(&mut column);
+        assert!(column[0].abs() < 1e-15 && column[1].abs() < 1e-15 && column[2] == 2.0);
+        let share = basis.add(vec![0.0, 3.0, 4.0]);
+        assert!((share - 0.8).abs() < 1e-15);
+    }
+}

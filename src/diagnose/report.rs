@@ -1,0 +1,248 @@
+//! What a diagnosis answers.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::effect::Effect;
+use super::residual::ResidualAnalysis;
+use crate::estimate::{Estimate, OutputFit, Role};
+use crate::model::ModelDocument;
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// No effect passes, and the residual carries no signal that is coherent with an input.
+    NothingMissing,
+    /// Every effect found is named singly.
+    Named,
+    /// Found, but the data cannot tell the members of a group apart.
+    NamedGroup,
+    /// Something is missing, and nothing in the catalogue is it.
+    Unexplained,
+    /// The data cannot decide.
+    NotTestable,
+}
+
+impl Verdict {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NothingMissing => "nothing_missing",
+            Self::Named => "named",
+            Self::NamedGroup => "named_group",
+            Self::Unexplained => "unexplained",
+            Self::NotTestable => "not_testable",
+        }
+    }
+}
+
+/// The answer of a diagnosis.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct Diagnosis {
+    pub verdict: Verdict,
+    /// The verdict in a sentence.
+    #[schema(
+        example = "alpha is recorded 0.062 s late (sensor_delay); with the delay in the model the error of the validation flights falls from 0.31 to 0.11 deg"
+    )]
+    pub sentence: String,
+    /// What the model lacked, in the order in which it was found.
+    pub effects: Vec<NamedEffect>,
+    /// All other candidates, with the reason.
+    pub refused: Vec<RefusedEffect>,
+    /// Fit of each output, with the declared model and with the effects added.
+    pub fits: Vec<FitChange>,
+    /// Declared parameters, with the declared model and with the effects added.
+    pub parameters: Vec<ParameterChange>,
+    /// The declared model's estimate.
+    pub before: Estimate,
+    /// The declared model with the effects in it, estimates as start values.
+    pub model: ModelDocument,
+    /// What the effects changed in the document.
+    pub diff: Vec<DocumentChange>,
+    /// Of the residuals that are left.
+    pub residuals: Vec<ResidualAnalysis>,
+    /// What the reader should know of how it was decided.
+    pub remarks: Vec<String>,
+}
+
+/// An effect that was accepted.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct NamedEffect {
+    #[serde(flatten)]
+    pub effect: Effect,
+    /// What it added, as estimated in the final model.
+    pub parameters: Vec<EffectParameter>,
+    /// Candidates that the data cannot tell from it, itself included, the likeliest first.
+    pub group: Vec<Member>,
+    pub evidence: Evidence,
+    #[schema(example = "alpha is recorded 0.062 s late")]
+    pub sentence: String,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct EffectParameter {
+    #[schema(example = "alpha_delay")]
+    pub name: String,
+    /// SI
+    #[schema(example = "s")]
+    pub unit: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub segment: Option<String>,
+    #[schema(example = 0.0621)]
+    pub estimate: f64,
+    /// Corrected for coloured residuals.
+    pub standard_error: Option<f64>,
+}
+
+/// A member of an alias group.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct Member {
+    #[serde(flatten)]
+    pub effect: Effect,
+    /// Share of the group's likelihood; the weights of a group add up to 1.
+    #[schema(example = 0.83)]
+    pub weight: f64,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct Evidence {
+    /// Twice the gain of the colour-aware log-likelihood on the estimation data.
+    #[schema(example = 143.2)]
+    pub likelihood_ratio: f64,
+    /// What it had to pass: the family of candidates errs at this once in a hundred diagnoses.
+    #[schema(example = 15.1)]
+    pub threshold: f64,
+    /// The score (Lagrange multiplier) statistic of the screen; absent of what has no derivative at zero.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub score: Option<f64>,
+    /// How much of the effect the declared parameters cannot imitate, 0 to 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = 0.71)]
+    pub visible_fraction: Option<f64>,
+    /// The smallest effect that would have been seen with 80 % power, SI.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub smallest_seen: Option<f64>,
+    /// Twice the gain of the log-likelihood on flights that were not fitted; absent where there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub held_out: Option<f64>,
+    /// The same by output.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub held_out_by_output: Vec<OutputGain>,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct OutputGain {
+    pub output: String,
+    /// Negative: this output got worse.
+    pub gain: f64,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct RefusedEffect {
+    #[serde(flatten)]
+    pub effect: Effect,
+    pub reason: Refusal,
+    /// The reason in a sentence.
+    pub sentence: String,
+    /// Twice the gain of the colour-aware log-likelihood; absent of what was not tried.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub likelihood_ratio: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub visible_fraction: Option<f64>,
+    /// The smallest effect that would have been seen with 80 % power, SI.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub smallest_seen: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub held_out: Option<f64>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Refusal {
+    /// The declared parameters imitate it wholly: these data cannot show it, whether it is there or not.
+    Invisible,
+    /// What it would explain is no more than noise.
+    NotSignificant,
+    /// Another effect explains the data better.
+    Outdone,
+    /// Its estimate is at a bound of its physical range.
+    OutOfRange,
+    /// Sign or size differ from maneuver to maneuver.
+    NotRepeatable,
+    /// It does not help to predict the flights that were not fitted.
+    NotPredictive,
+    /// It was accepted, and others made it needless.
+    Needless,
+    /// The fit with it came to nothing.
+    NotFitted,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct FitChange {
+    pub role: Role,
+    /// Absent: over all segments of the estimation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub segment: Option<String>,
+    pub before: OutputFit,
+    pub after: OutputFit,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct ParameterChange {
+    pub name: String,
+    pub unit: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub segment: Option<String>,
+    pub before: f64,
+    pub after: f64,
+    /// Of the estimate after, corrected for coloured residuals.
+    pub standard_error: Option<f64>,
+    /// How far it moved, in those standard errors: the bias that the missing effect made.
+    pub shift: Option<f64>,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct DocumentChange {
+    /// RFC 6901, into the document.
+    #[schema(example = "/outputs/alpha/delay")]
+    pub pointer: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub before: Option<serde_json::Value>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub after: Option<serde_json::Value>,
+}
+
+/// What a diagnosis tells as it goes.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(tag = "step", rename_all = "snake_case")]
+pub enum Step {
+    /// A model was fitted: the declared one, or one with effects accepted.
+    Fitted {
+        round: usize,
+        cost: f64,
+        iterations: usize,
+    },
+    /// The catalogue was screened: how many candidates, and how many can be seen at all.
+    Screened {
+        round: usize,
+        candidates: usize,
+        visible: usize,
+    },
+    /// A candidate was fitted.
+    Tried {
+        round: usize,
+        name: String,
+        likelihood_ratio: f64,
+    },
+    Refused {
+        round: usize,
+        name: String,
+        reason: Refusal,
+        sentence: String,
+    },
+    Accepted {
+        round: usize,
+        name: String,
+        likelihood_ratio: f64,
+        sentence: String,
+    },
+}

@@ -1,0 +1,512 @@
+//! One round: screen the catalogue, try what is promising, accept one effect or none.
+
+use std::ops::ControlFlow;
+
+use rayon::prelude::*;
+
+use super::case::{Case, Values};
+use super::catalogue;
+use super::colour::Colour;
+use super::effect::{Effect, EffectKind, Treatment};
+use super::fitted::Fitted;
+use super::group::group;
+use super::report::{Evidence, Member, OutputGain, Refusal, RefusedEffect, Step};
+use super::screen::{Screen, Screened, critical, independent_questions, tail};
+use super::stack::Layout;
+use super::trial::{Trial, fit, is_tried_outright, starts};
+use crate::estimate::Role;
+use crate::model::{EditKind, Per};
+
+/// How often the whole family of candidates may find something where there is nothing, by its own statistics.
+const FAMILY_ERROR: f64 = 0.002;
+
+/// Below this share the declared parameters imitate an effect but for rounding and their own curvature.
+const INVISIBLE: f64 = 0.01;
+
+/// A linear step must promise this much for a candidate to be fitted.
+const WORTH_A_TRIAL: f64 = 6.0;
+const MOST_TRIALS: usize = 16;
+
+/// Sizes in parts of the data may differ like this once in so many effects that are real.
+const UNLIKELY_SCATTER: f64 = 1e-4;
+
+/// 80 % power: this many standard deviations beyond the critical value.
+const POWER: f64 = 0.84;
+
+/// What came of a round.
+pub struct Round {
+    pub accepted: Option<Accepted>,
+    pub refused: Vec<RefusedEffect>,
+    pub stopped: bool,
+}
+
+pub struct Accepted {
+    pub effect: Effect,
+    pub fitted: Fitted,
+    pub group: Vec<Member>,
+    pub evidence: Evidence,
+}
+
+/// Told of all progress; may stop the diagnosis.
+pub type Watcher<'o> = dyn FnMut(&Step) -> ControlFlow<()> + 'o;
+
+/// A screened candidate, or why it was not.
+type Seen = (Effect, Result<Screened, String>);
+
+pub fn round(case: &Case, base: &Fitted, number: usize, watcher: &mut Watcher<'_>) -> Round {
+    let layout = Layout::of(&base.problem);
+    let colour = Colour::of_best_order(&layout, &base.residual);
+    let mut result = Round {
+        accepted: None,
+        refused: Vec::new(),
+        stopped: false,
+    };
+    let Some(screen) = Screen::new(case, base, &colour) else {
+        return result;
+    };
+    let (outright, local): (Vec<Effect>, Vec<Effect>) =
+        catalogue::candidates(case, &base.problem.model)
+            .into_iter()
+            .partition(|effect| {
+                is_tried_outright(effect.kind)
+                    || matches!(effect.kind, EffectKind::Treatment(Treatment::ProcessNoise))
+            });
+    let seen: Vec<Seen> = (local.into_par_iter())
+        .map(|effect| {
+            let screened = screened(case, base, &screen, &effect);
+            (effect, screened)
+        })
+        .collect();
+    let visible: Vec<&Seen> = seen.iter().filter(|(_, s)| is_visible(s)).collect();
+    let directions: Vec<&[f64]> = visible
+        .iter()
+        .filter_map(|(_, s)| Some(&*s.as_ref().ok()?.direction))
+        .collect();
+    let questions = independent_questions(&directions) + outright.len() as f64;
+    let step = Step::Screened {
+        round: number,
+        candidates: seen.len() + outright.len(),
+        visible: visible.len() + outright.len(),
+    };
+    if watcher(&step).is_break() {
+        result.stopped = true;
+        return result;
+    }
+    let threshold = |freedom: usize| critical(FAMILY_ERROR, questions, freedom);
+
+    let mut promising: Vec<&Seen> = visible;
+    promising.retain(|(_, s)| {
+        s.as_ref()
+            .is_ok_and(|s| s.promise.max(s.score) > WORTH_A_TRIAL)
+    });
+    let promise = |seen: &Seen| seen.1.as_ref().map_or(0.0, |s| s.promise);
+    promising.sort_by(|a, b| promise(b).total_cmp(&promise(a)));
+    promising.truncate(MOST_TRIALS);
+    let mut to_try: Vec<(Effect, Option<Screened>)> = promising
+        .iter()
+        .filter_map(|(effect, s)| Some((effect.clone(), Some(s.clone().ok()?))))
+        .collect();
+    let coloured = colour.orders().iter().any(|&order| order > 0);
+    to_try.extend(
+        outright
+            .into_iter()
+            .filter(|effect| coloured || !is_noise(effect))
+            .map(|e| (e, None)),
+    );
+
+    let orders = colour.orders();
+    let rival = Rival::new(case, base, &orders);
+    let mut trials: Vec<Trial> = Vec::new();
+    // a few at a time, so that who watches can stop it between
+    for some in to_try.chunks(8) {
+        let tried: Vec<(Effect, Result<Trial, String>)> = (some.to_vec().into_par_iter())
+            .map(|(effect, screened)| (effect.clone(), rival.trial(effect, screened)))
+            .collect();
+        for (effect, trial) in tried {
+            match trial {
+                Ok(trial) => {
+                    let step = Step::Tried {
+                        round: number,
+                        name: effect.name(),
+                        likelihood_ratio: trial.likelihood_ratio,
+                    };
+                    trials.push(trial);
+                    if watcher(&step).is_break() {
+                        result.stopped = true;
+                        return result;
+                    }
+                }
+                Err(why) => {
+                    result
+                        .refused
+                        .push(refused(effect, Refusal::NotFitted, why, None, None))
+                }
+            }
+        }
+    }
+
+    let mut passing: Vec<Trial> = Vec::new();
+    for trial in trials {
+        match rival.objection(&trial, &threshold) {
+            None => passing.push(trial),
+            Some((reason, why)) => {
+                if reason != Refusal::NotSignificant {
+                    let step = Step::Refused {
+                        round: number,
+                        name: trial.effect.name(),
+                        reason,
+                        sentence: why.clone(),
+                    };
+                    if watcher(&step).is_break() {
+                        result.stopped = true;
+                    }
+                }
+                result
+                    .refused
+                    .push(of_trial(&trial, reason, why, &threshold));
+            }
+        }
+    }
+    passing.sort_by(|a, b| b.merit().total_cmp(&a.merit()));
+    let tried = |effect: &Effect| {
+        result.refused.iter().any(|r| r.effect == *effect)
+            || passing.iter().any(|t| t.effect == *effect)
+    };
+    let untried: Vec<RefusedEffect> = seen
+        .iter()
+        .filter(|(effect, _)| !tried(effect))
+        .map(|(effect, screened)| of_screen(effect, screened, &threshold))
+        .collect();
+    let mut passing = passing.into_iter();
+    if let Some(best) = passing.next() {
+        let others: Vec<Trial> = passing.collect();
+        let others: Vec<&Trial> = others.iter().collect();
+        let group = group(&best, &others);
+        for other in others {
+            let why = format!(
+                "{} explains the data better, by {:.1} in the log-likelihood",
+                best.effect.name(),
+                0.5 * (best.merit() - other.merit())
+            );
+            result
+                .refused
+                .push(of_trial(other, Refusal::Outdone, why, &threshold));
+        }
+        result.accepted = Some(rival.accepted(best, group, &threshold));
+    }
+    result.refused.extend(untried);
+    result
+}
+
+fn is_noise(effect: &Effect) -> bool {
+    effect.kind == EffectKind::Treatment(Treatment::ProcessNoise)
+}
+
+fn is_visible(screened: &Result<Screened, String>) -> bool {
+    screened.as_ref().is_ok_and(|s| s.visible >= INVISIBLE)
+}
+
+/// The screen of a candidate, from the best of its starts.
+fn screened(
+    case: &Case,
+    base: &Fitted,
+    screen: &Screen<'_>,
+    effect: &Effect,
+) -> Result<Screened, String> {
+    let document = effect
+        .apply(&base.document)
+        .map_err(|error| error.to_string())?;
+    let mut best: Option<Screened> = None;
+    let mut failure = String::new();
+    for start in starts(case, effect, &document, &base.document) {
+        match screen.of(&document, &start) {
+            Ok(seen) if best.as_ref().is_none_or(|best| seen.promise > best.promise) => {
+                best = Some(seen)
+            }
+            Ok(_) => {}
+            Err(why) => failure = why,
+        }
+    }
+    best.ok_or(failure)
+}
+
+/// What a candidate has to beat: the model as it is.
+struct Rival<'c> {
+    case: &'c Case,
+    base: &'c Fitted,
+    orders: &'c [usize],
+    ln_likelihood: f64,
+    /// By output, of flights that were not fitted.
+    held_out: Option<Vec<f64>>,
+}
+
+impl<'c> Rival<'c> {
+    fn new(case: &'c Case, base: &'c Fitted, orders: &'c [usize]) -> Self {
+        let any = case.of_role(Role::Validation).next().is_some();
+        let held_out = any
+            .then(|| base.held_out(case, Role::Validation, orders).ok())
+            .flatten();
+        Self {
+            case,
+            base,
+            orders,
+            ln_likelihood: base.ln_likelihood(orders),
+            held_out,
+        }
+    }
+
+    fn trial(&self, effect: Effect, screened: Option<Screened>) -> Result<Trial, String> {
+        let document = effect
+            .apply(&self.base.document)
+            .map_err(|error| error.to_string())?;
+        let starts = match &screened {
+            Some(seen) => vec![seen.start()],
+            None => starts(self.case, &effect, &document, &self.base.document),
+        };
+        let mut best: Option<(f64, Fitted)> = None;
+        let mut failure = String::new();
+        for start in &starts {
+            match fit(self.case, self.base, &effect, document.clone(), start) {
+                Ok(fitted) => {
+                    let gain = 2.0 * (fitted.ln_likelihood(self.orders) - self.ln_likelihood);
+                    if best.as_ref().is_none_or(|(most, _)| gain > *most) {
+                        best = Some((gain, fitted));
+                    }
+                }
+                Err(why) => failure = why.to_string(),
+            }
+        }
+        let (likelihood_ratio, fitted) = best.ok_or(failure)?;
+        let declared = self.base.problem.unknowns.len();
+        let freedom = (fitted.problem.unknowns.len() - declared).max(1);
+        let (mut held_out, mut unpredictable) = (None, None);
+        if let (Some(before), false) = (&self.held_out, is_noise(&effect)) {
+            match fitted.held_out(self.case, Role::Validation, self.orders) {
+                Ok(after) => {
+                    held_out = Some(
+                        after
+                            .iter()
+                            .zip(before)
+                            .map(|(a, b)| 2.0 * (a - b))
+                            .collect(),
+                    )
+                }
+                Err(why) => unpredictable = Some(why.to_string()),
+            }
+        }
+        Ok(Trial {
+            effect,
+            screened,
+            fitted,
+            likelihood_ratio,
+            freedom,
+            held_out,
+            unpredictable,
+        })
+    }
+
+    /// What speaks against accepting it.
+    fn objection(
+        &self,
+        trial: &Trial,
+        threshold: &dyn Fn(usize) -> f64,
+    ) -> Option<(Refusal, String)> {
+        let (ratio, least) = (trial.likelihood_ratio, threshold(trial.freedom));
+        if !(ratio >= least) {
+            let why = format!(
+                "a likelihood ratio of {ratio:.1} is no more than noise gives among so many candidates (critical value {least:.1})"
+            );
+            return Some((Refusal::NotSignificant, why));
+        }
+        let at_bound = trial.at_bound(self.base);
+        if let Some((name, _)) = at_bound.first() {
+            let why = format!("its estimate ends at a bound of its physical range ({name})");
+            return Some((Refusal::OutOfRange, why));
+        }
+        if let Some(why) = self.scatter(trial) {
+            return Some((Refusal::NotRepeatable, why));
+        }
+        if let Some(why) = &trial.unpredictable {
+            return Some((Refusal::NotPredictive, why.clone()));
+        }
+        if let Some(gains) = &trial.held_out {
+            let gain: f64 = gains.iter().sum();
+            if gain <= 0.0 {
+                let why = format!(
+                    "flights that were not fitted are predicted worse with it: their log-likelihood falls by {:.1}",
+                    -0.5 * gain
+                );
+                return Some((Refusal::NotPredictive, why));
+            }
+        }
+        None
+    }
+
+    /// Why the sizes in parts of the data do not agree; by the noise that is left with the effect in the model.
+    fn scatter(&self, trial: &Trial) -> Option<String> {
+        let added = trial
+            .screened
+            .as_ref()
+            .filter(|seen| seen.added.len() == 1)?;
+        let info = trial
+            .fitted
+            .problem
+            .model
+            .parameters
+            .iter()
+            .find(|info| info.name == added.added[0])?;
+        if info.document.per == Per::Maneuver || is_local_in_time(&trial.effect) {
+            return None;
+        }
+        // from the fit with the effect: how far each part would still pull it
+        let layout = Layout::of(&trial.fitted.problem);
+        let colour = Colour::of_orders(&layout, &trial.fitted.residual, self.orders);
+        let screen = Screen::new(self.case, &trial.fitted, &colour)?;
+        let folds = screen.pulls(&info.name)?;
+        let size = trial.fitted.values.get(&(info.name.clone(), None))?;
+        let chi_squared: f64 = folds
+            .iter()
+            .map(|(pull, error)| (pull / error).powi(2))
+            .sum();
+        let freedom = folds.len().saturating_sub(1);
+        if freedom == 0 || tail(chi_squared, freedom) > UNLIKELY_SCATTER {
+            return None;
+        }
+        // large effects show second-order differences: sizes that agree within a third are the same effect
+        let spread = folds.iter().map(|(pull, _)| pull.abs()).fold(0.0, f64::max);
+        if spread < size.abs() / 3.0 {
+            return None;
+        }
+        let sizes: Vec<String> = folds
+            .iter()
+            .map(|(pull, error)| format!("{:.3e} ± {error:.1e}", size + pull))
+            .collect();
+        Some(format!(
+            "its size differs between parts of the data: {} (SI)",
+            sizes.join(", ")
+        ))
+    }
+
+    fn accepted(
+        &self,
+        best: Trial,
+        group: Vec<Member>,
+        threshold: &dyn Fn(usize) -> f64,
+    ) -> Accepted {
+        let outputs = self.base.problem.model.outputs.iter();
+        let gains = best.held_out.iter().flatten();
+        let screened = best.screened.as_ref();
+        Accepted {
+            group,
+            evidence: Evidence {
+                likelihood_ratio: best.likelihood_ratio,
+                threshold: threshold(best.freedom),
+                score: screened.map(|s| s.score),
+                visible_fraction: screened.map(|s| s.visible),
+                smallest_seen: screened.map(|s| s.one_sigma * (threshold(1).sqrt() + POWER)),
+                held_out: best.held_out.as_ref().map(|gains| gains.iter().sum()),
+                held_out_by_output: (outputs.zip(gains))
+                    .map(|(output, &gain)| OutputGain {
+                        output: output.name.clone(),
+                        gain,
+                    })
+                    .collect(),
+            },
+            effect: best.effect,
+            fitted: best.fitted,
+        }
+    }
+}
+
+/// Effects that stand at one place in time repeat in no other part.
+fn is_local_in_time(effect: &Effect) -> bool {
+    use EditKind::{Gust, InitialState};
+    matches!(effect.kind, EffectKind::Edit(Gust | InitialState))
+}
+
+fn refused(
+    effect: Effect,
+    reason: Refusal,
+    sentence: String,
+    likelihood_ratio: Option<f64>,
+    seen: Option<(&Screened, f64)>,
+) -> RefusedEffect {
+    RefusedEffect {
+        effect,
+        reason,
+        sentence,
+        likelihood_ratio,
+        visible_fraction: seen.map(|(s, _)| s.visible),
+        smallest_seen: seen.map(|(s, root)| s.one_sigma * (root + POWER)),
+        held_out: None,
+    }
+}
+
+fn of_trial(
+    trial: &Trial,
+    reason: Refusal,
+    why: String,
+    threshold: &dyn Fn(usize) -> f64,
+) -> RefusedEffect {
+    let seen = trial.screened.as_ref().map(|s| (s, threshold(1).sqrt()));
+    let held_out = trial.held_out.as_ref().map(|gains| gains.iter().sum());
+    RefusedEffect {
+        held_out,
+        ..refused(
+            trial.effect.clone(),
+            reason,
+            why,
+            Some(trial.likelihood_ratio),
+            seen,
+        )
+    }
+}
+
+fn of_screen(
+    effect: &Effect,
+    screened: &Result<Screened, String>,
+    threshold: &dyn Fn(usize) -> f64,
+) -> RefusedEffect {
+    let seen = match screened {
+        Err(why) => return refused(effect.clone(), Refusal::NotFitted, why.clone(), None, None),
+        Ok(seen) => seen,
+    };
+    let root = threshold(1).sqrt();
+    if seen.visible < INVISIBLE {
+        let why = "the declared parameters imitate it: these data cannot show it, whether it is there or not";
+        return RefusedEffect {
+            smallest_seen: None,
+            ..refused(
+                effect.clone(),
+                Refusal::Invisible,
+                why.into(),
+                None,
+                Some((seen, root)),
+            )
+        };
+    }
+    let why = format!(
+        "one linear step promises a likelihood ratio of {:.1}, no more than noise gives",
+        seen.promise.max(0.0)
+    );
+    refused(
+        effect.clone(),
+        Refusal::NotSignificant,
+        why,
+        Some(seen.promise),
+        Some((seen, root)),
+    )
+}
+
+/// The likelihood ratio that removing an effect costs, and what it would have to be to keep it.
+pub fn cost_of_removal(
+    case: &Case,
+    with: &Fitted,
+    without: crate::model::ModelDocument,
+    start: &Values,
+) -> Option<f64> {
+    let layout = Layout::of(&with.problem);
+    let fitted = Fitted::trial(case, without, start).ok()?;
+    let orders = Colour::of_best_order(&layout, &fitted.residual).orders();
+    Some(2.0 * (with.ln_likelihood(&orders) - fitted.ln_likelihood(&orders)))
+}

@@ -1,0 +1,78 @@
+//! Effects in sentences that an engineer can read.
+
+use super::effect::{Effect, EffectKind, Treatment};
+use crate::estimate::{Estimate, ParameterEstimate, five_digits};
+use crate::model::EditKind;
+
+/// What an effect is, with its size.
+pub fn of(effect: &Effect, with: &Estimate, declared: &Estimate) -> String {
+    let added: Vec<&ParameterEstimate> = (with.parameters.iter())
+        .filter(|row| !row.fixed && !declared.parameters.iter().any(|p| p.name == row.name))
+        .collect();
+    let size = |row: &ParameterEstimate| {
+        let unit = if row.unit == "-" {
+            ""
+        } else {
+            row.unit.as_str()
+        };
+        let error = row
+            .standard_error
+            .map_or(String::new(), |e| format!(" ± {}", five_digits(e)));
+        let segment = row
+            .segment
+            .as_ref()
+            .map_or(String::new(), |s| format!(" in {s}"));
+        format!("{} = {}{error} {unit}", row.name, five_digits(row.estimate))
+            .trim_end()
+            .to_string()
+            + &segment
+    };
+    let sizes: Vec<String> = added.iter().map(|row| size(row)).collect();
+    let sizes = if sizes.is_empty() {
+        String::new()
+    } else {
+        format!(" ({})", sizes.join(", "))
+    };
+    format!("{}{sizes}", words(effect))
+}
+
+/// What an effect is, without its size.
+pub fn words(effect: &Effect) -> String {
+    let target = effect.target.as_str();
+    let term = effect.term.as_deref().unwrap_or_default();
+    let kind = match effect.kind {
+        EffectKind::Treatment(Treatment::ProcessNoise) => {
+            return format!("{target} is disturbed by turbulence (process noise)");
+        }
+        EffectKind::Treatment(Treatment::SensorOutliers) => {
+            return format!("{target} has samples that are no measurements (outliers)");
+        }
+        EffectKind::Treatment(Treatment::Own) => {
+            return format!("the candidate '{target}' is there");
+        }
+        EffectKind::Edit(kind) => kind,
+    };
+    match kind {
+        EditKind::SensorBias | EditKind::InputBias => format!("{target} is recorded with a bias"),
+        EditKind::SensorScale | EditKind::InputScale => {
+            format!("{target} is recorded with a wrong scale")
+        }
+        EditKind::SensorDrift => format!("{target} drifts"),
+        EditKind::SensorDelay | EditKind::InputDelay => {
+            format!("{target} is recorded with a time shift")
+        }
+        EditKind::MissingTerm => format!("the equation of {target} lacks a term in {term}"),
+        other => {
+            let word = serde_json::to_value(other).ok();
+            let word = word
+                .and_then(|w| w.as_str().map(|w| w.replace('_', " ")))
+                .unwrap_or_default();
+            let by = if term.is_empty() {
+                String::new()
+            } else {
+                format!(" ({term})")
+            };
+            format!("{word} at {target}{by}")
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! All samples of all outputs of all segments in one long column: what projections are made of.
+
+use std::ops::Range;
+
+use crate::estimate::{Problem, TimeHistory};
+use crate::simulate::{Columns, Sensitivities};
+
+/// One output along one segment.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Series {
+    pub segment: usize,
+    pub output: usize,
+    pub range: Range<usize>,
+}
+
+/// Where each series stands in a column.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Layout {
+    pub outputs: usize,
+    pub series: Vec<Series>,
+    /// Length of a column.
+    pub len: usize,
+}
+
+impl Layout {
+    pub fn of(problem: &Problem) -> Self {
+        let lengths: Vec<usize> = problem
+            .segments
+            .iter()
+            .map(|segment| segment.len())
+            .collect();
+        Self::of_lengths(&lengths, problem.model.outputs.len())
+    }
+
+    pub fn of_lengths(lengths: &[usize], outputs: usize) -> Self {
+        let (mut series, mut len) = (Vec::new(), 0);
+        for (segment, &samples) in lengths.iter().enumerate() {
+            for output in 0..outputs {
+                let range = len..len + samples;
+                len = range.end;
+                series.push(Series {
+                    segment,
+                    output,
+                    range,
+                });
+            }
+        }
+        Self {
+            outputs,
+            series,
+            len,
+        }
+    }
+
+    /// The residuals of time histories; NaN where there is no sample.
+    pub fn residual(&self, histories: &[TimeHistory]) -> Vec<f64> {
+        let mut column = vec![f64::NAN; self.len];
+        for Series {
+            segment,
+            output,
+            range,
+        } in &self.series
+        {
+            column[range.clone()].copy_from_slice(&histories[*segment].outputs[*output].residual);
+        }
+        column
+    }
+
+    pub fn of_output<'c>(&self, column: &'c [f64], output: usize) -> Vec<&'c [f64]> {
+        let of = self.series.iter().filter(|series| series.output == output);
+        of.map(|series| &column[series.range.clone()]).collect()
+    }
+}
+
+/// ∂y/∂ψ at θ for the parameters of the model whose indices are `parameters`: by parameter a column over all
+/// segments, or by segment one where each has its own. `None` where the simulation leaves the range of numbers.
+pub fn sensitivities(
+    problem: &Problem,
+    layout: &Layout,
+    theta: &[f64],
+    parameters: &[usize],
+) -> Option<Vec<Vec<f64>>> {
+    let model = &problem.model;
+    let options = &problem.options;
+    let columns = Columns::new(model, parameters);
+    let mut machinery = Sensitivities::new(
+        model,
+        &columns,
+        options.integrator,
+        options.input_interpolation,
+    );
+    // by parameter, then by segment where each has its own: where its column is
+    let mut places: Vec<Vec<usize>> = Vec::new();
+    let mut count = 0;
+    for &parameter in parameters {
+        let own = model.parameters[parameter].document.per == crate::model::Per::Maneuver;
+        let of_segment = |segment: usize| count + if own { segment } else { 0 };
+        places.push((0..problem.segments.len()).map(of_segment).collect());
+        count += if own { problem.segments.len() } else { 1 };
+    }
+    let mut stacked = vec![vec![0.0; layout.len]; count];
+    let mut values = Vec::new();
+    for (index, segment) in problem.segments.iter().enumerate() {
+        problem.unknowns.parameters(index, theta, &mut values);
+        let starts: Vec<usize> = (layout.series.iter())
+            .filter(|series| series.segment == index)
+            .map(|series| series.range.start)
+            .collect();
+        let run = machinery.run(segment, &values, |block| {
+            for (output, start) in starts.iter().enumerate() {
+                let of_output = columns.of_output(output);
+                for k in 0..block.len {
+                    for (parameter, value) in of_output.iter().zip(block.row(output, k)) {
+                        if let Some(at) = parameters.iter().position(|p| p == parameter) {
+                            stacked[places[at][index]][start + block.first + k] = *value;
+                        }
+                    }
+                }
+            }
+        });
+        run.ok()?;
+    }
+    let finite = stacked.iter().flatten().all(|value| value.is_finite());
+    finite.then_some(stacked)
+}

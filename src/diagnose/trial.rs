@@ -1,0 +1,202 @@
+//! Trials: the most promising candidates are fitted, from several starts where a linear step cannot tell.
+
+use std::ops::ControlFlow;
+
+use super::case::{Case, Unfit, Values};
+use super::effect::{Effect, EffectKind, Treatment};
+use super::fitted::Fitted;
+use super::screen::Screened;
+use crate::estimate::{Bound, Estimator, Outcome, ProcessNoise, Role, filter_error};
+use crate::model::{EditKind, ModelDocument, Start};
+
+/// A candidate, fitted.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    pub effect: Effect,
+    pub screened: Option<Screened>,
+    pub fitted: Fitted,
+    /// Twice the gain of the colour-aware log-likelihood.
+    pub likelihood_ratio: f64,
+    /// Parameters that it adds.
+    pub freedom: usize,
+    /// By output, twice the gain on flights that were not fitted; absent where there are none.
+    pub held_out: Option<Vec<f64>>,
+    /// Why the flights that were not fitted could not be predicted.
+    pub unpredictable: Option<String>,
+}
+
+impl Trial {
+    /// Twice the gain on all flights, each parameter of the effect counted as two (Akaike).
+    pub fn merit(&self) -> f64 {
+        let held_out: f64 = self.held_out.iter().flatten().sum();
+        self.likelihood_ratio + held_out - 2.0 * self.freedom as f64
+    }
+
+    /// Names of the parameters added that stand at a bound of their range.
+    pub fn at_bound(&self, base: &Fitted) -> Vec<(String, Bound)> {
+        let declared = &base.problem.model.parameters;
+        let rows = self.fitted.estimate.parameters.iter();
+        rows.filter(|row| !declared.iter().any(|info| info.name == row.name))
+            .filter_map(|row| Some((row.name.clone(), row.at_bound?)))
+            .collect()
+    }
+}
+
+/// Whether a kind has no derivative at no effect, so that a screen cannot see it.
+pub fn is_tried_outright(kind: EffectKind) -> bool {
+    use EditKind::{
+        ActuatorLag, ActuatorRateLimit, Backlash, InputDelay, SensorLag, StallHysteresis,
+    };
+    matches!(
+        kind,
+        EffectKind::Edit(
+            SensorLag | ActuatorLag | ActuatorRateLimit | Backlash | InputDelay | StallHysteresis
+        )
+    )
+}
+
+/// Start values for what an effect adds, where one start is not enough.
+pub fn starts(
+    case: &Case,
+    effect: &Effect,
+    document: &ModelDocument,
+    base: &ModelDocument,
+) -> Vec<Values> {
+    let EffectKind::Edit(kind) = effect.kind else {
+        return vec![Values::new()];
+    };
+    let factors: &[f64] = match kind {
+        EditKind::InputDelay => return delay_starts(case, document, base),
+
+        EditKind::SensorLag | EditKind::ActuatorLag => &[0.5, 2.0],
+        EditKind::Backlash | EditKind::ActuatorRateLimit => &[0.3, 1.0, 3.0],
+        EditKind::UnsteadyAero | EditKind::StallHysteresis => &[0.4, 1.0, 2.5],
+        EditKind::StructuralMode => &[0.6, 0.8, 1.0, 1.3, 1.7, 2.2, 2.9],
+        EditKind::Gust => return gust_starts(case, document, base),
+        _ => return vec![Values::new()],
+    };
+    let scaled = |factor: &f64| {
+        let added = document
+            .parameters
+            .iter()
+            .filter(|(name, p)| !p.fixed && !base.parameters.contains_key(*name));
+        let of = added.filter_map(|(name, parameter)| match parameter.start {
+            Start::Value(value) if value != 0.0 => {
+                let unit = crate::flight::Unit::parse(&parameter.unit).ok()?;
+                // damping and shape constants are not where the uncertainty is
+                let factor = if parameter.unit == "-" || parameter.unit.is_empty() {
+                    1.0
+                } else {
+                    *factor
+                };
+                Some(((name.clone(), None), unit.to_si(value * factor)))
+            }
+            _ => None,
+        });
+        of.collect()
+    };
+    factors.iter().map(scaled).collect()
+}
+
+/// A recorded input that jumps has no slope at its samples, and so its delay none at whole samples: starts are between.
+fn delay_starts(case: &Case, document: &ModelDocument, base: &ModelDocument) -> Vec<Values> {
+    let step = case
+        .flights
+        .first()
+        .map_or(0.0, super::flight::Flight::step);
+    let added = document
+        .parameters
+        .keys()
+        .find(|name| !base.parameters.contains_key(*name));
+    let of =
+        |samples: f64| Values::from_iter(added.map(|name| ((name.clone(), None), samples * step)));
+    [-1.5, -0.5, 0.5, 1.5, 3.5].into_iter().map(of).collect()
+}
+
+/// A gust may come at any time: every half length of one, of two lengths.
+fn gust_starts(case: &Case, document: &ModelDocument, base: &ModelDocument) -> Vec<Values> {
+    let added: Vec<&String> = document
+        .parameters
+        .keys()
+        .filter(|name| !base.parameters.contains_key(*name))
+        .collect();
+    let named = |part: &str| {
+        added
+            .iter()
+            .find(|name| name.contains(part))
+            .map(|name| (*name).clone())
+    };
+    let (Some(time), Some(length)) = (named("time"), named("length")) else {
+        return vec![Values::new()];
+    };
+    let flights: Vec<_> = case.of_role(Role::Estimation).collect();
+    let mut starts = Vec::new();
+    for flight in &flights {
+        let duration = flight.step() * flight.time.len() as f64;
+        for seconds in [1.0, 3.0] {
+            let mut at = 0.0;
+            while at + seconds < duration && starts.len() < 200 {
+                // in the other flights it is out of sight, behind the end
+                let of = |other: &&super::flight::Flight| {
+                    let begin = if other.label == flight.label { at } else { 1e6 };
+                    [
+                        ((time.clone(), Some(other.label.clone())), begin),
+                        ((length.clone(), Some(other.label.clone())), seconds),
+                    ]
+                };
+                starts.push(flights.iter().flat_map(of).collect());
+                at += 0.5 * seconds;
+            }
+        }
+    }
+    starts
+}
+
+/// Fits a candidate.
+///
+/// # Errors
+/// It came to nothing.
+pub fn fit(
+    case: &Case,
+    base: &Fitted,
+    effect: &Effect,
+    document: ModelDocument,
+    start: &Values,
+) -> Result<Fitted, Unfit> {
+    if let EffectKind::Treatment(Treatment::ProcessNoise) = effect.kind {
+        return filtered(case, base, &effect.target);
+    }
+    let mut values = base.values.clone();
+    values.extend(start.iter().map(|(key, value)| (key.clone(), *value)));
+    Fitted::trial(case, document, &values)
+}
+
+/// The declared model fitted by filter error, with process noise on one state.
+fn filtered(case: &Case, base: &Fitted, target: &str) -> Result<Fitted, Unfit> {
+    let mut problem = case.problem(&base.document, &base.values)?;
+    problem.options.estimator = Estimator::FilterError;
+    problem.options.tolerance = problem.options.tolerance.max(1e-3);
+    problem.options.process_noise = (problem.model.states.iter())
+        .filter(|state| state.name != target)
+        .map(|state| {
+            (
+                state.name.clone(),
+                ProcessNoise {
+                    start: Some(0.0),
+                    fixed: true,
+                },
+            )
+        })
+        .collect();
+    let solution = filter_error(&problem, &mut |_| ControlFlow::Continue(()))
+        .map_err(|_| Unfit("the filter finds no steady gain".into()))?;
+    if solution.estimate.outcome == Outcome::Diverged {
+        return Err(Unfit(solution.estimate.reason));
+    }
+    Ok(Fitted::of(
+        base.document.clone(),
+        problem,
+        solution.estimate,
+        &solution.histories,
+    ))
+}

@@ -1,0 +1,140 @@
+//! A diagnosis: what the model of a job lacks.
+
+use std::ops::ControlFlow;
+
+use super::Fault;
+use super::bounds::JOB_TOO_LARGE;
+use super::prepare::Plan;
+use super::resolve::Stretch;
+use super::run::JobResult;
+use super::spec::JobSpec;
+use crate::diagnose::{Case, Effect, Flight, Inconclusive, Step, diagnose};
+use crate::estimate::{Derivatives, Estimator, Outcome, Problem, Role};
+use crate::model::{Model, ModelDocument, Recorded};
+use crate::simulate::Segment;
+
+/// Most values of all outputs: each candidate is simulated along all of them, and kept.
+const MOST_VALUES: usize = 500_000;
+const MOST_CANDIDATES: usize = 100;
+
+/// A stretch with everything that was recorded along it.
+pub(super) fn flight(
+    model: &Model,
+    segment: &Segment,
+    stretch: &Stretch<'_>,
+    role: Role,
+) -> Flight {
+    let inputs = model.inputs.iter().zip(&segment.inputs);
+    let of_model = inputs.chain(model.outputs.iter().zip(&segment.measured));
+    let mut channels: indexmap::IndexMap<String, _> = of_model
+        .map(|(quantity, values)| {
+            (
+                quantity.name.clone(),
+                (values.clone(), quantity.unit.dimension),
+            )
+        })
+        .collect();
+    for name in stretch.names() {
+        if let (false, Some((values, dimension))) =
+            (channels.contains_key(&name), stretch.channel(&name))
+        {
+            channels.insert(name, (values.to_vec(), dimension));
+        }
+    }
+    Flight {
+        label: segment.label.clone(),
+        role,
+        time: segment.time.clone(),
+        steps: segment.steps.clone(),
+        channels,
+    }
+}
+
+/// The case of a job, checked.
+pub(super) fn case(
+    spec: &JobSpec,
+    document: &ModelDocument,
+    problem: &Problem,
+    flights: Vec<Flight>,
+) -> Result<Case, Vec<Fault>> {
+    let mut faults = Vec::new();
+    if spec.options.estimator != Estimator::OutputError {
+        let message = "a diagnosis starts from output error (and turns to filter error where it finds turbulence); choose \"output_error\"";
+        faults.push(Fault::new("/options/estimator", "bad_option", message));
+    }
+    if spec.options.derivatives != Derivatives::default() {
+        let message =
+            "a diagnosis uses the technique \"forward_sensitivities\"; leave \"derivatives\" out";
+        faults.push(Fault::new("/options/derivatives", "bad_option", message));
+    }
+    let values = problem.samples() * problem.model.outputs.len();
+    if values > MOST_VALUES {
+        let message = format!(
+            "{values} values of outputs, at most {MOST_VALUES} are allowed for a diagnosis; choose \"rows\", or fewer maneuvers"
+        );
+        faults.push(Fault::new("/maneuvers", JOB_TOO_LARGE, message));
+    }
+    if spec.candidates.len() > MOST_CANDIDATES {
+        let message = format!("at most {MOST_CANDIDATES} candidates are allowed");
+        faults.push(Fault::new("/candidates", JOB_TOO_LARGE, message));
+    }
+    for (i, candidate) in spec.candidates.iter().enumerate() {
+        let effect = Effect::own(&candidate.name, candidate.edits.clone());
+        if let Err(error) = effect.apply(document) {
+            faults.push(Fault::new(
+                format!("/candidates/{i}/edits"),
+                error.code(),
+                error.to_string(),
+            ));
+        }
+    }
+    if !faults.is_empty() {
+        return Err(faults);
+    }
+    Ok(Case {
+        document: document.clone(),
+        flights,
+        options: spec.options.clone(),
+        candidates: (spec.candidates.iter())
+            .map(|candidate| Effect::own(&candidate.name, candidate.edits.clone()))
+            .collect(),
+    })
+}
+
+/// Runs the plan of a diagnosis; `watcher` is told of its steps and may stop it.
+///
+/// # Errors
+/// The declared model cannot be fitted.
+pub fn run_diagnosis(
+    plan: &Plan,
+    watcher: &mut dyn FnMut(&Step) -> ControlFlow<()>,
+) -> Result<JobResult, Vec<Fault>> {
+    let Some(case) = &plan.case else {
+        let message = "the job was not prepared as a diagnosis";
+        return Err(vec![Fault::new("/kind", "bad_option", message)]);
+    };
+    match diagnose(case, watcher) {
+        Ok(conclusion) => Ok(JobResult {
+            estimate: conclusion.estimate,
+            model: conclusion.diagnosis.model.clone(),
+            histories: conclusion.histories,
+            study: None,
+            diagnosis: Some(conclusion.diagnosis),
+        }),
+        Err(Inconclusive::Unfit(why)) => Err(vec![Fault::new(
+            "/parameters",
+            "diverged_at_start",
+            why.to_string(),
+        )]),
+        // what there is so far is the estimation of the declared model
+        Err(Inconclusive::Stopped) => {
+            let mut result = super::run(plan, &mut |_| ControlFlow::Continue(()))?;
+            result.estimate.outcome = Outcome::Cancelled;
+            result.estimate.reason = format!(
+                "the diagnosis was stopped on request; of the declared model: {}",
+                result.estimate.reason
+            );
+            Ok(result)
+        }
+    }
+}
