@@ -23,7 +23,7 @@ fn input(name: &str, k: usize) -> f64 {
         0.0
     };
     match name {
-        "V" => 100.0 + 2.0 * t,
+        "V" => 105.0 + 2.0 * t,
         "thrust" => 9000.0,
         "az" => -9.7 + 0.5 * (0.7 * t).sin(),
         "ax" | "ay" => 0.3 * (0.5 * t).sin(),
