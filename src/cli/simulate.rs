@@ -4,15 +4,19 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use super::Failure;
-use crate::ingest;
+use crate::ingest::{self, Format, Limits};
 use crate::model::{Model, catalog};
-use crate::simulate::Scenario;
+use crate::simulate::{Scenario, ScenarioEffect};
 
 /// Simulates a maneuver from a scenario and writes it as CSV. The same scenario gives the same file.
 #[derive(clap::Args, Debug)]
 pub struct Simulate {
     /// The scenario, TOML: model, truth, inputs, noise. See data/elevator.toml.
     scenario: PathBuf,
+    /// An effect that is not in the model, besides those of the scenario: kind:target=value or kind:target:term=value,
+    /// such as sensor_delay:q=0.1 or missing_term:q:alpha^2=-8. The value is that of the first parameter it adds.
+    #[arg(long = "effect", value_name = "EFFECT", value_parser = ScenarioEffect::parse)]
+    effects: Vec<ScenarioEffect>,
     /// Where to write; standard output without it.
     #[arg(long, short)]
     output: Option<PathBuf>,
@@ -23,8 +27,19 @@ impl Simulate {
         let path = self.scenario.display();
         let text = std::fs::read_to_string(&self.scenario)
             .map_err(|e| Failure::new(format!("{path}: {e}")))?;
-        let scenario: Scenario =
+        let mut scenario: Scenario =
             toml::from_str(&text).map_err(|e| Failure::new(format!("{path}: {e}")))?;
+        scenario.effects.extend(self.effects.iter().cloned());
+        let beside = self.scenario.parent();
+        let read = |file: &str| {
+            let file = beside.map_or_else(|| PathBuf::from(file), |directory| directory.join(file));
+            let bytes = std::fs::read(&file).map_err(|e| format!("{}: {e}", file.display()))?;
+            ingest::read(&bytes, Format::Csv, &Limits::default())
+                .map_err(|e| format!("{}: {e}", file.display()))
+        };
+        scenario
+            .read_recorded(read)
+            .map_err(|e| Failure::new(format!("{path}: {e}")))?;
         let document = catalog::find(&scenario.model).ok_or_else(|| {
             Failure::new(format!(
                 "{path}: there is no catalog model '{}'",

@@ -1,5 +1,7 @@
 //! Designed inputs: what a pilot or a flight control computer flies to excite a motion.
 
+use std::f64::consts::PI;
+
 use serde::{Deserialize, Serialize};
 
 /// The shape of one control input over time.
@@ -26,6 +28,41 @@ pub enum InputDesign {
     /// Pulses of given length and amplitude, one after the other.
     #[serde(rename = "pulses")]
     Pulses { start: f64, pulses: Vec<[f64; 2]> },
+    /// Times, s, and the values held from there on.
+    #[serde(rename = "steps")]
+    Steps { steps: Vec<[f64; 2]> },
+    /// A sum of sines of equal size and Schroeder phases, so that the sum has a low peak: the amplitude is the sum's
+    /// root mean square times √2.
+    #[serde(rename = "multisine")]
+    Multisine {
+        start: f64,
+        duration: f64,
+        /// Hz; multiples of 1/duration make it end where it begins.
+        frequencies: Vec<f64>,
+        amplitude: f64,
+    },
+    /// A sine whose frequency grows linearly, Hz.
+    #[serde(rename = "sweep")]
+    Sweep {
+        start: f64,
+        duration: f64,
+        from: f64,
+        to: f64,
+        amplitude: f64,
+    },
+    /// As it was recorded: times from the start, s, and values in the unit of the input, linear between them. `file` and
+    /// `channel` name a recording instead, a path relative to the scenario; see [`super::Scenario::read_recorded`].
+    #[serde(rename = "recorded")]
+    Recorded {
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        file: Option<String>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        channel: Option<String>,
+        #[serde(default)]
+        time: Vec<f64>,
+        #[serde(default)]
+        values: Vec<f64>,
+    },
 }
 
 impl InputDesign {
@@ -54,6 +91,72 @@ impl InputDesign {
                 amplitude,
             } => alternating(*start, *unit_time, *amplitude, &[1.0, 1.0]),
             Self::Pulses { start, pulses } => pulse(t - start, pulses.iter().copied()),
+            Self::Steps { steps } => {
+                let begun = steps.iter().rev().find(|[from, _]| *from <= t + 1e-9);
+                begun.map_or(0.0, |[_, value]| *value)
+            }
+            Self::Multisine {
+                start,
+                duration,
+                frequencies,
+                amplitude,
+            } => {
+                let (t, count) = (t - start, frequencies.len() as f64);
+                if !(0.0..=*duration).contains(&t) {
+                    return 0.0;
+                }
+                let sine = |(k, frequency): (usize, &f64)| {
+                    let k = k as f64;
+                    (2.0 * PI * frequency * t - PI * k * (k + 1.0) / count).sin()
+                };
+                let sum: f64 = frequencies.iter().enumerate().map(sine).sum();
+                amplitude * sum / count.sqrt()
+            }
+            Self::Sweep {
+                start,
+                duration,
+                from,
+                to,
+                amplitude,
+            } => {
+                let t = t - start;
+                if !(0.0..=*duration).contains(&t) {
+                    return 0.0;
+                }
+                amplitude * (2.0 * PI * (from + 0.5 * (to - from) * t / duration) * t).sin()
+            }
+            Self::Recorded { time, values, .. } => interpolated(time, values, t),
+        }
+    }
+
+    /// What is wrong with it.
+    pub(super) fn fault(&self) -> Option<String> {
+        match self {
+            Self::Recorded { time, values, .. } => {
+                if values.is_empty() {
+                    return Some("a recorded input needs its \"time\" and \"values\", or a \"file\" and \"channel\" that was read".into());
+                }
+                let grows = time.windows(2).all(|pair| pair[0] < pair[1]);
+                (time.len() != values.len() || !grows)
+                    .then(|| "\"time\" must grow and be as long as \"values\"".into())
+            }
+            Self::Multisine { frequencies, .. } if frequencies.is_empty() => {
+                Some("a multisine needs its \"frequencies\"".into())
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Linear between samples, held beyond the ends.
+fn interpolated(time: &[f64], values: &[f64], t: f64) -> f64 {
+    let after = time.partition_point(|&at| at <= t);
+    match (after.checked_sub(1), values.get(after)) {
+        (None, _) => values.first().copied().unwrap_or(0.0),
+        (Some(before), None) => values.get(before).copied().unwrap_or(0.0),
+        (Some(before), Some(next)) => {
+            let share = (t - time[before]) / (time[after] - time[before]);
+            values[before] + share * (next - values[before])
         }
     }
 }

@@ -6,14 +6,18 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 
+use super::effects::{Affected, Designed, ScenarioEffect};
 use super::input_design::InputDesign;
 use super::noise::NoiseColour;
 use super::trajectory::simulate_disturbed;
 use super::{InputInterpolation, Integrator, Segment, Steps};
 use crate::flight::{Channel, Maneuver, Unit};
-use crate::model::{Model, Start};
+use crate::model::{ChannelFormula, Model, Start};
 
 /// Everything that makes a simulated maneuver; the same scenario gives the same numbers.
+///
+/// In TOML: `model`, `seed`, `step`, `duration`, the tables `[truth]`, `[inputs.<name>]`, `[outputs]`, `[channels]` and
+/// `[process_noise]`, see data/elevator.toml, and any number of `[[effects]]`, see [`ScenarioEffect`].
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scenario {
@@ -37,6 +41,10 @@ pub struct Scenario {
     /// Channels that the model does not make but a recording has, such as the airspeed.
     #[serde(default)]
     pub channels: IndexMap<String, ScenarioChannel>,
+    /// What acts and is not in the model, in this order. A channel that an effect makes an input of (the airspeed of a
+    /// lever arm, an unrecorded input) is designed under `inputs`, or held at its value under `channels`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub effects: Vec<ScenarioEffect>,
 }
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -81,11 +89,24 @@ const SUBSTEPS: usize = 10;
 const MOST_SAMPLES: f64 = 1e6;
 
 impl Scenario {
-    /// Simulates the maneuver and adds noise. Channels are in the units of the scenario.
+    /// Simulates the maneuver, with its effects in it, and adds noise. Channels are in the units of the scenario.
     ///
     /// # Errors
     /// Names or units that the model does not have, or a simulation that leaves the range of numbers.
     pub fn fly(&self, model: &Model) -> Result<Maneuver, ScenarioError> {
+        if self.effects.is_empty() {
+            let (time, channels) = self.record(model, &[])?;
+            return maneuver(time, channels);
+        }
+        let affected = Affected::new(self, &model.document)?;
+        let edited = affected.compile()?;
+        let (time, mut channels) = (affected.scenario).record(&edited, &affected.added)?;
+        affected.spoil(&mut channels)?;
+        maneuver(time, channels)
+    }
+
+    /// What is recorded. Of the parameters, `read_off` are read off the designed inputs where their start says so.
+    fn record(&self, model: &Model, read_off: &[String]) -> Result<Recording, ScenarioError> {
         let unfit = |what: &str, message: String| ScenarioError::Unfit {
             what: what.to_string(),
             message,
@@ -98,23 +119,34 @@ impl Scenario {
             ));
         }
         let count = samples as usize;
-        let parameters = self.parameters(model)?;
+        let time: Vec<f64> = (0..count).map(|k| k as f64 * self.step).collect();
         let inputs = model.inputs.iter().map(|input| {
-            let design = self.inputs.get(&input.name).ok_or_else(|| {
-                unfit(
-                    &format!("inputs.{}", input.name),
-                    "the model's input is not designed here".to_string(),
-                )
-            })?;
-            let unit = unit_like(
-                &design.unit,
-                input.unit,
-                &format!("inputs.{}.unit", input.name),
-            )?;
-            let at = |k: usize| unit.to_si(design.trim + design.design.at(k as f64 * self.step));
-            Ok((0..count).map(at).collect())
+            let what = format!("inputs.{}", input.name);
+            if let Some(design) = self.inputs.get(&input.name) {
+                if let Some(message) = design.design.fault() {
+                    return Err(unfit(&format!("{what}.design"), message));
+                }
+                let unit = unit_like(&design.unit, input.unit, &format!("{what}.unit"))?;
+                let at = |&t: &f64| unit.to_si(design.trim + design.design.at(t));
+                return Ok((design.unit.as_str(), time.iter().map(at).collect()));
+            }
+            // what the model sees is the truth, what is recorded below has noise
+            let Some(held) = self.channels.get(&input.name) else {
+                let message = "the model's input is not designed here".to_string();
+                return Err(unfit(&what, message));
+            };
+            let what = format!("channels.{}.unit", input.name);
+            let value = unit_like(&held.unit, input.unit, &what)?.to_si(held.value);
+            Ok((held.unit.as_str(), vec![value; count]))
         });
-        let inputs = inputs.collect::<Result<Vec<Vec<f64>>, ScenarioError>>()?;
+        let inputs = inputs.collect::<Result<Vec<(&str, Vec<f64>)>, ScenarioError>>()?;
+        let (units, inputs): (Vec<&str>, Vec<Vec<f64>>) = inputs.into_iter().unzip();
+        let designed = Designed {
+            model,
+            time: time.clone(),
+            inputs: &inputs,
+        };
+        let parameters = self.parameters(model, read_off, &designed)?;
         let intensities = self.intensities(model)?;
         let outputs = self.simulate(model, &parameters, &intensities, &inputs, count);
         if outputs.iter().flatten().any(|y| !y.is_finite()) {
@@ -126,8 +158,7 @@ impl Scenario {
 
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         let mut channels = IndexMap::new();
-        for (input, values) in model.inputs.iter().zip(inputs) {
-            let unit = &self.inputs[&input.name].unit;
+        for ((input, values), unit) in model.inputs.iter().zip(inputs).zip(units) {
             channels.insert(input.name.clone(), channel(unit, values)?);
         }
         for (output, values) in model.outputs.iter().zip(outputs) {
@@ -158,8 +189,7 @@ impl Scenario {
             let values = noisy.collect();
             channels.insert(name.clone(), channel(&recorded.unit, values)?);
         }
-        let time = (0..count).map(|k| k as f64 * self.step).collect();
-        Maneuver::new(time, channels).map_err(|error| unfit("scenario", error.to_string()))
+        Ok((time, channels))
     }
 
     /// SI, by state of the model.
@@ -182,7 +212,12 @@ impl Scenario {
         }
     }
 
-    fn parameters(&self, model: &Model) -> Result<Vec<f64>, ScenarioError> {
+    fn parameters(
+        &self,
+        model: &Model,
+        read_off: &[String],
+        designed: &Designed,
+    ) -> Result<Vec<f64>, ScenarioError> {
         let what = |name: &str| format!("truth.{name}");
         if let Some(name) = self
             .truth
@@ -199,6 +234,14 @@ impl Scenario {
             &info.document.start,
         ) {
             (Some(value), _) | (None, Start::Value(value)) => Ok(info.unit.to_si(*value)),
+            (None, Start::FromData(text)) if read_off.contains(&info.name) => {
+                let formula = ChannelFormula::parse(text);
+                let number = formula.and_then(|formula| formula.number(designed));
+                number.map_err(|error| ScenarioError::Unfit {
+                    what: what(&info.name),
+                    message: format!("{error}; state its truth"),
+                })
+            }
             (None, Start::FromData(_)) => {
                 let message =
                     "the model reads this parameter off the data: state its truth".to_string();
@@ -268,6 +311,19 @@ impl Scenario {
     }
 }
 
+/// Time and channels.
+type Recording = (Vec<f64>, IndexMap<String, Channel>);
+
+fn maneuver(
+    time: Vec<f64>,
+    channels: IndexMap<String, Channel>,
+) -> Result<Maneuver, ScenarioError> {
+    Maneuver::new(time, channels).map_err(|error| ScenarioError::Unfit {
+        what: "scenario".to_string(),
+        message: error.to_string(),
+    })
+}
+
 /// A channel whose values are in SI already.
 fn channel(unit: &str, values: Vec<f64>) -> Result<Channel, ScenarioError> {
     let parsed = Unit::parse(unit).map_err(|error| ScenarioError::Unfit {
@@ -281,7 +337,7 @@ fn channel(unit: &str, values: Vec<f64>) -> Result<Channel, ScenarioError> {
     })
 }
 
-fn unit_like(text: &str, like: Unit, what: &str) -> Result<Unit, ScenarioError> {
+pub(super) fn unit_like(text: &str, like: Unit, what: &str) -> Result<Unit, ScenarioError> {
     let unfit = |message: String| ScenarioError::Unfit {
         what: what.to_string(),
         message,

@@ -136,7 +136,7 @@ fn accelerate(sheet: &mut Sheet, wind: &str, rate: &str) {
         .chain(&["phi", "theta", "psi"])
         .all(|name| states.contains_key(*name));
     let reads_wind = |name: &&str| names(&states[*name].derivative).iter().any(|n| n == wind);
-    if !is_there || body.iter().any(|name| reads_wind(&name)) {
+    if !is_there || body.iter().any(reads_wind) {
         return;
     }
     let shares = match axis(wind) {
