@@ -76,18 +76,6 @@ pub(super) fn check_data(
     if options.estimator != Estimator::FilterError {
         return Ok(());
     }
-    let missing = (0..model.outputs.len()).find(|&i| {
-        segments
-            .iter()
-            .any(|s| s.measured[i].iter().any(|z| z.is_nan()))
-    });
-    if let Some(output) = missing {
-        let message = format!(
-            "some samples of the output '{}' are missing, and a steady gain is that of all outputs; choose \"rows\" where all are there, leave the output out, or use the estimator \"output_error\"",
-            model.outputs[output].name
-        );
-        return Err(vec![Fault::new("/maneuvers", "missing_values", message)]);
-    }
     if let Some(segment) = segments
         .iter()
         .find(|segment| matches!(segment.steps, Steps::Uneven(_)))
