@@ -17,7 +17,9 @@ use trimtab::simulate::NoiseColour;
 
 use coverage::{fit, over_seeds};
 
-/// Of 60 seeds and 9 parameters, some of them strongly correlated, a pooled share of 95 % is known to about 1.5 %.
+/// Of 60 seeds and 9 parameters, some of them strongly correlated. Taken for some 200 independent intervals (60 if all
+/// of a seed were one, 540 if none were alike), a pooled share of 95 % has a standard deviation of
+/// √(0.95·0.05/200) = 1.5 %; three of those below it are 90 %.
 #[test]
 fn intervals_hold_for_white_and_coloured_noise() {
     let white = coloured::short_period(NoiseColour::White, 60);
@@ -43,7 +45,7 @@ fn intervals_hold_for_white_and_coloured_noise() {
             coloured.pooled(|row| &row.corrected),
             coloured.pooled(|row| &row.conventional),
         );
-        assert!(corrected > 0.89, "{colour:?}: {corrected}");
+        assert!(corrected > 0.90, "{colour:?}: {corrected}");
         assert!(conventional < 0.80, "{colour:?}: {conventional}");
     }
 }

@@ -4,11 +4,10 @@ mod common;
 
 use std::sync::Arc;
 
-use common::plans::{parameter, plan, scatter, solve, try_plan};
+use common::plans::{gradient_errors, parameter, plan, scatter, solve, try_plan};
 use indexmap::IndexMap;
 use num_complex::Complex64;
 use serde_json::{Value, json};
-use trimtab::estimate::{Evaluator, NormalEquations};
 use trimtab::flight::{Channel, Maneuver, Unit};
 use trimtab::model::{Model, ModelDocument};
 use trimtab::simulate::{
@@ -184,17 +183,7 @@ fn the_gradient_of_the_likelihood_knows_delays() {
         let start = json!({"parameters": {"tau_u": {"start": delay}, "tau_y": {"start": 0.3*delay}, "extra": {"start": -delay}}});
         let document = serde_json::to_value(document()).unwrap();
         let plan = plan(document, start, std::slice::from_ref(&recording));
-        let mut evaluator = Evaluator::new(&plan.problem);
-        let theta = plan.problem.unknowns.start();
-        let descent = NormalEquations::at(&mut evaluator, &theta).unwrap().descent;
-        for place in 0..theta.len() {
-            let mut cost = |change: f64| {
-                let mut moved = theta.clone();
-                moved[place] += change;
-                NormalEquations::at(&mut evaluator, &moved).unwrap().cost()
-            };
-            let difference = (cost(1e-6) - cost(-1e-6)) / 2e-6;
-            let error = (difference + descent[place]).abs() / descent.amax();
+        for (place, error) in gradient_errors(&plan, 1e-6).into_iter().enumerate() {
             // a kink of the curvature lies within the difference at whole delays
             assert!(error < 1e-4, "{delay}, unknown {place}: {error:e}");
         }

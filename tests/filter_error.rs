@@ -163,7 +163,7 @@ fn the_gain_of_one_state_is_the_closed_form() {
     assert!((r / innovations - 1.0).abs() < 1e-5);
 }
 
-/// Several segments, each with an initial state of its own that is unknown; central differences whose truncation
+/// Several segments with samples missing, each with an initial state of its own that is unknown; central differences whose truncation
 /// error is below 1e-7 of the gradient.
 #[test]
 fn the_gradient_is_that_of_the_likelihood() {
@@ -175,6 +175,12 @@ fn the_gradient_is_that_of_the_likelihood() {
     own["outputs"]["qdot"]["equation"] = json!("Ma*sin(3*alpha)/3 + Mq*q + Mde*de*cos(alpha)");
     let maneuvers = [flown(5, 5.0, turbulence()), flown(6, 3.0, turbulence())];
     for structure in ["diagonal", "full"] {
+        // with correlated noise all outputs at once, else each at samples of its own
+        let is_lost = |output: usize, k: usize| match structure {
+            "full" => k % 5 == 1,
+            _ => (k + output) % 5 == 1,
+        };
+        let maneuvers = maneuvers.each_ref().map(|whole| sparse(whole, is_lost));
         for integrator in ["rk4", "rk2", "euler"] {
             let noise = json!({"kind": "estimated", "structure": structure});
             let options =
@@ -218,6 +224,128 @@ fn without_process_noise_it_is_output_error() {
         let error = b.conventional_standard_error.expect("a bound");
         assert!((a.estimate - b.estimate).abs() < 1e-4 * error, "{}", a.name);
         assert!((a.standard_error.expect("a bound") / error - 1.0).abs() < 1e-6);
+    }
+}
+
+/// `maneuver` without the values that `is_lost` picks, by output and sample.
+fn sparse(maneuver: &Maneuver, is_lost: impl Fn(usize, usize) -> bool) -> Arc<Maneuver> {
+    let mut channels = maneuver.channels().clone();
+    for (i, name) in ["alpha", "q", "qdot"].into_iter().enumerate() {
+        let values = channels[name].values.iter_mut().enumerate();
+        values
+            .filter(|&(k, _)| is_lost(i, k))
+            .for_each(|(_, value)| *value = f64::NAN);
+    }
+    Arc::new(Maneuver::new(maneuver.time().to_vec(), channels).expect("a maneuver"))
+}
+
+/// At the answer's own gain, by a recursion written out here: a value that is missing corrects nothing and does not
+/// count. Both outputs lack some, now and then at the same sample.
+#[test]
+fn missing_values_neither_correct_nor_count() {
+    let one = json!({
+        "name": "one", "inputs": {"de": {"unit": "rad"}},
+        "parameters": {"a": {"unit": "1/s", "start": -1.0}},
+        "states": {"alpha": {"unit": "rad", "initial": "0", "derivative": "a*alpha"}},
+        "outputs": {"alpha": {"unit": "rad", "equation": "alpha"}, "q": {"unit": "rad/s", "equation": "-2*a*alpha"}},
+    });
+    let mut random = ChaCha8Rng::seed_from_u64(11);
+    let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+    let (mut alpha, mut columns) = (0.0, [vec![], vec![], vec![]]);
+    for _ in 0..800 {
+        for (to, value) in
+            columns
+                .iter_mut()
+                .zip([0.0, alpha + 0.02 * normal(), 1.8 * alpha + 0.05 * normal()])
+        {
+            to.push(value);
+        }
+        alpha = alpha * (-0.9 * STEP).exp() + 0.02 * normal();
+    }
+    let units = [
+        ("de", "rad"),
+        ("alpha", "rad"),
+        ("q", "rad/s"),
+        ("qdot", "rad/s^2"),
+    ];
+    let unused = columns[0].clone();
+    let channels = units.into_iter().zip(columns.into_iter().chain([unused]));
+    let channels = channels.map(|((name, unit), values)| {
+        let parsed = Unit::parse(unit).expect("a unit");
+        (
+            name.to_string(),
+            Channel::from_recorded(unit, parsed, values),
+        )
+    });
+    let time = (0..800).map(|k| k as f64 * STEP).collect();
+    let whole = Maneuver::new(time, channels.collect()).expect("a maneuver");
+    let maneuver = sparse(&whole, |output, k| match output {
+        0 => k % 3 == 1 || (200..240).contains(&k),
+        1 => k % 4 != 0,
+        _ => false,
+    });
+    let estimate = solve(one, filter_error(), std::slice::from_ref(&maneuver)).estimate;
+    assert!(estimate.outcome.is_minimum(), "{}", estimate.reason);
+    let a = estimate.parameters[0].estimate;
+    let gain = &estimate.filter.as_ref().expect("a filter").gains[0].gain[0];
+    let ah = a * STEP;
+    let step = 1.0 + ah * (1.0 + ah / 2.0 * (1.0 + ah / 3.0 * (1.0 + ah / 4.0)));
+    let (mut x, mut squares, mut counts) = (0.0, [0.0; 2], [0.0_f64; 2]);
+    for k in 0..800 {
+        let mut correction = 0.0;
+        for (j, (name, y)) in [("alpha", x), ("q", -2.0 * a * x)].into_iter().enumerate() {
+            let innovation = maneuver.channels()[name].values[k] - y;
+            if !innovation.is_nan() {
+                correction += gain[j] * innovation;
+                squares[j] += innovation * innovation;
+                counts[j] += 1.0;
+            }
+        }
+        x = step * (x + correction);
+    }
+    let mut cost = 0.0;
+    for (j, fit) in estimate.outputs.iter().enumerate() {
+        let variance = squares[j] / counts[j];
+        cost += 0.5 * counts[j] * ((std::f64::consts::TAU * variance).ln() + 1.0);
+        assert_eq!(fit.samples as f64, counts[j]);
+        assert!((estimate.noise_covariance[j][j] / variance - 1.0).abs() < 1e-9);
+    }
+    assert!(
+        (estimate.cost - cost).abs() < 1e-6,
+        "{} {cost}",
+        estimate.cost
+    );
+    let error = (a + 0.9) / estimate.parameters[0].standard_error.expect("a bound");
+    assert!(error.abs() < 4.0, "{error}");
+}
+
+/// A calm flight: the likelihood falls with the noise of the states down to none, as the square of its intensity.
+#[test]
+fn calm_data_end_at_no_process_noise_and_at_the_estimate_of_output_error() {
+    for seed in 0..6 {
+        let calm = flown(seed, 20.0, json!({}));
+        let filter = solve(model(), filter_error(), std::slice::from_ref(&calm)).estimate;
+        assert!(filter.outcome.is_minimum(), "{seed}: {}", filter.reason);
+        println!(
+            "{seed}: {} iterations, {}",
+            filter.iterations, filter.reason
+        );
+        assert!(filter.iterations <= 25, "{seed}: {}", filter.iterations);
+        let noise = filter.filter.expect("a filter").process_noise;
+        let none = noise
+            .iter()
+            .all(|noise| noise.at_bound == Some(Bound::Lower));
+        if none {
+            let output = solve(model(), json!({}), &[calm]).estimate;
+            for (a, b) in filter.parameters.iter().zip(&output.parameters) {
+                let error = b.conventional_standard_error.expect("a bound");
+                assert!(
+                    (a.estimate - b.estimate).abs() < 1e-3 * error,
+                    "{seed} {}",
+                    a.name
+                );
+            }
+        }
     }
 }
 

@@ -4,10 +4,9 @@ mod common;
 
 use std::sync::Arc;
 
-use common::plans::{parameter, plan, recording, scatter, solve, try_plan};
+use common::plans::{gradient_errors, parameter, plan, recording, scatter, solve, try_plan};
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
-use trimtab::estimate::{Evaluator, NormalEquations};
 use trimtab::flight::{Channel, Maneuver};
 use trimtab::model::{Model, catalog};
 use trimtab::simulate::Scenario;
@@ -163,17 +162,7 @@ fn the_gradient_is_that_of_the_likelihood_of_what_is_there() {
         );
         let noise = json!({"noise": {"kind": "estimated", "structure": structure}});
         let plan = plan(model.clone(), json!({"options": noise}), &[recording]);
-        let mut evaluator = Evaluator::new(&plan.problem);
-        let theta = plan.problem.unknowns.start();
-        let descent = NormalEquations::at(&mut evaluator, &theta).unwrap().descent;
-        for place in 0..theta.len() {
-            let mut cost = |change: f64| {
-                let mut moved = theta.clone();
-                moved[place] += change;
-                NormalEquations::at(&mut evaluator, &moved).unwrap().cost()
-            };
-            let difference = (cost(1e-5) - cost(-1e-5)) / 2e-5;
-            let error = (difference + descent[place]).abs() / descent.amax();
+        for (place, error) in gradient_errors(&plan, 1e-5).into_iter().enumerate() {
             assert!(error < 1e-7, "{structure}, unknown {place}: {error:e}");
         }
     }

@@ -10,7 +10,9 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde_json::{Value, json};
-use trimtab::estimate::{Estimate, Outcome, Progress, StartMethod, StartReport};
+use trimtab::estimate::{
+    Derivatives, Estimate, Method, Outcome, Problem, Progress, StartMethod, StartReport, estimate,
+};
 use trimtab::flight::{Channel, Maneuver, Unit};
 use trimtab::job::{self, Fault, JobSpec, ModelSource};
 
@@ -413,5 +415,121 @@ fn random_starts_of_a_published_case_reach_its_optimum() {
             common::random_starts::count(&problem, &reference, &share, 40, &method, case.det_r);
         println!("{method:?}: {count:?}");
         assert!(count.best >= 38, "{method:?}: {count:?}");
+    }
+}
+
+/// Derivatives by differences so coarse that Gauss-Newton soon finds no way down: single shooting ends stalled.
+fn coarse(seed: u64, share: f64) -> (Problem, f64) {
+    let recording = maneuver(6.0, seed, 1.0);
+    let options = json!({
+        "start": {"kind": "automatic"}, "method": "gauss_newton", "input_interpolation": "hold",
+        "derivatives": {"technique": "forward_difference", "step": 0.5},
+    });
+    let spec = json!({"model": model(|_| share), "maneuvers": [{"id": "x"}], "options": options});
+    let spec: JobSpec = serde_json::from_value(spec).expect("a spec");
+    let ModelSource::Document(document) = &spec.model else {
+        panic!("a document")
+    };
+    let plan = job::prepare(&spec, document, &[recording]).unwrap_or_else(|f| panic!("{f:#?}"));
+    let problem = plan.problem;
+    let mut exact = problem.clone();
+    exact.options.derivatives = Derivatives::default();
+    exact.options.method = Method::LevenbergMarquardt;
+    let best = estimate(&exact, &mut |_| ControlFlow::Continue(())).expect("an estimate");
+    (problem, best.estimate.cost)
+}
+
+/// What a watcher was told: the iterations' numbers and costs, and after how many of them the second try began.
+#[derive(Default)]
+struct Told {
+    iterations: Vec<(usize, f64)>,
+    first: Option<usize>,
+    texts: Vec<String>,
+}
+
+impl Told {
+    fn hear(&mut self, progress: Progress<'_>) {
+        match progress {
+            Progress::Iteration(iteration) => {
+                self.iterations.push((iteration.number, iteration.cost));
+            }
+            Progress::Start(report) => {
+                if report.text.ends_with("once more, from multiple shooting") {
+                    self.first = Some(self.iterations.len());
+                }
+                self.texts.push(report.text.clone());
+            }
+        }
+    }
+}
+
+#[test]
+fn the_better_of_two_tries_is_kept_and_its_iterations_count_on() {
+    // the first try ends far from the optimum, in -ln L, and the second one all but there; and the other way round
+    for (seed, share, which) in [(0, 0.9, "is kept"), (1, 0.99, "is no better")] {
+        let (problem, best) = coarse(seed, share);
+        let mut told = Told::default();
+        let found = estimate(&problem, &mut |progress| {
+            told.hear(progress);
+            ControlFlow::Continue(())
+        });
+        let found = found.expect("an estimate").estimate;
+        let first = told.first.expect("a second try");
+        let iterations = &told.iterations;
+        assert!(first > 0 && iterations.len() > first);
+        let numbers = iterations.iter().map(|(number, _)| *number);
+        assert!(numbers.eq(0..iterations.len()), "{iterations:?}");
+        let (ended, again) = (iterations[first - 1], iterations[iterations.len() - 1]);
+        println!("{:.2}, once more {:.2}, best {best:.2}", ended.1, again.1);
+        let last = told.texts.last().expect("a report");
+        let expected = format!("that from multiple shooting {which}");
+        assert!(last.ends_with(&expected), "{last}");
+        let better = if again.1 < ended.1 { again } else { ended };
+        assert_eq!((found.iterations, found.cost), better);
+        assert_eq!(which == "is kept", again.1 < ended.1);
+        if which == "is kept" {
+            assert!(ended.1 > best + 10.0 && found.cost < best + 2.0);
+        }
+    }
+}
+
+/// On request it ends as cancelled wherever it is, with no worse than what the first try came to.
+#[test]
+fn a_second_try_that_is_stopped_is_cancelled_with_the_best_so_far() {
+    for (seed, share) in [(0, 0.9), (1, 0.99)] {
+        let (problem, _) = coarse(seed, share);
+        let mut told = Told::default();
+        let _ = estimate(&problem, &mut |progress| {
+            told.hear(progress);
+            ControlFlow::Continue(())
+        });
+        let first = told.first.expect("a second try");
+        let ended = told.iterations[first - 1].1;
+        for place in ["shooting", "announcement", "iteration"] {
+            let mut told = Told::default();
+            let found = estimate(&problem, &mut |progress| {
+                let is_start = matches!(progress, Progress::Start(_));
+                told.hear(progress);
+                let stop = match place {
+                    "shooting" => is_start && told.iterations.len() == first,
+                    "announcement" => told.first.is_some(),
+                    _ => told.iterations.len() > first,
+                };
+                match stop {
+                    true => ControlFlow::Break(()),
+                    false => ControlFlow::Continue(()),
+                }
+            });
+            let found = found.expect("an estimate").estimate;
+            println!("{seed} {place}: {:.2}, {}", found.cost, found.reason);
+            let (outcome, reason) = (found.outcome, found.reason);
+            assert_eq!(outcome, Outcome::Cancelled, "{place}: {reason}");
+            assert!(
+                reason.starts_with("stopped on request"),
+                "{place}: {reason}"
+            );
+            assert!(found.cost <= ended, "{place}: {} {ended}", found.cost);
+            assert!(told.iterations.len() <= first + 1, "{place}");
+        }
     }
 }

@@ -98,7 +98,7 @@ pub fn answer(
     let effects: Vec<NamedEffect> = found
         .accepted
         .iter()
-        .map(|accepted| named(accepted, declared, &estimated))
+        .map(|accepted| named(accepted, &estimated))
         .collect();
     let diagnosis = Diagnosis {
         verdict,
@@ -243,19 +243,8 @@ fn remarks(case: &Case, fits: &[FitChange]) -> Vec<String> {
     remarks
 }
 
-fn named(accepted: &Accepted, declared: &Fitted, estimated: &Estimate) -> NamedEffect {
-    // what this effect added, and none of the others
-    let own: Vec<&String> = accepted.fitted.document.parameters.keys().collect();
-    let before = accepted
-        .effect
-        .edits
-        .first()
-        .and_then(|_| Some(&declared.estimate));
-    let is_added = |row: &&ParameterEstimate| {
-        !row.fixed
-            && own.contains(&&row.name)
-            && before.is_some_and(|before| !before.parameters.iter().any(|p| p.name == row.name))
-    };
+fn named(accepted: &Accepted, estimated: &Estimate) -> NamedEffect {
+    let is_added = |row: &&ParameterEstimate| !row.fixed && accepted.added.contains(&row.name);
     let parameters = estimated.parameters.iter().filter(is_added).map(|row| {
         let unit = Unit::parse(&row.unit).unwrap_or(Unit::NONE);
         EffectParameter {
@@ -271,7 +260,7 @@ fn named(accepted: &Accepted, declared: &Fitted, estimated: &Estimate) -> NamedE
         parameters: parameters.collect(),
         group: accepted.group.clone(),
         evidence: accepted.evidence.clone(),
-        sentence: sentence::of(&accepted.effect, estimated, &declared.estimate),
+        sentence: sentence::of(&accepted.effect, &accepted.added, estimated),
     }
 }
 

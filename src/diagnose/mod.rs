@@ -76,8 +76,13 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
     let declared = declared(case, watcher)?;
     let mut found = Found::default();
     let mut base = declared.clone();
+    let catalogue = catalogue::candidates(case, &declared.problem.model);
     for number in 1..=MOST_ROUNDS {
-        let round = round(case, &base, number, watcher);
+        let left: Vec<Effect> = (catalogue.iter())
+            .filter(|effect| !found.accepted.iter().any(|a| a.effect == **effect))
+            .cloned()
+            .collect();
+        let round = round(case, &base, left, number, watcher);
         if round.stopped {
             return Err(Inconclusive::Stopped);
         }
@@ -89,11 +94,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
             round: number,
             name: accepted.effect.name(),
             likelihood_ratio: accepted.evidence.likelihood_ratio,
-            sentence: sentence::of(
-                &accepted.effect,
-                &accepted.fitted.estimate,
-                &declared.estimate,
-            ),
+            sentence: sentence::of(&accepted.effect, &accepted.added, &accepted.fitted.estimate),
         };
         let last = accepted.effect.edits.is_empty();
         base = accepted.fitted.clone();

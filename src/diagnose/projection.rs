@@ -44,18 +44,6 @@ impl Basis {
             }
         }
     }
-
-    pub fn len(&self) -> usize {
-        self.0.len()
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    pub fn units(&self) -> &[Vec<f64>] {
-        &self.0
-    }
 }
 
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -77,7 +65,7 @@ mod tests {
             vec![1.0, -1.0, 0.0],
             vec![3.0, 1.0, 0.0],
         ]);
-        assert_eq!(basis.len(), 2);
+        assert_eq!(basis.0.len(), 2);
         let mut column = vec![5.0, 7.0, 2.0];
         basis.remove_from(&mut column);
         assert!(column[0].abs() < 1e-15 && column[1].abs() < 1e-15 && column[2] == 2.0);

@@ -5,7 +5,6 @@ use std::ops::ControlFlow;
 use rayon::prelude::*;
 
 use super::case::{Case, Values};
-use super::catalogue;
 use super::colour::Colour;
 use super::effect::{Effect, EffectKind, Treatment};
 use super::fitted::Fitted;
@@ -15,7 +14,7 @@ use super::screen::{Screen, Screened, critical, independent_questions, tail};
 use super::stack::Layout;
 use super::trial::{Trial, fit, is_tried_outright, starts};
 use crate::estimate::Role;
-use crate::model::{EditKind, Per};
+use crate::model::{Added, EditKind, Per};
 
 /// How often the whole family of candidates may find something where there is nothing, by its own statistics.
 const FAMILY_ERROR: f64 = 0.002;
@@ -42,6 +41,8 @@ pub struct Round {
 
 pub struct Accepted {
     pub effect: Effect,
+    /// Names of the parameters that it added.
+    pub added: Vec<String>,
     pub fitted: Fitted,
     pub group: Vec<Member>,
     pub evidence: Evidence,
@@ -53,7 +54,13 @@ pub type Watcher<'o> = dyn FnMut(&Step) -> ControlFlow<()> + 'o;
 /// A screened candidate, or why it was not.
 type Seen = (Effect, Result<Screened, String>);
 
-pub fn round(case: &Case, base: &Fitted, number: usize, watcher: &mut Watcher<'_>) -> Round {
+pub fn round(
+    case: &Case,
+    base: &Fitted,
+    candidates: Vec<Effect>,
+    number: usize,
+    watcher: &mut Watcher<'_>,
+) -> Round {
     let layout = Layout::of(&base.problem);
     let colour = Colour::of_best_order(&layout, &base.residual);
     let mut result = Round {
@@ -65,12 +72,10 @@ pub fn round(case: &Case, base: &Fitted, number: usize, watcher: &mut Watcher<'_
         return result;
     };
     let (outright, local): (Vec<Effect>, Vec<Effect>) =
-        catalogue::candidates(case, &base.problem.model)
-            .into_iter()
-            .partition(|effect| {
-                is_tried_outright(effect.kind)
-                    || matches!(effect.kind, EffectKind::Treatment(Treatment::ProcessNoise))
-            });
+        candidates.into_iter().partition(|effect| {
+            is_tried_outright(effect.kind)
+                || matches!(effect.kind, EffectKind::Treatment(Treatment::ProcessNoise))
+        });
     let seen: Vec<Seen> = (local.into_par_iter())
         .map(|effect| {
             let screened = screened(case, base, &screen, &effect);
@@ -92,7 +97,7 @@ pub fn round(case: &Case, base: &Fitted, number: usize, watcher: &mut Watcher<'_
         result.stopped = true;
         return result;
     }
-    let threshold = |freedom: usize| critical(FAMILY_ERROR, questions, freedom);
+    let threshold = Threshold { questions };
 
     let mut promising: Vec<&Seen> = visible;
     promising.retain(|(_, s)| {
@@ -218,7 +223,9 @@ fn screened(
         .map_err(|error| error.to_string())?;
     let mut best: Option<Screened> = None;
     let mut failure = String::new();
-    for start in starts(case, effect, &document, &base.document) {
+    let starts = starts(case, effect, &document, &base.document);
+    let count = starts.len();
+    for start in starts {
         match screen.of(&document, &start) {
             Ok(seen) if best.as_ref().is_none_or(|best| seen.promise > best.promise) => {
                 best = Some(seen)
@@ -227,7 +234,25 @@ fn screened(
             Err(why) => failure = why,
         }
     }
-    best.ok_or(failure)
+    let best = best.ok_or(failure)?;
+    Ok(Screened {
+        starts: count,
+        ..best
+    })
+}
+
+/// What a likelihood ratio has to pass.
+struct Threshold {
+    /// Independent ones that the candidates ask.
+    questions: f64,
+}
+
+impl Threshold {
+    /// Each start from which a candidate was fitted is a question more: what has no place or frequency before it is
+    /// found has many chances to be found in noise (Davies, Biometrika 74, 1987).
+    fn of(&self, freedom: usize, starts: usize) -> f64 {
+        critical(FAMILY_ERROR / starts.max(1) as f64, self.questions, freedom)
+    }
 }
 
 /// What a candidate has to beat: the model as it is.
@@ -263,6 +288,7 @@ impl<'c> Rival<'c> {
             Some(seen) => vec![seen.start()],
             None => starts(self.case, &effect, &document, &self.base.document),
         };
+        let tried = screened.as_ref().map_or(starts.len(), |seen| seen.starts);
         let mut best: Option<(f64, Fitted)> = None;
         let mut failure = String::new();
         for start in &starts {
@@ -296,6 +322,7 @@ impl<'c> Rival<'c> {
         }
         Ok(Trial {
             effect,
+            starts: tried,
             screened,
             fitted,
             likelihood_ratio,
@@ -306,12 +333,11 @@ impl<'c> Rival<'c> {
     }
 
     /// What speaks against accepting it.
-    fn objection(
-        &self,
-        trial: &Trial,
-        threshold: &dyn Fn(usize) -> f64,
-    ) -> Option<(Refusal, String)> {
-        let (ratio, least) = (trial.likelihood_ratio, threshold(trial.freedom));
+    fn objection(&self, trial: &Trial, threshold: &Threshold) -> Option<(Refusal, String)> {
+        let (ratio, least) = (
+            trial.likelihood_ratio,
+            threshold.of(trial.freedom, trial.starts),
+        );
         if !(ratio >= least) {
             let why = format!(
                 "a likelihood ratio of {ratio:.1} is no more than noise gives among so many candidates (critical value {least:.1})"
@@ -344,17 +370,15 @@ impl<'c> Rival<'c> {
 
     /// Why the sizes in parts of the data do not agree; by the noise that is left with the effect in the model.
     fn scatter(&self, trial: &Trial) -> Option<String> {
-        let added = trial
-            .screened
-            .as_ref()
-            .filter(|seen| seen.added.len() == 1)?;
+        let added = trial.screened.as_ref();
+        let added = added?;
         let info = trial
             .fitted
             .problem
             .model
             .parameters
             .iter()
-            .find(|info| info.name == added.added[0])?;
+            .find(|info| info.name == *added.added.first()?)?;
         if info.document.per == Per::Maneuver || is_local_in_time(&trial.effect) {
             return None;
         }
@@ -387,12 +411,7 @@ impl<'c> Rival<'c> {
         ))
     }
 
-    fn accepted(
-        &self,
-        best: Trial,
-        group: Vec<Member>,
-        threshold: &dyn Fn(usize) -> f64,
-    ) -> Accepted {
+    fn accepted(&self, best: Trial, group: Vec<Member>, threshold: &Threshold) -> Accepted {
         let outputs = self.base.problem.model.outputs.iter();
         let gains = best.held_out.iter().flatten();
         let screened = best.screened.as_ref();
@@ -400,10 +419,10 @@ impl<'c> Rival<'c> {
             group,
             evidence: Evidence {
                 likelihood_ratio: best.likelihood_ratio,
-                threshold: threshold(best.freedom),
+                threshold: threshold.of(best.freedom, best.starts),
                 score: screened.map(|s| s.score),
                 visible_fraction: screened.map(|s| s.visible),
-                smallest_seen: screened.map(|s| s.one_sigma * (threshold(1).sqrt() + POWER)),
+                smallest_seen: screened.map(|s| s.one_sigma * (threshold.of(1, 1).sqrt() + POWER)),
                 held_out: best.held_out.as_ref().map(|gains| gains.iter().sum()),
                 held_out_by_output: (outputs.zip(gains))
                     .map(|(output, &gain)| OutputGain {
@@ -412,6 +431,7 @@ impl<'c> Rival<'c> {
                     })
                     .collect(),
             },
+            added: Added::between(&self.base.document, &best.fitted.document).parameters,
             effect: best.effect,
             fitted: best.fitted,
         }
@@ -442,13 +462,11 @@ fn refused(
     }
 }
 
-fn of_trial(
-    trial: &Trial,
-    reason: Refusal,
-    why: String,
-    threshold: &dyn Fn(usize) -> f64,
-) -> RefusedEffect {
-    let seen = trial.screened.as_ref().map(|s| (s, threshold(1).sqrt()));
+fn of_trial(trial: &Trial, reason: Refusal, why: String, threshold: &Threshold) -> RefusedEffect {
+    let seen = trial
+        .screened
+        .as_ref()
+        .map(|s| (s, threshold.of(1, 1).sqrt()));
     let held_out = trial.held_out.as_ref().map(|gains| gains.iter().sum());
     RefusedEffect {
         held_out,
@@ -465,13 +483,13 @@ fn of_trial(
 fn of_screen(
     effect: &Effect,
     screened: &Result<Screened, String>,
-    threshold: &dyn Fn(usize) -> f64,
+    threshold: &Threshold,
 ) -> RefusedEffect {
     let seen = match screened {
         Err(why) => return refused(effect.clone(), Refusal::NotFitted, why.clone(), None, None),
         Ok(seen) => seen,
     };
-    let root = threshold(1).sqrt();
+    let root = threshold.of(1, 1).sqrt();
     if seen.visible < INVISIBLE {
         let why = "the declared parameters imitate it: these data cannot show it, whether it is there or not";
         return RefusedEffect {

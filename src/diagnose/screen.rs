@@ -44,6 +44,8 @@ pub struct Screen<'c> {
 pub struct Screened {
     /// Where a fit of it begins: the one step.
     start: Values,
+    /// From how many starts it was screened.
+    pub starts: usize,
     /// Names of the parameters that the effect adds, free ones.
     pub added: Vec<String>,
     /// ‖S⊥‖/‖S‖: what the declared parameters cannot imitate.
@@ -233,6 +235,7 @@ impl<'c> Screen<'c> {
         let length = norm(&explained).max(f64::MIN_POSITIVE);
         Screened {
             start: Values::new(),
+            starts: 1,
             added: Vec::new(),
             visible,
             score,

@@ -5,9 +5,9 @@ use crate::estimate::{Estimate, ParameterEstimate, five_digits};
 use crate::model::EditKind;
 
 /// What an effect is, with its size.
-pub fn of(effect: &Effect, with: &Estimate, declared: &Estimate) -> String {
+pub fn of(effect: &Effect, added: &[String], with: &Estimate) -> String {
     let added: Vec<&ParameterEstimate> = (with.parameters.iter())
-        .filter(|row| !row.fixed && !declared.parameters.iter().any(|p| p.name == row.name))
+        .filter(|row| !row.fixed && added.contains(&row.name))
         .collect();
     let size = |row: &ParameterEstimate| {
         let unit = if row.unit == "-" {

@@ -13,6 +13,8 @@ use crate::model::{EditKind, ModelDocument, Start};
 #[derive(Clone, Debug)]
 pub struct Trial {
     pub effect: Effect,
+    /// From how many starts it was looked for.
+    pub starts: usize,
     pub screened: Option<Screened>,
     pub fitted: Fitted,
     /// Twice the gain of the colour-aware log-likelihood.

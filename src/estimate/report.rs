@@ -53,7 +53,7 @@ impl Outcome {
 /// One iteration, as told to an observer.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Iteration {
-    /// 0 is the start value.
+    /// 0 is the start value; a second try, from another start, counts on.
     #[schema(example = 3)]
     pub number: usize,
     /// -ln L, the negative log-likelihood J(θ, R), plus ½ Σ ((θ - mean)/sd)² of the parameters' priors.
@@ -89,6 +89,7 @@ pub struct Estimate {
         example = "converged: a further step would move the estimate by 3.1e-7 standard errors"
     )]
     pub reason: String,
+    /// The number of the iteration that this is.
     pub iterations: usize,
     /// Simulations with sensitivities, and simulations alone.
     pub evaluations: usize,

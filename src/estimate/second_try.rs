@@ -25,30 +25,38 @@ pub(super) fn from_start(
     watcher: &mut Watcher<'_>,
 ) -> Result<Solution, Unusable> {
     let start = find_start(problem, watcher)?;
-    let first = Run::from(problem, &start, watcher)?;
+    let first = Run::from(problem, &start, 0, watcher)?;
     if !start.may_shoot || !first.ended_short() {
         return Ok(first.solution);
     }
-    let mut told = |report: &StartReport| watcher(Progress::Start(report));
-    let Ok(shot) = multiple_shooting(problem, start.theta, INTERVAL, &mut told) else {
-        return Ok(first.solution);
-    };
     let failure = format!(
         "the iteration ended {} at -ln L {:.1}",
         first.solution.estimate.outcome.name(),
         first.solution.estimate.cost
     );
-    let say = format!("{failure}: once more, from multiple shooting");
-    if shot.stopped || first.tell(say, watcher).is_break() {
-        return Ok(first.solution);
-    }
-    let Ok(second) = Run::from(problem, &shot, watcher) else {
+    let mut told = |report: &StartReport| watcher(Progress::Start(report));
+    let Ok(mut shot) = multiple_shooting(problem, start.theta, INTERVAL, &mut told) else {
         return Ok(first.solution);
     };
+    if !shot.stopped {
+        let say = format!("{failure}: once more, from multiple shooting");
+        shot.stopped = first.tell(say, watcher).is_break();
+    }
+    let number = first.solution.estimate.iterations + 1;
+    let Ok(second) = Run::from(problem, &shot, number, watcher) else {
+        return Ok(match shot.stopped {
+            true => first.cancelled(),
+            false => first.solution,
+        });
+    };
+    let is_cancelled = second.solution.estimate.outcome == Outcome::Cancelled;
     let (kept, which) = match second.solution.estimate.cost < first.solution.estimate.cost {
         true => (second, "is kept"),
         false => (first, "is no better"),
     };
+    if is_cancelled {
+        return Ok(kept.cancelled());
+    }
     // everything is done: too late to stop
     let _ = kept.tell(
         format!("{failure}; that from multiple shooting {which}"),
@@ -57,6 +65,7 @@ pub(super) fn from_start(
     Ok(kept.solution)
 }
 
+/// A descent from one start.
 struct Run {
     solution: Solution,
     /// Slope of the cost at the end, [`Iteration::gradient_norm`].
@@ -64,12 +73,20 @@ struct Run {
 }
 
 impl Run {
-    fn from(problem: &Problem, start: &Start, watcher: &mut Watcher<'_>) -> Result<Self, Unusable> {
+    /// `number` is that of the first iterate: a second run counts on from the first.
+    fn from(
+        problem: &Problem,
+        start: &Start,
+        number: usize,
+        watcher: &mut Watcher<'_>,
+    ) -> Result<Self, Unusable> {
         let mut stopped = start.stopped;
         let mut slope = f64::INFINITY;
         let mut observer = |iteration: &Iteration| {
             slope = iteration.gradient_norm;
-            let told = watcher(Progress::Iteration(iteration));
+            let mut iteration = iteration.clone();
+            iteration.number += number;
+            let told = watcher(Progress::Iteration(&iteration));
             // who asked to stop during the search for a start gets what was found so far
             if std::mem::take(&mut stopped) {
                 ControlFlow::Break(())
@@ -78,12 +95,13 @@ impl Run {
             }
         };
         let theta = start.theta.clone();
-        let solution = match problem.options.derivatives {
+        let mut solution = match problem.options.derivatives {
             Derivatives::Adjoint { scaling } => {
                 quasi_newton::solve(problem, theta, scaling, &mut observer)?
             }
             _ => descend(problem, theta, &mut observer)?.solution(problem),
         };
+        solution.estimate.iterations += number;
         Ok(Self { solution, slope })
     }
 
@@ -93,6 +111,20 @@ impl Run {
             Outcome::Stalled => !self.slope.is_finite() || self.slope > FLAT,
             _ => false,
         }
+    }
+
+    /// The better run, where the second was stopped on request.
+    fn cancelled(self) -> Solution {
+        let mut solution = self.solution;
+        let found = &mut solution.estimate;
+        if found.outcome != Outcome::Cancelled {
+            found.reason = format!(
+                "stopped on request while trying once more, from multiple shooting; the first try is kept: {}",
+                found.reason
+            );
+            found.outcome = Outcome::Cancelled;
+        }
+        solution
     }
 
     fn tell(&self, text: String, watcher: &mut Watcher<'_>) -> ControlFlow<()> {

@@ -1,10 +1,10 @@
 //! What a spec's options and names must be, beyond their types.
 
+use super::unknown_name::unknown_name;
 use super::{Fault, JobSpec, ModelSource};
 use crate::estimate::{
     Derivatives, Estimator, Noise, Options, Problem, Role, StartMethod, has_equation_error,
 };
-use crate::flight::escape;
 use crate::model::Model;
 
 /// Variances of noise that leave the likelihood a number.
@@ -90,22 +90,11 @@ pub(super) fn check_options(options: &Options, model: &Model, faults: &mut Vec<F
 
 pub(super) fn check_names(spec: &JobSpec, model: &Model, faults: &mut Vec<Fault>) {
     for name in spec.channels.keys() {
-        let mut known = model
-            .inputs
-            .iter()
-            .chain(&model.outputs)
-            .map(|quantity| quantity.name.as_str());
-        if !known.clone().any(|k| k == name) {
-            let known: Vec<&str> = known.by_ref().collect();
-            let message = format!(
-                "the model has no input or output '{name}'; it has {}",
-                known.join(", ")
-            );
-            faults.push(Fault::new(
-                format!("/channels/{}", escape(name)),
-                "unknown_channel",
-                message,
-            ));
+        let quantities = model.inputs.iter().chain(&model.outputs);
+        let known = quantities.map(|quantity| quantity.name.as_str());
+        if !known.clone().any(|known| known == name) {
+            let what = ("input or output", name.as_str());
+            faults.push(unknown_name("/channels", "unknown_channel", what, known));
         }
     }
 }

@@ -10,15 +10,16 @@ use super::run::JobResult;
 use super::spec::JobSpec;
 use crate::diagnose::{Case, Effect, Flight, Inconclusive, Step, diagnose};
 use crate::estimate::{Derivatives, Estimator, Outcome, Problem, Role};
-use crate::model::{Model, ModelDocument, Recorded};
+use crate::model::{Model, ModelDocument, Recorded, expression};
 use crate::simulate::Segment;
 
 /// Most values of all outputs: each candidate is simulated along all of them, and kept.
 const MOST_VALUES: usize = 500_000;
 const MOST_CANDIDATES: usize = 100;
 
-/// A stretch with everything that was recorded along it.
+/// A stretch with everything that was recorded along it, but for what the job's formulas have used already.
 pub(super) fn flight(
+    spec: &JobSpec,
     model: &Model,
     segment: &Segment,
     stretch: &Stretch<'_>,
@@ -34,7 +35,23 @@ pub(super) fn flight(
             )
         })
         .collect();
-    for name in stretch.names() {
+    let formulas = spec
+        .channels
+        .values()
+        .filter_map(|text| expression::parse(text).ok());
+    let used: Vec<String> = formulas
+        .flat_map(|tree| {
+            tree.names()
+                .into_iter()
+                .map(|(name, _)| name.to_string())
+                .collect::<Vec<_>>()
+        })
+        .collect();
+    for name in stretch
+        .names()
+        .into_iter()
+        .filter(|name| !used.contains(name))
+    {
         if let (false, Some((values, dimension))) =
             (channels.contains_key(&name), stretch.channel(&name))
         {

@@ -2,6 +2,7 @@
 
 use super::Fault;
 use super::bounds::JOB_TOO_LARGE;
+use super::unknown_name::unknown_name;
 use crate::estimate::{
     Estimator, Noise, NoiseStructure, Options, Problem, Unknowns, process_noise_names,
 };
@@ -17,47 +18,48 @@ const INTENSITIES: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
 /// Checks the settings against the model.
 pub(super) fn check_options(options: &Options, model: &Model, faults: &mut Vec<Fault>) {
-    let mut fault =
-        |pointer: &str, message: String| faults.push(Fault::new(pointer, "bad_option", message));
+    let fault = |pointer: &str, message: String| Fault::new(pointer, "bad_option", message);
     if options.estimator != Estimator::FilterError {
         if !options.process_noise.is_empty() {
             let message = "only the estimator \"filter_error\" has process noise; say \"estimator\": \"filter_error\", or leave this out";
-            fault("/options/process_noise", message.to_string());
+            faults.push(fault("/options/process_noise", message.to_string()));
         }
         return;
     }
     if !model.delays.is_empty() {
         let message = "the filter-error estimator knows no delays; fix each delay by leaving it out of the model, or use the estimator \"output_error\"";
-        fault("/options/estimator", message.to_string());
+        faults.push(fault("/options/estimator", message.to_string()));
     }
     if model.states.is_empty() {
         let message =
             "a model without states has nothing to filter; use the estimator \"output_error\"";
-        fault("/options/estimator", message.to_string());
+        faults.push(fault("/options/estimator", message.to_string()));
     }
     for (name, noise) in &options.process_noise {
         let pointer = format!("/options/process_noise/{}", escape(name));
         let Some(state) = model.states.iter().find(|state| state.name == *name) else {
-            let known: Vec<&str> = model.states.iter().map(|s| s.name.as_str()).collect();
-            let message = format!(
-                "the model has no state '{name}'; it has {}",
-                known.join(", ")
-            );
-            fault(&pointer, message);
+            let known = model.states.iter().map(|state| state.name.as_str());
+            let what = ("state", name.as_str());
+            faults.push(unknown_name(
+                "/options/process_noise",
+                "bad_option",
+                what,
+                known,
+            ));
             continue;
         };
         match noise.start {
             None if noise.fixed => {
                 let message = "fixed at what? give a \"start\"; 0 is no process noise";
-                fault(&pointer, message.to_string());
+                faults.push(fault(&pointer, message.to_string()));
             }
             Some(start) if start == 0.0 && !noise.fixed => {
                 let message = "nothing leads away from 0: leave \"start\" out for an automatic one, or say \"fixed\": true for no process noise";
-                fault(&format!("{pointer}/start"), message.to_string());
+                faults.push(fault(&format!("{pointer}/start"), message.to_string()));
             }
             Some(start) if start != 0.0 && !INTENSITIES.contains(&(start * state.unit.scale)) => {
                 let message = "give an intensity from 1e-30 to 1e30, in the state's unit per root of a second";
-                fault(&format!("{pointer}/start"), message.to_string());
+                faults.push(fault(&format!("{pointer}/start"), message.to_string()));
             }
             _ => {}
         }
@@ -73,18 +75,6 @@ pub(super) fn check_data(
 ) -> Result<(), Vec<Fault>> {
     if options.estimator != Estimator::FilterError {
         return Ok(());
-    }
-    let missing = (0..model.outputs.len()).find(|&i| {
-        segments
-            .iter()
-            .any(|s| s.measured[i].iter().any(|z| z.is_nan()))
-    });
-    if let Some(output) = missing {
-        let message = format!(
-            "some samples of the output '{}' are missing, and a steady gain is that of all outputs; choose \"rows\" where all are there, leave the output out, or use the estimator \"output_error\"",
-            model.outputs[output].name
-        );
-        return Err(vec![Fault::new("/maneuvers", "missing_values", message)]);
     }
     if let Some(segment) = segments
         .iter()

@@ -13,6 +13,7 @@ mod run;
 mod spec;
 mod status;
 mod study;
+mod unknown_name;
 
 pub use crate::flight::Fault;
 pub use checks::MOST_MANEUVERS;

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::resolve::{self, Named, Stretch};
+use super::unknown_name::unknown_name;
 use super::{Fault, JobKind, JobSpec, Prepared, diagnosis, study};
 use super::{bounds, checks, filter, missing};
 use crate::diagnose::Case;
@@ -67,7 +68,7 @@ pub fn prepare(
             let segment = resolve::segment(spec, &model, stretch, index, &mut faults);
             if spec.kind == JobKind::Diagnose {
                 let role = spec.maneuvers[index].role;
-                flights.push(diagnosis::flight(&model, &segment, stretch, role));
+                flights.push(diagnosis::flight(spec, &model, &segment, stretch, role));
             }
             match spec.maneuvers[index].role {
                 Role::Estimation => fitted.push((segment, stretch)),
@@ -181,32 +182,19 @@ fn edited(spec: &JobSpec, declared: &ModelDocument, faults: &mut Vec<Fault>) -> 
             constant.value = value;
             continue;
         }
-        let known: Vec<&str> = document.constants.keys().map(String::as_str).collect();
-        let message = format!(
-            "the model has no constant '{name}'; it has {}",
-            if known.is_empty() {
-                "none".to_string()
-            } else {
-                known.join(", ")
-            }
-        );
-        faults.push(Fault::new(
-            format!("/constants/{}", escape(name)),
-            "unknown_constant",
-            message,
-        ));
+        let known = document.constants.keys().map(String::as_str);
+        let what = ("constant", name.as_str());
+        faults.push(unknown_name("/constants", "unknown_constant", what, known));
     }
     for (name, change) in &spec.parameters {
         let Some(parameter) = document.parameters.get_mut(name) else {
-            let known: Vec<&str> = document.parameters.keys().map(String::as_str).collect();
-            let message = format!(
-                "the model has no parameter '{name}'; it has {}",
-                known.join(", ")
-            );
-            faults.push(Fault::new(
-                format!("/parameters/{}", escape(name)),
+            let known = document.parameters.keys().map(String::as_str);
+            let what = ("parameter", name.as_str());
+            faults.push(unknown_name(
+                "/parameters",
                 "unknown_parameter",
-                message,
+                what,
+                known,
             ));
             continue;
         };

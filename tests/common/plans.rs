@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use indexmap::IndexMap;
 use serde_json::{Value, json};
-use trimtab::estimate::ParameterEstimate;
+use trimtab::estimate::{Evaluator, NormalEquations, ParameterEstimate};
 use trimtab::flight::{Channel, Maneuver, Unit};
 use trimtab::job::{self, Fault, JobResult, JobSpec, ModelSource, Plan};
 use trimtab::model::catalog;
@@ -56,6 +56,25 @@ pub fn solve(model: Value, changes: Value, maneuvers: &[Arc<Maneuver>]) -> JobRe
 pub fn parameter<'r>(result: &'r JobResult, name: &str) -> &'r ParameterEstimate {
     let mut all = result.estimate.parameters.iter();
     all.find(|p| p.name == name).expect("the parameter")
+}
+
+/// By unknown: how far the gradient at the start is from central differences of -ln L at ± `step`, relative to the
+/// gradient's largest component.
+pub fn gradient_errors(plan: &Plan, step: f64) -> Vec<f64> {
+    let mut evaluator = Evaluator::new(&plan.problem);
+    let theta = plan.problem.unknowns.start();
+    let mut at = |theta: &[f64]| NormalEquations::at(&mut evaluator, theta).expect("a cost");
+    let descent = at(&theta).descent;
+    let error = |place: usize| {
+        let mut cost = |change: f64| {
+            let mut moved = theta.clone();
+            moved[place] += change;
+            at(&moved).cost()
+        };
+        let difference = (cost(step) - cost(-step)) / (2.0 * step);
+        (difference + descent[place]).abs() / descent.amax()
+    };
+    (0..theta.len()).map(error).collect()
 }
 
 /// Numbers from -0.5 to 0.5 without structure.

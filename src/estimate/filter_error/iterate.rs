@@ -34,8 +34,10 @@ pub(super) struct Iterate {
     pub z: Vec<f64>,
     pub gain_noise: GainNoise,
     pub weighting: Weighting,
-    /// Reduced where the gain is at its limit.
+    /// Reduced where the gain is at its limit, as the next two are.
     pub information: DMatrix<f64>,
+    relaxation: Option<DMatrix<f64>>,
+    descent: DVector<f64>,
     /// By place: the bound against which the descent direction pushes.
     pub held: Vec<Option<Bound>>,
     pub limit: Limit,
@@ -71,6 +73,8 @@ impl Iterate {
             gain_noise,
             weighting,
             information,
+            relaxation,
+            descent,
             held,
             limit,
             newton,
@@ -80,14 +84,58 @@ impl Iterate {
     /// How far R in the gain is from that of the innovations, in standard errors of R.
     pub fn lag(&self, problem: &Problem) -> f64 {
         let (gain, now) = (&self.gain_noise.covariance, &self.weighting.covariance);
-        let ratios = (0..now.nrows()).map(|i| (now[(i, i)] / gain[(i, i)]).ln());
-        let squares: f64 = ratios.map(|ratio| ratio * ratio).sum();
-        (0.5 * problem.samples() as f64 * squares).sqrt()
+        let square = |(i, &count): (usize, &usize)| {
+            0.5 * count as f64 * (now[(i, i)] / gain[(i, i)]).ln().powi(2)
+        };
+        let counts = problem.counts.iter().enumerate();
+        counts.map(square).sum::<f64>().sqrt()
     }
 
-    /// The step of all unknowns for a damping λ.
-    pub fn step(&self, newton: &Newton, damping: f64) -> DVector<f64> {
-        &self.limit.reduction * newton.step(damping)
+    /// The step of all unknowns for a damping λ. What would go beyond a bound goes as far as that, and the others take
+    /// the step that goes with it: an intensity f shows as f² only, so that where it is small its step is as long as
+    /// 1/f, and what the others would do along with the whole of it leads nowhere.
+    pub fn step(
+        &self,
+        evaluator: &FilterEvaluator<'_>,
+        newton: &Newton,
+        damping: f64,
+    ) -> DVector<f64> {
+        let mut held = self.held.clone();
+        let mut to_bounds = DVector::zeros(self.z.len());
+        let mut step = newton.step(damping);
+        loop {
+            let whole = &self.limit.reduction * &step;
+            let beyond = |place: usize| {
+                let (lower, upper) = evaluator.layout.limits(evaluator.problem, place);
+                let there = self.z[place] + whole[place];
+                if there < lower {
+                    Some((place, Bound::Lower, lower - self.z[place]))
+                } else if there > upper {
+                    Some((place, Bound::Upper, upper - self.z[place]))
+                } else {
+                    None
+                }
+            };
+            let free = (0..held.len()).filter(|&place| held[place].is_none());
+            let beyond: Vec<_> = free.filter_map(beyond).collect();
+            if beyond.is_empty() {
+                return whole;
+            }
+            for (place, bound, way) in beyond {
+                held[place] = Some(bound);
+                to_bounds[place] = way;
+            }
+            step.copy_from(&to_bounds);
+            if held.iter().any(Option::is_none) {
+                let descent = &self.descent - &self.information * &to_bounds;
+                let relaxation = self.relaxation.as_ref();
+                let Some(others) = Newton::new(&self.information, relaxation, &descent, &held)
+                else {
+                    return whole;
+                };
+                step += others.step(damping);
+            }
+        }
     }
 
     pub fn report(

@@ -147,7 +147,7 @@ fn search(
     let (mut damping, mut share) = (start_damping, 1.0);
     let mut in_range = false;
     for halvings in 0..MOST_TRIALS {
-        let step = current.step(newton, damping) * share;
+        let step = current.step(evaluator, newton, damping) * share;
         if let Ok(trial) = trial(evaluator, current, &step) {
             in_range = true;
             if trial.weighting.cost <= most {

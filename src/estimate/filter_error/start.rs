@@ -14,22 +14,11 @@ const START_SHARE: f64 = 0.3;
 /// Steps ahead in which a state that no output shows directly may show.
 const STEPS_AHEAD: usize = 20;
 
-/// R to begin with: half the mean square of the change from sample to sample. This needs no simulation, which with an
+/// R to begin with: half the mean square of the change from value to value. This needs no simulation, which with an
 /// unstable model would leave the range of numbers.
 pub(super) fn gain_noise(problem: &Problem) -> Result<Weighting, Unusable> {
-    let outputs = problem.model.outputs.len();
-    let samples = problem.samples() as f64;
-    let scatter = |output: usize| {
-        let segments = problem.segments.iter();
-        let series = segments.map(|segment| &segment.measured[output]);
-        let changes = series.flat_map(|series| series.windows(2).map(|pair| pair[1] - pair[0]));
-        let squares: Vec<f64> = (changes.filter(|change| change.is_finite()))
-            .map(|change| change * change)
-            .collect();
-        0.5 * squares.iter().sum::<f64>() / squares.len().max(1) as f64
-    };
-    let squares: Vec<f64> = (0..outputs)
-        .map(|output| scatter(output) * samples)
+    let squares: Vec<f64> = (problem.counts.iter().enumerate())
+        .map(|(output, &count)| scatter(problem, output) * count as f64)
         .collect();
     let sums = DMatrix::from_diagonal(&nalgebra::DVector::from_vec(squares));
     let noise = match &problem.options.noise {
@@ -41,6 +30,17 @@ pub(super) fn gain_noise(problem: &Problem) -> Result<Weighting, Unusable> {
         },
     };
     Weighting::new(&noise, &sums, &problem.counts)
+}
+
+/// Half the mean square of the change from each value of an output to the next one that is there.
+fn scatter(problem: &Problem, output: usize) -> f64 {
+    let mut squares = Vec::new();
+    for segment in &problem.segments {
+        let values = segment.measured[output].iter().filter(|z| !z.is_nan());
+        let values: Vec<f64> = values.copied().collect();
+        squares.extend(values.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)));
+    }
+    0.5 * squares.iter().sum::<f64>() / squares.len().max(1) as f64
 }
 
 /// Start values of the intensities, by state, SI: with f² Δt Σ_j C_ji²/r_j = share² a state that hardly moves by

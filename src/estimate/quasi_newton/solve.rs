@@ -101,7 +101,8 @@ pub(in crate::estimate) fn solve(
         restarts += 1;
     };
     evaluator.evaluations += adjoint.gradients;
-    evaluator.simulations += adjoint.simulations - adjoint.gradients;
+    // a way forward that was kept serves more than one way back
+    evaluator.simulations += adjoint.simulations.saturating_sub(adjoint.gradients);
     let ending = Ending {
         stopped,
         iterations: iteration,

@@ -34,7 +34,7 @@ pub(super) fn gust(sheet: &mut Sheet) -> Result<(), EditError> {
     sheet.add(&time, each(parameter));
     let length = sheet.free(&format!("{target}_gust_length"));
     let words = "how long the gust takes to pass".to_string();
-    sheet.add(&length, each(unknown("s", 1.0, Some((0.1, 20.0)), words)));
+    sheet.add(&length, each(unknown("s", 1.0, Some((0.1, 5.0)), words)));
     let definition = sheet.free(&format!("{target}_air"));
     for equation in laws(&mut sheet.document) {
         *equation = replace_name(equation, target, &definition);
