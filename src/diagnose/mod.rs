@@ -27,6 +27,7 @@ mod terms;
 mod trial;
 
 pub use case::{Case, Unfit};
+pub use catalogue::candidates;
 pub use effect::{Effect, EffectKind, Treatment};
 pub use flight::Flight;
 pub use report::{

@@ -234,11 +234,9 @@ fn screened(
             Err(why) => failure = why,
         }
     }
-    let best = best.ok_or(failure)?;
-    Ok(Screened {
-        starts: count,
-        ..best
-    })
+    let mut best = best.ok_or(failure)?;
+    best.starts = count;
+    Ok(best)
 }
 
 /// What a likelihood ratio has to pass.
@@ -370,15 +368,14 @@ impl<'c> Rival<'c> {
 
     /// Why the sizes in parts of the data do not agree; by the noise that is left with the effect in the model.
     fn scatter(&self, trial: &Trial) -> Option<String> {
-        let added = trial.screened.as_ref();
-        let added = added?;
+        let name = trial.screened.as_ref()?.added.first()?;
         let info = trial
             .fitted
             .problem
             .model
             .parameters
             .iter()
-            .find(|info| info.name == *added.added.first()?)?;
+            .find(|info| info.name == *name)?;
         if info.document.per == Per::Maneuver || is_local_in_time(&trial.effect) {
             return None;
         }

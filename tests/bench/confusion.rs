@@ -1,0 +1,121 @@
+//! The confusion matrix of the diagnosis: every effect of the catalogue, put undeclared into simulated flights at
+//! three strengths, with white and with coloured noise; and flights with nothing undeclared.
+//!
+//! `cargo bench --bench confusion [cases] [empty] [first seed] [part of a name]`: `cases` for each effect, strength and
+//! colour; `empty` ones for each aircraft and colour. The strength of an effect is the likelihood ratio that it is worth to
+//! who knows it: 30 (weak), 100 (moderate), 300 (clear). Seeds below 1 000 000 are for tuning; the figure is made with
+//! others.
+
+#[path = "confusion/aircraft.rs"]
+mod aircraft;
+#[path = "confusion/strength.rs"]
+mod strength;
+#[path = "confusion/tally.rs"]
+mod tally;
+
+use std::ops::ControlFlow;
+
+use rayon::prelude::*;
+use trimtab::diagnose::{Conclusion, Diagnosis, Effect, diagnose};
+use trimtab::simulate::NoiseColour;
+
+use aircraft::{Aircraft, aircraft};
+use tally::{Answer, Tally};
+
+const STRENGTHS: [(&str, f64); 3] = [("weak", 30.0), ("moderate", 100.0), ("clear", 300.0)];
+
+fn main() {
+    let arguments: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|a| !a.starts_with("--"))
+        .collect();
+    let mut numbers = arguments.iter().filter_map(|a| a.parse::<u64>().ok());
+    let (cases, empty, seed) = (
+        numbers.next().unwrap_or(1),
+        numbers.next().unwrap_or(100),
+        numbers.next().unwrap_or(1_000_000),
+    );
+    let part = arguments
+        .iter()
+        .find(|a| a.parse::<u64>().is_err())
+        .cloned()
+        .unwrap_or_default();
+    let colours = [
+        ("white", NoiseColour::White),
+        (
+            "coloured",
+            NoiseColour::FirstOrder {
+                correlation_time: 0.1,
+            },
+        ),
+    ];
+    let mut tally = Tally::default();
+    for aircraft in aircraft() {
+        for (colour_name, colour) in &colours {
+            let effects: Vec<Effect> = aircraft
+                .effects()
+                .into_iter()
+                .filter(|e| e.name().contains(&part))
+                .collect();
+            let sized: Vec<(Effect, &str, f64)> = (effects.par_iter())
+                .flat_map_iter(|effect| {
+                    let sizes = strength::sizes(
+                        &aircraft,
+                        effect,
+                        colour,
+                        &STRENGTHS.map(|(_, ratio)| ratio),
+                    );
+                    STRENGTHS
+                        .iter()
+                        .zip(sizes)
+                        .filter_map(|((name, _), size)| Some((effect.clone(), *name, size?)))
+                        .collect::<Vec<_>>()
+                })
+                .collect();
+            let jobs: Vec<(&(Effect, &str, f64), u64)> = sized
+                .iter()
+                .flat_map(|job| (0..cases).map(move |case| (job, case)))
+                .collect();
+            let answers: Vec<Answer> = (jobs.par_iter().enumerate())
+                .map(|(number, ((effect, strength, size), _))| {
+                    let diagnosis =
+                        run(&aircraft, &[(effect, *size)], colour, seed + number as u64);
+                    Answer::of(
+                        &aircraft,
+                        colour_name,
+                        strength,
+                        Some(effect),
+                        diagnosis.as_ref(),
+                    )
+                })
+                .collect();
+            tally.extend(answers);
+            if !"empty".contains(&part) && !part.is_empty() {
+                continue;
+            }
+            let answers: Vec<Answer> = (0..empty)
+                .into_par_iter()
+                .map(|number| {
+                    let diagnosis = run(&aircraft, &[], colour, seed + 500_000 + number);
+                    Answer::of(&aircraft, colour_name, "empty", None, diagnosis.as_ref())
+                })
+                .collect();
+            tally.extend(answers);
+        }
+    }
+    tally.print();
+}
+
+/// Flies the aircraft with effects that the declared model lacks, and diagnoses it.
+fn run(
+    aircraft: &Aircraft,
+    effects: &[(&Effect, f64)],
+    colour: &NoiseColour,
+    seed: u64,
+) -> Option<Diagnosis> {
+    let case = aircraft.case(effects, Some(colour), seed)?;
+    match diagnose(&case, &mut |_| ControlFlow::Continue(())) {
+        Ok(Conclusion { diagnosis, .. }) => Some(diagnosis),
+        Err(_) => None,
+    }
+}

@@ -1,0 +1,188 @@
+//! The aircraft that are flown, and how.
+
+use std::sync::LazyLock;
+
+use indexmap::IndexMap;
+use trimtab::diagnose::{Case, Effect, EffectKind, Flight, Treatment, candidates};
+use trimtab::estimate::{Options, Role};
+use trimtab::flight::Maneuver;
+use trimtab::model::{EditKind, Model, ModelDocument, catalog};
+use trimtab::simulate::{NoiseColour, Scenario, ScenarioEffect, Steps};
+
+/// An aircraft with its flights: a declared model, and scenarios by role.
+pub struct Aircraft {
+    pub name: &'static str,
+    pub model: Model,
+    pub document: ModelDocument,
+    flights: Vec<(Role, &'static str, Scenario)>,
+}
+
+const SHORT_PERIOD: [(Role, &str, &str); 2] = [
+    (
+        Role::Estimation,
+        "3-2-1-1",
+        r#"design = { shape = "3-2-1-1", start = 6.0, unit_time = 0.8, amplitude = 2.0 }"#,
+    ),
+    (
+        Role::Validation,
+        "doublet",
+        r#"design = { shape = "doublet", start = 6.0, unit_time = 1.2, amplitude = -2.5 }"#,
+    ),
+];
+
+fn short_period() -> Aircraft {
+    let scenario = |design: &str| {
+        let text = include_str!("../../../data/elevator.toml");
+        let line = text
+            .lines()
+            .find(|line| line.starts_with("design"))
+            .unwrap();
+        toml::from_str(&text.replace(line, design)).unwrap()
+    };
+    let flights = SHORT_PERIOD
+        .iter()
+        .map(|(role, label, design)| (*role, *label, scenario(design)));
+    Aircraft::new("short-period", flights.collect())
+}
+
+fn lateral() -> Aircraft {
+    let of = |text: &str| -> Scenario { toml::from_str(text).unwrap() };
+    let aileron = of(include_str!("../../../data/aileron.toml"));
+    let rudder = of(include_str!("../../../data/rudder.toml"));
+    // the other way round and a little later: a repeat that is none
+    let turned = |scenario: &Scenario| {
+        let text = toml::to_string(scenario).unwrap();
+        let mut value: toml::Table = toml::from_str(&text).unwrap();
+        for (_, input) in value["inputs"].as_table_mut().unwrap() {
+            let design = input["design"].as_table_mut().unwrap();
+            if let Some(amplitude) = design.get("amplitude").and_then(toml::Value::as_float) {
+                design["amplitude"] = (-1.2 * amplitude).into();
+            }
+        }
+        value.try_into::<Scenario>().unwrap()
+    };
+    let (aileron_again, rudder_again) = (turned(&aileron), turned(&rudder));
+    Aircraft::new(
+        "lateral",
+        vec![
+            (Role::Estimation, "aileron", aileron),
+            (Role::Estimation, "rudder", rudder),
+            (Role::Validation, "aileron again", aileron_again),
+            (Role::Validation, "rudder again", rudder_again),
+        ],
+    )
+}
+
+pub fn aircraft() -> Vec<Aircraft> {
+    vec![short_period(), lateral()]
+}
+
+static WHITE: LazyLock<NoiseColour> = LazyLock::new(|| NoiseColour::White);
+
+impl Aircraft {
+    fn new(name: &'static str, flights: Vec<(Role, &'static str, Scenario)>) -> Self {
+        let document = catalog::find(&flights[0].2.model).unwrap();
+        let model = Model::compile(&document).unwrap();
+        Self {
+            name,
+            model,
+            document,
+            flights,
+        }
+    }
+
+    /// Effects of the catalogue that can be put into these flights.
+    pub fn effects(&self) -> Vec<Effect> {
+        let Some(case) = self.case(&[], None, 0) else {
+            return Vec::new();
+        };
+        let fits = |effect: &Effect| {
+            !matches!(effect.kind, EffectKind::Treatment(Treatment::ProcessNoise))
+        };
+        candidates(&case, &self.model)
+            .into_iter()
+            .filter(fits)
+            .collect()
+    }
+
+    /// Variances of the white noise at the truth, SI, in the order of the outputs.
+    pub fn variances(&self) -> Vec<f64> {
+        let scenario = &self.flights[0].2;
+        let of = |output: &trimtab::model::Quantity| {
+            let recorded = &scenario.outputs[&output.name];
+            let unit = trimtab::flight::Unit::parse(&recorded.unit).unwrap();
+            (recorded.noise * unit.scale).powi(2)
+        };
+        self.model.outputs.iter().map(of).collect()
+    }
+
+    pub fn step(&self) -> f64 {
+        self.flights[0].2.step
+    }
+
+    /// Flies it. Without a colour there is no noise.
+    pub fn case(
+        &self,
+        effects: &[(&Effect, f64)],
+        colour: Option<&NoiseColour>,
+        seed: u64,
+    ) -> Option<Case> {
+        let mut flights = Vec::new();
+        for (number, (role, label, scenario)) in self.flights.iter().enumerate() {
+            let mut scenario = scenario.clone();
+            scenario.seed = seed.wrapping_mul(101).wrapping_add(number as u64);
+            for output in scenario.outputs.values_mut() {
+                output.colour = colour.unwrap_or(&WHITE).clone();
+                if colour.is_none() {
+                    output.noise = 0.0;
+                }
+            }
+            let is_local = |effect: &Effect| effect.kind == EffectKind::Edit(EditKind::Gust);
+            for (effect, size) in effects {
+                // a gust comes once
+                if !is_local(effect) || number == 0 {
+                    scenario.effects.push(scenario_effect(effect, *size));
+                }
+            }
+            let maneuver = scenario.fly(&self.model).ok()?;
+            flights.push(flight(&maneuver, *role, label, scenario.step));
+        }
+        Some(Case {
+            document: self.document.clone(),
+            flights,
+            options: Options::default(),
+            candidates: Vec::new(),
+        })
+    }
+}
+
+fn scenario_effect(effect: &Effect, size: f64) -> ScenarioEffect {
+    let mut values = IndexMap::new();
+    if effect.kind == EffectKind::Edit(EditKind::Gust) {
+        values.insert(format!("{}_gust_time", effect.target), 12.0);
+        values.insert(format!("{}_gust_length", effect.target), 1.5);
+    }
+    ScenarioEffect {
+        value: Some(size),
+        values,
+        ..ScenarioEffect::from(&effect.edits[0])
+    }
+}
+
+fn flight(maneuver: &Maneuver, role: Role, label: &str, step: f64) -> Flight {
+    let channels = maneuver.channels().iter();
+    Flight {
+        label: label.to_string(),
+        role,
+        time: maneuver.time().to_vec(),
+        steps: Steps::Even(step),
+        channels: channels
+            .map(|(name, channel)| {
+                (
+                    name.clone(),
+                    (channel.values.clone(), channel.unit.dimension),
+                )
+            })
+            .collect(),
+    }
+}

@@ -1,0 +1,102 @@
+//! How large an effect must be to be worth a given likelihood ratio.
+
+use std::ops::ControlFlow;
+
+use trimtab::diagnose::{Effect, EffectKind};
+use trimtab::estimate::{ErrorBoundsKind, Noise, output_error};
+use trimtab::model::EditKind;
+use trimtab::simulate::NoiseColour;
+
+use crate::aircraft::Aircraft;
+
+/// Sizes that are worth these likelihood ratios; none where the physical range ends before.
+pub fn sizes(
+    aircraft: &Aircraft,
+    effect: &Effect,
+    colour: &NoiseColour,
+    ratios: &[f64],
+) -> Vec<Option<f64>> {
+    let first = first_guess(effect);
+    ratios
+        .iter()
+        .map(|&ratio| {
+            let mut size = first;
+            for _ in 0..12 {
+                let found = worth(aircraft, effect, colour, size)?;
+                if !(found > 1e-9) {
+                    return None;
+                }
+                let share = (ratio / found).sqrt();
+                if (0.98..1.02).contains(&share) {
+                    return in_range(aircraft, effect, size).then_some(size);
+                }
+                size *= share.clamp(0.1, 10.0);
+            }
+            None
+        })
+        .collect()
+}
+
+/// Likelihood ratio of the true effect on the estimation flights: what is left of it, noise-free, when the declared
+/// model has done what it can.
+fn worth(aircraft: &Aircraft, effect: &Effect, colour: &NoiseColour, size: f64) -> Option<f64> {
+    let case = aircraft.case(&[(effect, size)], None, 1)?;
+    let mut problem = case.problem(&aircraft.document, &Default::default()).ok()?;
+    problem.options.noise = Noise::Given {
+        variance: aircraft.variances(),
+    };
+    problem.options.error_bounds = ErrorBoundsKind::Conventional;
+    let solution = output_error(&problem, &mut |_| ControlFlow::Continue(())).ok()?;
+    let a = match colour {
+        NoiseColour::FirstOrder { correlation_time } => (-aircraft.step() / correlation_time).exp(),
+        _ => 0.0,
+    };
+    let mut sum = 0.0;
+    for history in &solution.histories {
+        for (output, variance) in history.outputs.iter().zip(aircraft.variances()) {
+            let e = &output.residual;
+            sum += e[0] * e[0] / variance;
+            let innovations = e.windows(2).map(|pair| pair[1] - a * pair[0]);
+            sum += innovations.map(|w| w * w).sum::<f64>() / (variance * (1.0 - a * a));
+        }
+    }
+    Some(sum)
+}
+
+fn first_guess(effect: &Effect) -> f64 {
+    use EditKind::*;
+    let EffectKind::Edit(kind) = effect.kind else {
+        return 1.0;
+    };
+    match kind {
+        SensorBias | InputBias | Gust | InitialState => 0.005,
+        SensorDrift => 0.0005,
+        SensorScale | InputScale => 0.1,
+        SensorDelay | InputDelay | SensorLag | ActuatorLag => 0.06,
+        SensorPosition => 3.0,
+        ActuatorRateLimit => 0.1,
+        Backlash => 0.005,
+        StructuralMode => 0.05,
+        _ => 1.0,
+    }
+}
+
+/// Sizes that the effect's edit allows.
+fn in_range(aircraft: &Aircraft, effect: &Effect, size: f64) -> bool {
+    let Ok(document) = effect.apply(&aircraft.document) else {
+        return false;
+    };
+    let added = document
+        .parameters
+        .iter()
+        .find(|(name, _)| !aircraft.document.parameters.contains_key(*name));
+    added.is_some_and(|(_, parameter)| {
+        let lower = parameter.lower.unwrap_or(f64::NEG_INFINITY);
+        let upper = parameter.upper.unwrap_or(f64::INFINITY);
+        let is_lag = matches!(
+            effect.kind,
+            EffectKind::Edit(EditKind::SensorLag | EditKind::ActuatorLag)
+        );
+        (lower..upper).contains(&size) && !(is_lag && size < 0.5 * aircraft.step())
+    })
+}

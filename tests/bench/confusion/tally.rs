@@ -1,0 +1,117 @@
+//! Answers counted.
+
+use std::collections::BTreeMap;
+
+use trimtab::diagnose::{Diagnosis, Effect};
+
+use crate::aircraft::Aircraft;
+
+/// What one diagnosis answered.
+pub struct Answer {
+    aircraft: &'static str,
+    colour: String,
+    strength: String,
+    truth: Option<Effect>,
+    /// The effect named first.
+    first: Option<String>,
+    /// The truth is the first, or a member of its group.
+    right: bool,
+    single: bool,
+    more: usize,
+    verdict: String,
+}
+
+impl Answer {
+    pub fn of(
+        aircraft: &Aircraft,
+        colour: &str,
+        strength: &str,
+        truth: Option<&Effect>,
+        diagnosis: Option<&Diagnosis>,
+    ) -> Self {
+        let first = diagnosis.and_then(|d| d.effects.first());
+        let is_truth = |effect: &Effect| truth.is_some_and(|truth| effect == truth);
+        Self {
+            aircraft: aircraft.name,
+            colour: colour.to_string(),
+            strength: strength.to_string(),
+            truth: truth.cloned(),
+            right: first
+                .is_some_and(|first| first.group.iter().any(|member| is_truth(&member.effect))),
+            single: first.is_some_and(|first| is_truth(&first.effect)),
+            first: first.map(|first| first.effect.name()),
+            more: diagnosis.map_or(0, |d| d.effects.len().saturating_sub(1)),
+            verdict: diagnosis.map_or("failed".to_string(), |d| d.verdict.name().to_string()),
+        }
+    }
+}
+
+#[derive(Default)]
+pub struct Tally(Vec<Answer>);
+
+impl Tally {
+    pub fn extend(&mut self, answers: Vec<Answer>) {
+        self.0.extend(answers);
+    }
+
+    pub fn print(&self) {
+        println!("truth and what was named first, where that was wrong:");
+        let mut wrong: BTreeMap<(String, String, String, String), usize> = BTreeMap::new();
+        for answer in self.0.iter().filter(|a| {
+            if a.truth.is_some() {
+                !a.right
+            } else {
+                a.first.is_some()
+            }
+        }) {
+            let truth = answer
+                .truth
+                .as_ref()
+                .map_or("nothing".to_string(), Effect::name);
+            let named = answer
+                .first
+                .clone()
+                .unwrap_or_else(|| format!("nothing ({})", answer.verdict));
+            *wrong
+                .entry((truth, answer.strength.clone(), answer.colour.clone(), named))
+                .or_default() += 1;
+        }
+        for ((truth, strength, colour, named), count) in &wrong {
+            println!("  {count:3} {truth} ({strength}, {colour}): {named}");
+        }
+        println!("\naircraft      noise     strength   cases  right  named first  further effects");
+        let mut cells: BTreeMap<(&str, &str, &str), Vec<&Answer>> = BTreeMap::new();
+        for answer in &self.0 {
+            cells
+                .entry((answer.aircraft, &answer.colour, &answer.strength))
+                .or_default()
+                .push(answer);
+        }
+        for ((aircraft, colour, strength), answers) in &cells {
+            let n = answers.len();
+            let share = |count: usize| format!("{:5.1} %", 100.0 * count as f64 / n as f64);
+            let right = answers.iter().filter(|a| a.right).count();
+            let single = answers.iter().filter(|a| a.single).count();
+            let more = answers.iter().filter(|a| a.more > 0).count();
+            if *strength == "empty" {
+                let false_alarms = answers.iter().filter(|a| a.first.is_some()).count();
+                let odd = answers
+                    .iter()
+                    .filter(|a| a.verdict != "nothing_missing")
+                    .count();
+                println!(
+                    "{aircraft:13} {colour:9} {strength:9} {n:6}  false alarms {} , verdict not nothing_missing {}",
+                    share(false_alarms),
+                    share(odd)
+                );
+            } else {
+                println!(
+                    "{aircraft:13} {colour:9} {strength:9} {n:6}  {}  {}  {}",
+                    share(right),
+                    share(single),
+                    share(more)
+                );
+            }
+        }
+    }
+}
