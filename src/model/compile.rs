@@ -2,6 +2,8 @@
 //!
 //! All faults of a document are found in one go, as far as one does not hide another.
 
+use std::sync::Arc;
+
 use super::affine::Affine;
 use super::delays::Delays;
 use super::document::{ModelDocument, Start};
@@ -77,6 +79,7 @@ impl Model {
                     .map(|(name, output)| (name, &output.unit)),
             ),
             parameters,
+            native: Arc::default(),
             document: document.clone(),
         };
         if graph.is_too_large() {

@@ -93,6 +93,10 @@ impl Instructions {
         self.0.len()
     }
 
+    pub(super) fn as_slice(&self) -> &[Instruction] {
+        &self.0
+    }
+
     /// For any kind of number.
     #[inline(always)]
     pub(super) fn interpret<T: Scalar>(&self, registers: &mut [T]) {

@@ -19,6 +19,7 @@ mod instruction;
 mod jacobian;
 pub mod limits;
 mod names;
+mod native;
 mod program;
 mod scalar;
 mod trigonometry;
@@ -32,9 +33,12 @@ pub use document::{
 pub use edit::{Added, Edit, EditError, EditKind};
 pub use formula::{ChannelFormula, FormulaError, Recorded};
 pub use jacobian::Jacobian;
+pub use native::{Native, NativeSteps, Stretch};
 pub use program::{Program, Workspace};
-pub use scalar::{LANES, Lanes, Scalar};
+pub use scalar::{BLOCK, LANES, Lanes, Scalar};
 pub use unique::unique;
+
+use std::sync::Arc;
 
 use crate::flight::Unit;
 
@@ -58,12 +62,24 @@ pub struct Model {
     pub dynamics_jacobian: Jacobian,
     pub observation_jacobian: Jacobian,
     pub delays: Delays,
+    /// The steps of `dynamics` as machine code, for all who share the model.
+    native: Arc<Native>,
 }
 
 impl Model {
     /// What its equations see as inputs: those of the document, then the rates of those that are delayed.
     pub fn driven_inputs(&self) -> usize {
         self.inputs.len() + self.delays.inputs.len()
+    }
+
+    /// Machine code for `steps` that are about to be taken with so many stages each, where there is some.
+    pub fn native(&self, steps: usize, stages: usize) -> Option<&NativeSteps> {
+        self.native.steps(&self.dynamics, steps, stages)
+    }
+
+    /// Compiles to machine code now what would be once enough steps were taken; whether there is any.
+    pub fn make_native(&self) -> bool {
+        self.native.now(&self.dynamics).is_some()
     }
 }
 

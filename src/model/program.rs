@@ -50,6 +50,12 @@ pub struct Program {
 #[derive(Clone, Debug)]
 pub struct Workspace<T>(Vec<T>);
 
+impl<T> Workspace<T> {
+    pub(super) fn registers(&self) -> &[T] {
+        &self.0
+    }
+}
+
 impl Program {
     pub(super) fn compile(graph: &Graph, slots: Slots, roots: &[NodeId]) -> Self {
         let uses = uses(graph, roots);
@@ -151,6 +157,24 @@ impl Program {
     /// Operations a sample, without those done once for each θ.
     pub fn operations(&self) -> usize {
         self.body.len()
+    }
+
+    pub(super) fn slots(&self) -> Slots {
+        self.slots
+    }
+
+    pub(super) fn body(&self) -> &[Instruction] {
+        self.body.as_slice()
+    }
+
+    /// How many registers there are.
+    pub(super) fn registers(&self) -> usize {
+        self.registers
+    }
+
+    /// By result: its register.
+    pub(super) fn result_registers(&self) -> &[u32] {
+        &self.results
     }
 
     /// Whether result `i` changes from sample to sample; if not, it stands once θ is set.

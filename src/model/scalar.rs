@@ -179,8 +179,21 @@ impl Scalar for Complex64 {
     }
 }
 
+/// sin x and cos x, to the last bit as each alone, in little more than the time of one.
+#[inline(always)]
+pub(super) fn sin_cos(x: f64) -> (f64, f64) {
+    if is_small(x) {
+        trigonometry::sin_cos(x)
+    } else {
+        (f64::sin(x), f64::cos(x))
+    }
+}
+
 /// How many samples are evaluated side by side.
 pub const LANES: usize = 16;
+
+/// How many samples are simulated at a time.
+pub const BLOCK: usize = 4 * LANES;
 
 /// Samples side by side: one instruction of a program serves all of them.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -45,6 +45,13 @@ pub(super) fn cos(x: f64) -> f64 {
     of_quarter(n + 1.0, r)
 }
 
+/// sin x and cos x, likewise.
+#[inline(always)]
+pub(super) fn sin_cos(x: f64) -> (f64, f64) {
+    let (n, r) = reduced(x);
+    (of_quarter(n, r), of_quarter(n + 1.0, r))
+}
+
 /// n and r of x = n π/2 + r.
 #[inline(always)]
 fn reduced(x: f64) -> (f64, f64) {

@@ -8,7 +8,7 @@ use super::one_step::OneStep;
 use super::segment::{Segment, Steps};
 use super::stepper::{Stepper, between};
 use super::trajectory::{Diverged, initial_state};
-use crate::model::{LANES, Lanes, Model, Program, Workspace};
+use crate::model::{LANES, Lanes, Model, Program, Stretch, Workspace};
 
 /// The course of a model along a segment: states, inputs and times at the samples of a block.
 pub(super) struct Course<'m> {
@@ -24,6 +24,10 @@ pub(super) struct Course<'m> {
     elapsed: f64,
     /// By stage, then state: values over the block. Values behind the end repeat the last.
     pub stage_states: Vec<[f64; BLOCK]>,
+    /// By stage: its weight, and how far the next one goes.
+    shares: Vec<[f64; 2]>,
+    /// Lengths of the steps of the block, s.
+    lengths: [f64; BLOCK],
     /// By stage, then input.
     stage_inputs: Vec<[f64; BLOCK]>,
     /// By stage: time since the start of the segment.
@@ -37,6 +41,10 @@ impl<'m> Course<'m> {
         interpolation: InputInterpolation,
     ) -> Self {
         let stages = integrator.stages();
+        let shares = stages.iter().enumerate().map(|(s, stage)| {
+            let next = stages.get(s + 1).map_or(0.0, |next| next.advance);
+            [stage.weight, next]
+        });
         let over_block = |count: usize| vec![[0.0; BLOCK]; stages.len() * count];
         Self {
             model,
@@ -47,6 +55,8 @@ impl<'m> Course<'m> {
             even: None,
             state: Vec::new(),
             elapsed: 0.0,
+            shares: shares.collect(),
+            lengths: [0.0; BLOCK],
             stage_states: over_block(model.states.len()),
             stage_inputs: over_block(model.driven_inputs()),
             stage_times: over_block(1),
@@ -156,26 +166,45 @@ impl<'m> Course<'m> {
     /// States at all stages, by the integrator.
     fn integrate(&mut self, segment: &Segment, first: usize, len: usize) {
         let n = self.state.len();
+        let steps = len.min(segment.len() - 1 - first);
+        let since = self.elapsed;
         for k in 0..len {
-            if first + k + 1 < segment.len() {
-                let h = segment.steps.length(first + k);
+            // the last sample has outputs but no step
+            let h = if k < steps {
+                segment.steps.length(first + k)
+            } else {
+                0.0
+            };
+            self.lengths[k] = h;
+            for (to, stage) in self.stage_times.iter_mut().zip(self.stages) {
+                to[k] = self.elapsed + h * stage.node;
+            }
+            self.elapsed += h;
+        }
+        if let Some(native) = self.model.native(steps, self.stages.len()) {
+            let mut stretch = Stretch {
+                stages: &self.shares,
+                lengths: &self.lengths[..steps],
+                inputs: &self.stage_inputs,
+                times: &self.stage_times,
+                stage_states: &mut self.stage_states,
+                state: &mut self.state,
+            };
+            native.take(self.stepper.workspace(), &mut stretch);
+        } else {
+            let mut elapsed = since;
+            for k in 0..steps {
                 self.stepper
-                    .step(segment, first + k, self.elapsed, &mut self.state);
+                    .step(segment, first + k, elapsed, &mut self.state);
                 for (to, &from) in self.stage_states.iter_mut().zip(&self.stepper.stage_states) {
                     to[k] = from;
                 }
-                for (to, stage) in self.stage_times.iter_mut().zip(self.stages) {
-                    to[k] = self.elapsed + h * stage.node;
-                }
-                self.elapsed += h;
-            } else {
-                // the last sample has outputs but no step
-                for (i, to) in self.stage_states.iter_mut().enumerate() {
-                    to[k] = self.state[i % n];
-                }
-                self.stage_times
-                    .iter_mut()
-                    .for_each(|to| to[k] = self.elapsed);
+                elapsed += self.lengths[k];
+            }
+        }
+        if steps < len {
+            for (i, to) in self.stage_states.iter_mut().enumerate() {
+                to[steps] = self.state[i % n];
             }
         }
         for values in self.stage_states.iter_mut().chain(&mut self.stage_times) {

@@ -1,10 +1,8 @@
 //! The results of a program over a block of samples, evaluated side by side.
 
 use super::course::Course;
+pub(super) use crate::model::BLOCK;
 use crate::model::{LANES, Lanes, Program, Workspace};
-
-/// Samples in a block.
-pub(super) const BLOCK: usize = 4 * LANES;
 
 /// Results of one program, by stage of the integration scheme and sample of the block.
 pub(super) struct Linearised<'m> {

@@ -41,6 +41,11 @@ impl<'m, T: Scalar> Stepper<'m, T> {
             .set_parameters(&mut self.workspace, parameters);
     }
 
+    /// The registers of f, with θ in place.
+    pub(super) fn workspace(&self) -> &Workspace<T> {
+        &self.workspace
+    }
+
     /// From sample `k`, at `elapsed` seconds since the start, to the next.
     pub fn step(&mut self, segment: &Segment, k: usize, elapsed: f64, state: &mut [T]) {
         let n = state.len();

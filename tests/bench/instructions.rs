@@ -20,6 +20,8 @@ fn main() {
     let plan = simulated::plan(name, None);
     let theta = plan.problem.unknowns.start();
     let mut evaluator = Evaluator::new(&plan.problem);
+    // before the work, so that no count has the compiler in it
+    plan.problem.model.make_native();
     for _ in 0..times {
         match work.as_str() {
             "equations" => {

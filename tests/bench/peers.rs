@@ -171,6 +171,17 @@ fn measure(problem: &Problem, directory: &Path) -> Value {
     });
     line["compile_s"] = json!(compile.median / 1e3);
     line["compile_cpu_s"] = json!(compile.median / 1e3);
+    // machine code is made once for each model, when its steps have taken as long
+    let mut native: Vec<Duration> = (0..20)
+        .map(|_| {
+            let plan = prepare(problem, &recording, 1.0);
+            let start = Instant::now();
+            plan.problem.model.make_native();
+            start.elapsed()
+        })
+        .collect();
+    native.sort();
+    line["native_s"] = json!(native[native.len() / 2].as_secs_f64());
     for (share, suffix) in [(1e-4, ""), (1e-8, "_1e-08"), (1e-12, "_check")] {
         let plan = prepare(problem, &recording, tolerance(share));
         let estimate = solve(&plan);
