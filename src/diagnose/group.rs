@@ -7,14 +7,17 @@ use super::trial::Trial;
 /// Twice the difference of two log-likelihoods below which neither of two models is preferred.
 pub const ALIKE: f64 = 6.0;
 
-/// Directions with a larger cosine are one and the same to these data.
-const PARALLEL: f64 = 0.995;
+/// What is explained in directions of a larger cosine is one and the same, but for how it is modelled.
+const PARALLEL: f64 = 0.95;
+
+/// Beyond this the likelihood is clear even so.
+const FAR: f64 = 40.0;
 
 /// The members of the group that `best` leads, itself included, the likeliest first, with their weights.
 pub fn group(best: &Trial, others: &[&Trial]) -> Vec<Member> {
     let is_alike = |trial: &&&Trial| {
-        best.merit() - trial.merit() < ALIKE
-            || cosine(best, trial).is_some_and(|cosine| cosine > PARALLEL)
+        let worse = best.merit() - trial.merit();
+        worse < ALIKE || (worse < FAR && cosine(best, trial) > PARALLEL)
     };
     let members: Vec<&Trial> = std::iter::once(best)
         .chain(others.iter().filter(is_alike).copied())
@@ -33,8 +36,7 @@ pub fn group(best: &Trial, others: &[&Trial]) -> Vec<Member> {
     members
 }
 
-/// Of what two candidates would explain, the declared model projected out.
-fn cosine(a: &Trial, b: &Trial) -> Option<f64> {
-    let (a, b) = (a.screened.as_ref()?, b.screened.as_ref()?);
-    Some(dot(&a.direction, &b.direction).abs())
+/// Of what two candidates explain of the residual.
+fn cosine(a: &Trial, b: &Trial) -> f64 {
+    dot(&a.explained, &b.explained).abs()
 }

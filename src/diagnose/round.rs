@@ -9,6 +9,7 @@ use super::colour::Colour;
 use super::effect::{Effect, EffectKind, Treatment};
 use super::fitted::Fitted;
 use super::group::group;
+use super::projection::norm;
 use super::report::{Evidence, Member, OutputGain, Refusal, RefusedEffect, Step};
 use super::screen::{Screen, Screened, critical, independent_questions, tail};
 use super::stack::Layout;
@@ -17,7 +18,7 @@ use crate::estimate::Role;
 use crate::model::{Added, EditKind, Per};
 
 /// How often the whole family of candidates may find something where there is nothing, by its own statistics.
-const FAMILY_ERROR: f64 = 0.002;
+const FAMILY_ERROR: f64 = 0.005;
 
 /// Below this share the declared parameters imitate an effect but for rounding and their own curvature.
 const INVISIBLE: f64 = 0.01;
@@ -107,6 +108,15 @@ pub fn round(
     let promise = |seen: &Seen| seen.1.as_ref().map_or(0.0, |s| s.promise);
     promising.sort_by(|a, b| promise(b).total_cmp(&promise(a)));
     promising.truncate(MOST_TRIALS);
+    // a delay of some samples is no small change: one linear step says little of it
+    let delays = seen
+        .iter()
+        .filter(|(effect, s)| is_visible(s) && is_delay(effect));
+    for delay in delays {
+        if !promising.iter().any(|(effect, _)| *effect == delay.0) {
+            promising.push(delay);
+        }
+    }
     let mut to_try: Vec<(Effect, Option<Screened>)> = promising
         .iter()
         .filter_map(|(effect, s)| Some((effect.clone(), Some(s.clone().ok()?))))
@@ -201,6 +211,10 @@ pub fn round(
     }
     result.refused.extend(untried);
     result
+}
+
+fn is_delay(effect: &Effect) -> bool {
+    effect.kind == EffectKind::Edit(EditKind::SensorDelay)
 }
 
 fn is_noise(effect: &Effect) -> bool {
@@ -304,7 +318,8 @@ impl<'c> Rival<'c> {
         let declared = self.base.problem.unknowns.len();
         let freedom = (fitted.problem.unknowns.len() - declared).max(1);
         let (mut held_out, mut unpredictable) = (None, None);
-        if let (Some(before), false) = (&self.held_out, is_noise(&effect)) {
+        let repeats = !is_noise(&effect) && !is_local_in_time(&effect);
+        if let (Some(before), true) = (&self.held_out, repeats) {
             match fitted.held_out(self.case, Role::Validation, self.orders) {
                 Ok(after) => {
                     held_out = Some(
@@ -319,6 +334,7 @@ impl<'c> Rival<'c> {
             }
         }
         Ok(Trial {
+            explained: self.explained(&fitted),
             effect,
             starts: tried,
             screened,
@@ -328,6 +344,22 @@ impl<'c> Rival<'c> {
             held_out,
             unpredictable,
         })
+    }
+
+    /// What a fit takes off the whitened residual, of length 1.
+    fn explained(&self, fitted: &Fitted) -> Vec<f64> {
+        let layout = Layout::of(&self.base.problem);
+        let before = &self.base.residual;
+        let colour = Colour::of_orders(&layout, before, self.orders);
+        let taken: Vec<f64> = before
+            .iter()
+            .zip(&fitted.residual)
+            .map(|(b, a)| b - a)
+            .collect();
+        let mut taken = colour.whiten(&layout, before, &taken);
+        let length = norm(&taken).max(f64::MIN_POSITIVE);
+        taken.iter_mut().for_each(|value| *value /= length);
+        taken
     }
 
     /// What speaks against accepting it.

@@ -173,11 +173,13 @@ impl<'c> Screen<'c> {
                 seen.start.insert(key.clone(), before + size);
             }
             match &mut best {
-                Some(best) if best.promise >= seen.promise => {}
+                Some(best) if best.promise >= seen.promise => {
+                    best.visible = best.visible.max(seen.visible);
+                }
                 Some(best) => {
                     // what is said of the sizes is that of the better step; score and fractions are the whitened ones
                     seen.score = best.score;
-                    seen.visible = best.visible;
+                    seen.visible = seen.visible.max(best.visible);
                     seen.one_sigma = best.one_sigma;
                     *best = seen;
                 }

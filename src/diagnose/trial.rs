@@ -7,7 +7,7 @@ use super::effect::{Effect, EffectKind, Treatment};
 use super::fitted::Fitted;
 use super::screen::Screened;
 use crate::estimate::{Bound, Estimator, Outcome, ProcessNoise, Role, filter_error};
-use crate::model::{EditKind, ModelDocument, Start};
+use crate::model::{Added, EditKind, ModelDocument, Start};
 
 /// A candidate, fitted.
 #[derive(Clone, Debug)]
@@ -17,6 +17,8 @@ pub struct Trial {
     pub starts: usize,
     pub screened: Option<Screened>,
     pub fitted: Fitted,
+    /// What it takes off the whitened residual, of length 1.
+    pub explained: Vec<f64>,
     /// Twice the gain of the colour-aware log-likelihood.
     pub likelihood_ratio: f64,
     /// Parameters that it adds.
@@ -68,10 +70,11 @@ pub fn starts(
         return vec![Values::new()];
     };
     let factors: &[f64] = match kind {
+        EditKind::Backlash => return backlash_starts(case, effect, document, base),
         EditKind::InputDelay => return delay_starts(case, document, base),
 
         EditKind::SensorLag | EditKind::ActuatorLag => &[0.5, 2.0],
-        EditKind::Backlash | EditKind::ActuatorRateLimit => &[0.3, 1.0, 3.0],
+        EditKind::ActuatorRateLimit => &[0.03, 0.1, 0.3, 1.0],
         EditKind::UnsteadyAero | EditKind::StallHysteresis => &[0.4, 1.0, 2.5],
         EditKind::StructuralMode => &[0.6, 0.8, 1.0, 1.3, 1.7, 2.2, 2.9],
         EditKind::Gust => return gust_starts(case, document, base),
@@ -98,6 +101,31 @@ pub fn starts(
         of.collect()
     };
     factors.iter().map(scaled).collect()
+}
+
+/// Shares of how far the input moves.
+fn backlash_starts(
+    case: &Case,
+    effect: &Effect,
+    document: &ModelDocument,
+    base: &ModelDocument,
+) -> Vec<Values> {
+    let moved = case
+        .of_role(Role::Estimation)
+        .filter_map(|flight| flight.channels.get(&effect.target));
+    let (least, most) = (moved.flat_map(|(values, _)| values))
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), v| {
+            (least.min(*v), most.max(*v))
+        });
+    let added = Added::between(base, document).parameters;
+    let of = |share: f64| {
+        Values::from_iter(
+            added
+                .first()
+                .map(|name| ((name.clone(), None), share * (most - least))),
+        )
+    };
+    [0.02, 0.1].into_iter().map(of).collect()
 }
 
 /// A recorded input that jumps has no slope at its samples, and so its delay none at whole samples: starts are between.

@@ -50,7 +50,17 @@ fn main() {
         ),
     ];
     let mut tally = Tally::default();
-    for aircraft in aircraft() {
+    let names: Vec<&str> = aircraft().iter().map(|aircraft| aircraft.name).collect();
+    let chosen = names.iter().find(|name| **name == part).copied();
+    let part = if chosen.is_some() {
+        String::new()
+    } else {
+        part
+    };
+    for aircraft in aircraft()
+        .into_iter()
+        .filter(|aircraft| chosen.is_none_or(|name| name == aircraft.name))
+    {
         for (colour_name, colour) in &colours {
             let effects: Vec<Effect> = aircraft
                 .effects()
@@ -89,6 +99,11 @@ fn main() {
                     )
                 })
                 .collect();
+            eprintln!(
+                "{} {colour_name}: {} cases done",
+                aircraft.name,
+                answers.len()
+            );
             tally.extend(answers);
             if !"empty".contains(&part) && !part.is_empty() {
                 continue;

@@ -7,7 +7,7 @@ use trimtab::diagnose::{Case, Effect, EffectKind, Flight, Treatment, candidates}
 use trimtab::estimate::{Options, Role};
 use trimtab::flight::Maneuver;
 use trimtab::model::{EditKind, Model, ModelDocument, catalog};
-use trimtab::simulate::{NoiseColour, Scenario, ScenarioEffect, Steps};
+use trimtab::simulate::{InputDesign, NoiseColour, Scenario, ScenarioEffect, Steps};
 
 /// An aircraft with its flights: a declared model, and scenarios by role.
 pub struct Aircraft {
@@ -141,8 +141,15 @@ impl Aircraft {
             for (effect, size) in effects {
                 // a gust comes once
                 if !is_local(effect) || number == 0 {
+                    trim(&mut scenario, effect, *size);
                     scenario.effects.push(scenario_effect(effect, *size));
                 }
+            }
+            if effects
+                .iter()
+                .any(|(effect, _)| effect.kind == EffectKind::Edit(EditKind::MissingTerm))
+            {
+                settle(&mut scenario, &self.model);
             }
             let maneuver = scenario.fly(&self.model).ok()?;
             flights.push(flight(&maneuver, *role, label, scenario.step));
@@ -153,6 +160,63 @@ impl Aircraft {
             options: Options::default(),
             candidates: Vec::new(),
         })
+    }
+}
+
+/// The flight is trimmed whatever the recorder says of the deflection.
+fn trim(scenario: &mut Scenario, effect: &Effect, size: f64) {
+    let Some(trimmed) = scenario.truth.get_mut(&format!("{}_eq", effect.target)) else {
+        return;
+    };
+    match effect.kind {
+        EffectKind::Edit(EditKind::InputScale) => *trimmed *= 1.0 + size,
+        EffectKind::Edit(EditKind::InputBias) => *trimmed += size,
+        _ => {}
+    }
+}
+
+/// How alpha and q move off in the first moment.
+fn drift(scenario: &Scenario, model: &Model) -> Option<[f64; 2]> {
+    let mut still = scenario.clone();
+    (still.step, still.duration) = (1e-3, 2e-3);
+    for input in still.inputs.values_mut() {
+        input.design = InputDesign::Constant;
+    }
+    for output in still.outputs.values_mut() {
+        output.noise = 0.0;
+        output.colour = NoiseColour::White;
+    }
+    still.channels.clear();
+    let maneuver = still.fly(model).ok()?;
+    let rate = |name: &str| {
+        let values = &maneuver.channels().get(name)?.values;
+        Some((values[1] - values[0]) / still.step)
+    };
+    Some([rate("alpha")?, rate("q")?])
+}
+
+/// A flight begins in trim, with what the model lacks too: the equilibrium is shifted until nothing moves.
+fn settle(scenario: &mut Scenario, model: &Model) {
+    const NAMES: [&str; 2] = ["alpha_eq", "de_eq"];
+    if !NAMES.iter().all(|name| scenario.truth.contains_key(*name)) {
+        return;
+    }
+    for _ in 0..3 {
+        let Some(now) = drift(scenario, model) else {
+            return;
+        };
+        let mut slopes = [[0.0; 2]; 2];
+        for (column, name) in NAMES.iter().enumerate() {
+            let mut moved = scenario.clone();
+            moved.truth[*name] += 1e-4;
+            let Some(then) = drift(&moved, model) else {
+                return;
+            };
+            (0..2).for_each(|row| slopes[row][column] = (then[row] - now[row]) / 1e-4);
+        }
+        let determinant = slopes[0][0] * slopes[1][1] - slopes[0][1] * slopes[1][0];
+        scenario.truth["alpha_eq"] -= (slopes[1][1] * now[0] - slopes[0][1] * now[1]) / determinant;
+        scenario.truth["de_eq"] -= (slopes[0][0] * now[1] - slopes[1][0] * now[0]) / determinant;
     }
 }
 

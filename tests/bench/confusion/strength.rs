@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use trimtab::diagnose::{Effect, EffectKind};
 use trimtab::estimate::{ErrorBoundsKind, Noise, output_error};
-use trimtab::model::EditKind;
+use trimtab::model::{EditKind, ModelDocument};
 use trimtab::simulate::NoiseColour;
 
 use crate::aircraft::Aircraft;
@@ -28,7 +28,11 @@ pub fn sizes(
                 }
                 let share = (ratio / found).sqrt();
                 if (0.98..1.02).contains(&share) {
-                    return in_range(aircraft, effect, size).then_some(size);
+                    // what initial states and trim values of the flight imitate is told apart by nothing
+                    let seen =
+                        worth_with(aircraft, &freed(&aircraft.document), effect, colour, size)?;
+                    return (in_range(aircraft, effect, size) && seen > 0.1 * ratio)
+                        .then_some(size);
                 }
                 size *= share.clamp(0.1, 10.0);
             }
@@ -40,8 +44,27 @@ pub fn sizes(
 /// Likelihood ratio of the true effect on the estimation flights: what is left of it, noise-free, when the declared
 /// model has done what it can.
 fn worth(aircraft: &Aircraft, effect: &Effect, colour: &NoiseColour, size: f64) -> Option<f64> {
+    worth_with(aircraft, &aircraft.document, effect, colour, size)
+}
+
+/// The document with the initial values of its states free.
+fn freed(document: &ModelDocument) -> ModelDocument {
+    let mut freed = document.clone();
+    for (name, parameter) in &mut freed.parameters {
+        parameter.fixed &= !name.ends_with("_0");
+    }
+    freed
+}
+
+fn worth_with(
+    aircraft: &Aircraft,
+    document: &ModelDocument,
+    effect: &Effect,
+    colour: &NoiseColour,
+    size: f64,
+) -> Option<f64> {
     let case = aircraft.case(&[(effect, size)], None, 1)?;
-    let mut problem = case.problem(&aircraft.document, &Default::default()).ok()?;
+    let mut problem = case.problem(document, &Default::default()).ok()?;
     problem.options.noise = Noise::Given {
         variance: aircraft.variances(),
     };

@@ -17,8 +17,11 @@ pub struct Answer {
     /// The truth is the first, or a member of its group.
     right: bool,
     single: bool,
-    more: usize,
+    /// What was named behind the first.
+    more: Vec<String>,
     verdict: String,
+    /// Why the truth was refused.
+    why: String,
 }
 
 impl Answer {
@@ -40,7 +43,14 @@ impl Answer {
                 .is_some_and(|first| first.group.iter().any(|member| is_truth(&member.effect))),
             single: first.is_some_and(|first| is_truth(&first.effect)),
             first: first.map(|first| first.effect.name()),
-            more: diagnosis.map_or(0, |d| d.effects.len().saturating_sub(1)),
+            more: diagnosis
+                .iter()
+                .flat_map(|d| d.effects.iter().skip(1))
+                .map(|e| e.effect.name())
+                .collect(),
+            why: (diagnosis.iter().flat_map(|d| &d.refused))
+                .find(|refused| is_truth(&refused.effect))
+                .map_or(String::new(), |refused| refused.sentence.clone()),
             verdict: diagnosis.map_or("failed".to_string(), |d| d.verdict.name().to_string()),
         }
     }
@@ -79,6 +89,27 @@ impl Tally {
         for ((truth, strength, colour, named), count) in &wrong {
             println!("  {count:3} {truth} ({strength}, {colour}): {named}");
         }
+        for answer in self
+            .0
+            .iter()
+            .filter(|a| a.truth.is_some() && !a.right && !a.why.is_empty())
+        {
+            let truth = answer.truth.as_ref().map_or(String::new(), Effect::name);
+            println!(
+                "  refused {truth} ({}, {}): {}",
+                answer.strength, answer.colour, answer.why
+            );
+        }
+        println!("\nnamed behind the right one:");
+        for answer in self.0.iter().filter(|a| a.right && !a.more.is_empty()) {
+            let truth = answer.truth.as_ref().map_or(String::new(), Effect::name);
+            println!(
+                "  {truth} ({}, {}): {}",
+                answer.strength,
+                answer.colour,
+                answer.more.join(", ")
+            );
+        }
         println!("\naircraft      noise     strength   cases  right  named first  further effects");
         let mut cells: BTreeMap<(&str, &str, &str), Vec<&Answer>> = BTreeMap::new();
         for answer in &self.0 {
@@ -92,7 +123,7 @@ impl Tally {
             let share = |count: usize| format!("{:5.1} %", 100.0 * count as f64 / n as f64);
             let right = answers.iter().filter(|a| a.right).count();
             let single = answers.iter().filter(|a| a.single).count();
-            let more = answers.iter().filter(|a| a.more > 0).count();
+            let more = answers.iter().filter(|a| !a.more.is_empty()).count();
             if *strength == "empty" {
                 let false_alarms = answers.iter().filter(|a| a.first.is_some()).count();
                 let odd = answers
