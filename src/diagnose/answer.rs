@@ -83,7 +83,7 @@ pub fn answer(
         }
     }
     let residuals = analyse(&after.solution.histories);
-    let incoherent = if found.accepted.iter().any(|a| a.effect.edits.is_empty()) {
+    let incoherent = if found.accepted.iter().any(|a| a.effect.is_noise()) {
         Vec::new()
     } else {
         coherent(case, last)

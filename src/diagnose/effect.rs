@@ -84,6 +84,11 @@ impl Effect {
         self.edits.iter().try_fold(document.clone(), apply)
     }
 
+    /// Process noise: what no model document expresses, and what ends a diagnosis.
+    pub fn is_noise(&self) -> bool {
+        self.kind == EffectKind::Treatment(Treatment::ProcessNoise)
+    }
+
     /// The word of the catalogue.
     pub fn word(&self) -> String {
         let word = serde_json::to_value(self.kind).ok();

@@ -16,6 +16,8 @@ mod effect;
 mod fitted;
 mod flight;
 mod group;
+mod outliers;
+mod polish;
 mod projection;
 mod report;
 mod residual;
@@ -77,6 +79,24 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
     let declared = declared(case, watcher)?;
     let mut found = Found::default();
     let mut base = declared.clone();
+    let mut cleaned = None;
+    if let Some((without, accepted)) = outliers::clean(case, &declared) {
+        for accepted in accepted {
+            let step = Step::Accepted {
+                round: 0,
+                name: accepted.effect.name(),
+                likelihood_ratio: accepted.evidence.likelihood_ratio,
+                sentence: sentence::words(&accepted.effect),
+            };
+            base = accepted.fitted.clone();
+            found.accepted.push(accepted);
+            if watcher(&step).is_break() {
+                return Err(Inconclusive::Stopped);
+            }
+        }
+        cleaned = Some(without);
+    }
+    let case = cleaned.as_ref().unwrap_or(case);
     let catalogue = catalogue::candidates(case, &declared.problem.model);
     for number in 1..=MOST_ROUNDS {
         let left: Vec<Effect> = (catalogue.iter())
@@ -97,7 +117,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
             likelihood_ratio: accepted.evidence.likelihood_ratio,
             sentence: sentence::of(&accepted.effect, &accepted.added, &accepted.fitted.estimate),
         };
-        let last = accepted.effect.edits.is_empty();
+        let last = accepted.effect.is_noise();
         base = accepted.fitted.clone();
         found.accepted.push(accepted);
         if watcher(&step).is_break() {
@@ -151,7 +171,13 @@ fn remove_needless(case: &Case, declared: &Fitted, base: &mut Fitted, found: &mu
                 without,
             ))
         });
-        let Accepted { evidence, .. } = &found.accepted[at];
+        let Accepted {
+            evidence, effect, ..
+        } = &found.accepted[at];
+        if effect.edits.is_empty() {
+            at += 1;
+            continue;
+        }
         match removal {
             Some((cost, without)) if cost < evidence.threshold => {
                 let Ok(fitted) = Fitted::trial(case, without, &base.values) else {

@@ -13,7 +13,7 @@ use super::projection::norm;
 use super::report::{Evidence, Member, OutputGain, Refusal, RefusedEffect, Step};
 use super::screen::{Screen, Screened, critical, independent_questions, tail};
 use super::stack::Layout;
-use super::trial::{Trial, fit, is_tried_outright, starts};
+use super::trial::{Trial, fit, is_tried_outright, starts, starts_of_delay};
 use crate::estimate::Role;
 use crate::model::{Added, EditKind, Per};
 
@@ -125,7 +125,7 @@ pub fn round(
     to_try.extend(
         outright
             .into_iter()
-            .filter(|effect| coloured || !is_noise(effect))
+            .filter(|effect| coloured || !effect.is_noise())
             .map(|e| (e, None)),
     );
 
@@ -217,10 +217,6 @@ fn is_delay(effect: &Effect) -> bool {
     effect.kind == EffectKind::Edit(EditKind::SensorDelay)
 }
 
-fn is_noise(effect: &Effect) -> bool {
-    effect.kind == EffectKind::Treatment(Treatment::ProcessNoise)
-}
-
 fn is_visible(screened: &Result<Screened, String>) -> bool {
     screened.as_ref().is_ok_and(|s| s.visible >= INVISIBLE)
 }
@@ -279,15 +275,17 @@ struct Rival<'c> {
 
 impl<'c> Rival<'c> {
     fn new(case: &'c Case, base: &'c Fitted, orders: &'c [usize]) -> Self {
+        // both sides at the likeliest for coloured noise
+        let polished = base.clone().polished(orders);
         let any = case.of_role(Role::Validation).next().is_some();
         let held_out = any
-            .then(|| base.held_out(case, Role::Validation, orders).ok())
+            .then(|| polished.held_out(case, Role::Validation, orders).ok())
             .flatten();
         Self {
             case,
             base,
             orders,
-            ln_likelihood: base.ln_likelihood(orders),
+            ln_likelihood: polished.ln_likelihood(orders),
             held_out,
         }
     }
@@ -297,7 +295,10 @@ impl<'c> Rival<'c> {
             .apply(&self.base.document)
             .map_err(|error| error.to_string())?;
         let starts = match &screened {
-            Some(seen) => vec![seen.start()],
+            Some(seen) => {
+                let further = starts_of_delay(self.case, &effect, &seen.added);
+                std::iter::once(seen.start()).chain(further).collect()
+            }
             None => starts(self.case, &effect, &document, &self.base.document),
         };
         let tried = screened.as_ref().map_or(starts.len(), |seen| seen.starts);
@@ -306,6 +307,10 @@ impl<'c> Rival<'c> {
         for start in &starts {
             match fit(self.case, self.base, &effect, document.clone(), start) {
                 Ok(fitted) => {
+                    let fitted = match effect.is_noise() {
+                        true => fitted,
+                        false => fitted.polished(self.orders),
+                    };
                     let gain = 2.0 * (fitted.ln_likelihood(self.orders) - self.ln_likelihood);
                     if best.as_ref().is_none_or(|(most, _)| gain > *most) {
                         best = Some((gain, fitted));
@@ -318,7 +323,7 @@ impl<'c> Rival<'c> {
         let declared = self.base.problem.unknowns.len();
         let freedom = (fitted.problem.unknowns.len() - declared).max(1);
         let (mut held_out, mut unpredictable) = (None, None);
-        let repeats = !is_noise(&effect) && !is_local_in_time(&effect);
+        let repeats = !effect.is_noise() && !is_local_in_time(&effect);
         if let (Some(before), true) = (&self.held_out, repeats) {
             match fitted.held_out(self.case, Role::Validation, self.orders) {
                 Ok(after) => {

@@ -130,17 +130,31 @@ fn backlash_starts(
 
 /// A recorded input that jumps has no slope at its samples, and so its delay none at whole samples: starts are between.
 fn delay_starts(case: &Case, document: &ModelDocument, base: &ModelDocument) -> Vec<Values> {
+    let added = Added::between(base, document).parameters;
+    samples_late(case, &added, &[-1.5, -0.5, 0.5, 1.5, 3.5, 6.5])
+}
+
+/// A delay of many samples is far from what one linear step tells: further starts of it.
+pub fn starts_of_delay(case: &Case, effect: &Effect, added: &[String]) -> Vec<Values> {
+    match effect.kind {
+        EffectKind::Edit(EditKind::SensorDelay) => samples_late(case, added, &[2.0, 5.0]),
+        _ => Vec::new(),
+    }
+}
+
+fn samples_late(case: &Case, added: &[String], samples: &[f64]) -> Vec<Values> {
     let step = case
         .flights
         .first()
         .map_or(0.0, super::flight::Flight::step);
-    let added = document
-        .parameters
-        .keys()
-        .find(|name| !base.parameters.contains_key(*name));
-    let of =
-        |samples: f64| Values::from_iter(added.map(|name| ((name.clone(), None), samples * step)));
-    [-1.5, -0.5, 0.5, 1.5, 3.5].into_iter().map(of).collect()
+    let of = |samples: &f64| {
+        Values::from_iter(
+            added
+                .first()
+                .map(|name| ((name.clone(), None), samples * step)),
+        )
+    };
+    samples.iter().map(of).collect()
 }
 
 /// A gust may come at any time: every half length of one, of two lengths.

@@ -1,8 +1,8 @@
 //! The confusion matrix of the diagnosis: every effect of the catalogue, put undeclared into simulated flights at
 //! three strengths, with white and with coloured noise; and flights with nothing undeclared.
 //!
-//! `cargo bench --bench confusion [cases] [empty] [first seed] [part of a name]`: `cases` for each effect, strength and
-//! colour; `empty` ones for each aircraft and colour. The strength of an effect is the likelihood ratio that it is worth to
+//! `cargo bench --bench confusion [cases] [empty] [first seed] [pairs] [aircraft, or part of an effect's name]`: `cases` for
+//! each effect, strength and colour; `empty` ones for each aircraft and colour; `pairs` of two moderate effects at once. The strength of an effect is the likelihood ratio that it is worth to
 //! who knows it: 30 (weak), 100 (moderate), 300 (clear). Seeds below 1 000 000 are for tuning; the figure is made with
 //! others.
 
@@ -20,7 +20,7 @@ use trimtab::diagnose::{Conclusion, Diagnosis, Effect, diagnose};
 use trimtab::simulate::NoiseColour;
 
 use aircraft::{Aircraft, aircraft};
-use tally::{Answer, Tally};
+use tally::{Answer, Both, Tally};
 
 const STRENGTHS: [(&str, f64); 3] = [("weak", 30.0), ("moderate", 100.0), ("clear", 300.0)];
 
@@ -30,11 +30,8 @@ fn main() {
         .filter(|a| !a.starts_with("--"))
         .collect();
     let mut numbers = arguments.iter().filter_map(|a| a.parse::<u64>().ok());
-    let (cases, empty, seed) = (
-        numbers.next().unwrap_or(1),
-        numbers.next().unwrap_or(100),
-        numbers.next().unwrap_or(1_000_000),
-    );
+    let mut next = |otherwise: u64| numbers.next().unwrap_or(otherwise);
+    let (cases, empty, seed, pairs) = (next(1), next(100), next(1_000_000), next(50));
     let part = arguments
         .iter()
         .find(|a| a.parse::<u64>().is_err())
@@ -50,6 +47,7 @@ fn main() {
         ),
     ];
     let mut tally = Tally::default();
+    let mut both: Vec<Both> = Vec::new();
     let names: Vec<&str> = aircraft().iter().map(|aircraft| aircraft.name).collect();
     let chosen = names.iter().find(|name| **name == part).copied();
     let part = if chosen.is_some() {
@@ -94,7 +92,7 @@ fn main() {
                         &aircraft,
                         colour_name,
                         strength,
-                        Some(effect),
+                        Some((effect, *size)),
                         diagnosis.as_ref(),
                     )
                 })
@@ -105,6 +103,13 @@ fn main() {
                 answers.len()
             );
             tally.extend(answers);
+            both.extend(two_at_once(
+                &aircraft,
+                &sized,
+                colour,
+                seed + 800_000,
+                pairs,
+            ));
             if !"empty".contains(&part) && !part.is_empty() {
                 continue;
             }
@@ -119,6 +124,35 @@ fn main() {
         }
     }
     tally.print();
+    Both::print(&both);
+}
+
+/// Pairs of moderate effects, at places of the list that have nothing to do with each other.
+fn two_at_once(
+    aircraft: &Aircraft,
+    sized: &[(Effect, &str, f64)],
+    colour: &NoiseColour,
+    seed: u64,
+    pairs: u64,
+) -> Vec<Both> {
+    let moderate: Vec<&(Effect, &str, f64)> = sized
+        .iter()
+        .filter(|(_, strength, _)| *strength == "moderate")
+        .collect();
+    if moderate.len() < 2 {
+        return Vec::new();
+    }
+    (0..pairs)
+        .into_par_iter()
+        .map(|number| {
+            let n = moderate.len();
+            let first = (number as usize * 7919) % n;
+            let second = (first + 1 + (number as usize * 104_729) % (n - 1)) % n;
+            let (a, b) = (moderate[first], moderate[second]);
+            let diagnosis = run(aircraft, &[(&a.0, a.2), (&b.0, b.2)], colour, seed + number);
+            Both::of(aircraft, [a.0.clone(), b.0.clone()], diagnosis.as_ref())
+        })
+        .collect()
 }
 
 /// Flies the aircraft with effects that the declared model lacks, and diagnoses it.

@@ -12,6 +12,7 @@ pub struct Answer {
     colour: String,
     strength: String,
     truth: Option<Effect>,
+    size: f64,
     /// The effect named first.
     first: Option<String>,
     /// The truth is the first, or a member of its group.
@@ -29,9 +30,13 @@ impl Answer {
         aircraft: &Aircraft,
         colour: &str,
         strength: &str,
-        truth: Option<&Effect>,
+        sized: Option<(&Effect, f64)>,
         diagnosis: Option<&Diagnosis>,
     ) -> Self {
+        let (truth, size) = (
+            sized.map(|(truth, _)| truth),
+            sized.map_or(0.0, |(_, size)| size),
+        );
         let first = diagnosis.and_then(|d| d.effects.first());
         let is_truth = |effect: &Effect| truth.is_some_and(|truth| effect == truth);
         Self {
@@ -39,6 +44,7 @@ impl Answer {
             colour: colour.to_string(),
             strength: strength.to_string(),
             truth: truth.cloned(),
+            size,
             right: first
                 .is_some_and(|first| first.group.iter().any(|member| is_truth(&member.effect))),
             single: first.is_some_and(|first| is_truth(&first.effect)),
@@ -52,6 +58,57 @@ impl Answer {
                 .find(|refused| is_truth(&refused.effect))
                 .map_or(String::new(), |refused| refused.sentence.clone()),
             verdict: diagnosis.map_or("failed".to_string(), |d| d.verdict.name().to_string()),
+        }
+    }
+}
+
+/// What a diagnosis answered to two effects at once.
+pub struct Both {
+    pub aircraft: &'static str,
+    pub truths: [Effect; 2],
+    pub named: Vec<String>,
+    pub found: usize,
+}
+
+impl Both {
+    pub fn of(aircraft: &Aircraft, truths: [Effect; 2], diagnosis: Option<&Diagnosis>) -> Self {
+        let effects = diagnosis.map(|d| d.effects.as_slice()).unwrap_or_default();
+        let is_found = |truth: &&Effect| {
+            effects
+                .iter()
+                .any(|effect| effect.group.iter().any(|member| member.effect == **truth))
+        };
+        Self {
+            aircraft: aircraft.name,
+            found: truths.iter().filter(is_found).count(),
+            named: effects.iter().map(|effect| effect.effect.name()).collect(),
+            truths,
+        }
+    }
+
+    pub fn print(all: &[Self]) {
+        let mut names: Vec<&str> = all.iter().map(|both| both.aircraft).collect();
+        names.dedup();
+        for both in all.iter().filter(|both| both.found < 2) {
+            println!(
+                "  {} and {}: {}",
+                both.truths[0].name(),
+                both.truths[1].name(),
+                both.named.join(", ")
+            );
+        }
+        for name in names {
+            let of: Vec<&Self> = all.iter().filter(|both| both.aircraft == name).collect();
+            let share = |least: usize| {
+                100.0 * of.iter().filter(|both| both.found >= least).count() as f64
+                    / of.len() as f64
+            };
+            println!(
+                "{name:13} two at once {:6}  both named {:.1} %, at least one {:.1} %",
+                of.len(),
+                share(2),
+                share(1)
+            );
         }
     }
 }
@@ -96,8 +153,8 @@ impl Tally {
         {
             let truth = answer.truth.as_ref().map_or(String::new(), Effect::name);
             println!(
-                "  refused {truth} ({}, {}): {}",
-                answer.strength, answer.colour, answer.why
+                "  refused {truth} = {:.4} ({}, {}): {}",
+                answer.size, answer.strength, answer.colour, answer.why
             );
         }
         println!("\nnamed behind the right one:");
