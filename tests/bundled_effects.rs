@@ -29,18 +29,22 @@ fn diagnosis(name: &str, parameters: Value) -> Diagnosis {
         ("check", "validation"),
         ("final", "final"),
     ];
+    let files = roles.map(|(file, role)| (format!("{name}-{file}.csv"), role));
+    diagnosis_of(&scenario(name).model, &files, parameters)
+}
+
+fn diagnosis_of(model: &str, files: &[(String, &str)], parameters: Value) -> Diagnosis {
     let (mut maneuvers, mut uses) = (Vec::new(), Vec::new());
-    for (file, role) in roles {
-        let bytes = read(&format!("{name}-{file}.csv"));
-        let maneuver = ingest::read(&bytes, Format::Csv, &Limits::default()).expect("a recording");
+    for (file, role) in files {
+        let maneuver =
+            ingest::read(&read(file), Format::Csv, &Limits::default()).expect("a recording");
         uses.push(json!({"id": maneuver.digest(), "label": file, "role": role}));
         maneuvers.push(Arc::new(maneuver));
     }
-    let model = scenario(name).model;
     let spec =
         json!({"kind": "diagnose", "model": model, "maneuvers": uses, "parameters": parameters});
     let spec: JobSpec = serde_json::from_value(spec).expect("a spec");
-    let document = catalog::find(&model).expect("a catalog model");
+    let document = catalog::find(model).expect("a catalog model");
     let plan = job::prepare(&spec, &document, &maneuvers).expect("a plan");
     let result = job::run_diagnosis(&plan, &mut |_| ControlFlow::Continue(())).expect("a result");
     result.diagnosis.expect("a diagnosis")
@@ -170,4 +174,25 @@ fn a_late_vane_shows_where_the_model_cannot_imitate_it() {
     );
     let held = diagnosis("alpha-delay", json!({"Zq": {"start": 0.97, "fixed": true}}));
     names_the_truth("alpha-delay", &held);
+}
+
+#[test]
+fn nothing_where_nothing_is_missing() {
+    for (model, names) in [
+        ("short-period", vec!["elevator"]),
+        ("lateral-directional-4", vec!["aileron", "rudder"]),
+    ] {
+        let files = names
+            .iter()
+            .map(|name| (format!("../{name}.csv"), "estimation"));
+        let files: Vec<_> = files.collect();
+        let diagnosis = diagnosis_of(model, &files, json!({}));
+        let said = &diagnosis.sentence;
+        assert_eq!(
+            diagnosis.verdict,
+            Verdict::NothingMissing,
+            "{model}: {said}"
+        );
+        assert!(diagnosis.effects.is_empty(), "{model}: {said}");
+    }
 }
