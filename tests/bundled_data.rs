@@ -23,8 +23,16 @@ fn scenario(name: &str) -> Scenario {
 
 #[test]
 fn each_file_is_what_its_scenario_makes() {
-    for name in ["elevator", "aileron", "rudder"] {
-        let scenario = scenario(name);
+    let scenarios = [".", "effects"].into_iter().flat_map(|folder| {
+        let entries = std::fs::read_dir(file(folder)).expect("a folder");
+        let names = entries.map(|entry| entry.expect("an entry").file_name());
+        let names = names.map(|name| name.into_string().expect("a name"));
+        names.filter_map(move |name| Some(format!("{folder}/{}", name.strip_suffix(".toml")?)))
+    });
+    let names: Vec<String> = scenarios.collect();
+    assert!(names.len() >= 3 + 3 * 6, "{names:?}");
+    for name in names {
+        let scenario = scenario(&name);
         let model = Model::compile(&catalog::find(&scenario.model).expect("a catalog model"))
             .expect("a model");
         let made = ingest::to_csv_as_recorded(&scenario.fly(&model).expect("a maneuver"));

@@ -151,6 +151,46 @@ fn submit_and_watch_go_to_a_server() {
 }
 
 #[test]
+fn a_diagnosis_is_submitted_and_watched_to_its_conclusion() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let server = Process::start(directory.path(), 1);
+    let output = trimtab(&[
+        "submit",
+        "data/effects/elevator-backlash-fit.csv",
+        "--validate",
+        "data/effects/elevator-backlash-check.csv",
+        "--final",
+        "data/effects/elevator-backlash-final.csv",
+        "-m",
+        "short-period",
+        "--diagnose",
+        "--watch",
+        "--server",
+        &server.url,
+    ]);
+    let (table, steps) = (said(&output.stdout), said(&output.stderr));
+    assert!(output.status.success(), "{steps}");
+    assert!(
+        steps.contains("candidates screened") && steps.contains("accepted backlash of de"),
+        "{steps}"
+    );
+    let (id, table) = table.split_once('\n').expect("the id, then tables");
+    let last = table.lines().last().expect("a line");
+    assert!(
+        last.starts_with("verdict: named") && last.contains("de_backlash = "),
+        "{last}"
+    );
+    assert!(
+        last.contains("data that took no part in any decision: alpha "),
+        "{last}"
+    );
+    assert_eq!(
+        succeeds(&["watch", id, "--server", &server.url]).trim(),
+        table.trim()
+    );
+}
+
+#[test]
 fn a_server_is_not_put_where_others_can_reach_it() {
     let directory = tempfile::tempdir().expect("a directory");
     let database = directory.path().join("never.db");

@@ -12,6 +12,7 @@ use serde_json::Value;
 
 use super::Failure;
 use super::request::format_of;
+use crate::diagnose::Diagnosis;
 use crate::estimate::Estimate;
 use crate::ingest::Format;
 use crate::job::{Event, JobSpec};
@@ -81,6 +82,12 @@ impl Client {
 
     pub async fn estimate(&self, job: &str) -> Result<Estimate, Failure> {
         let url = self.url(&format!("/v1/jobs/{job}/estimate"))?;
+        json(self.send(self.http.get(url)).await?).await
+    }
+
+    /// Of a job of the kind `diagnose` that came to its end.
+    pub async fn diagnosis(&self, job: &str) -> Result<Diagnosis, Failure> {
+        let url = self.url(&format!("/v1/jobs/{job}/diagnosis"))?;
         json(self.send(self.http.get(url)).await?).await
     }
 

@@ -1,4 +1,4 @@
-//! `trimtab demo`: the whole way, from bundled maneuvers of known truth to a parameter table.
+//! `trimtab demo`: the whole way, from bundled maneuvers of known truth to a parameter table, and to what a model lacks.
 
 use std::io::IsTerminal;
 use std::path::Path;
@@ -8,12 +8,14 @@ use serde_json::json;
 
 use super::client::Client;
 use super::serve::Local;
-use super::watch::follow;
+use super::watch::{conclude, follow};
 use super::{Failure, table};
+use crate::estimate::Role;
 use crate::job::JobSpec;
 use crate::simulate::Scenario;
 
-/// Starts a server, uploads the bundled maneuvers, fits them, and shows the estimates beside the truth.
+/// Starts a server, uploads the bundled maneuvers, fits them, and shows the estimates beside the truth. Then finds what
+/// a model lacks of which the flights had an effect in them.
 #[derive(clap::Args, Debug)]
 pub struct Demo {
     /// Where the server keeps its data; a file of its own without it, removed at the end.
@@ -55,6 +57,48 @@ const JOBS: [(&str, &[Bundled]); 2] = [
     ("lateral-directional-4", &[AILERON, RUDDER]),
 ];
 
+/// Flights of an aircraft whose elevator linkage has play, and a model that knows of none.
+const UNDECLARED: [(Role, Bundled); 3] = [
+    (
+        Role::Estimation,
+        Bundled {
+            name: "elevator-backlash-fit",
+            csv: include_str!("../../data/effects/elevator-backlash-fit.csv"),
+            scenario: include_str!("../../data/effects/elevator-backlash-fit.toml"),
+        },
+    ),
+    (
+        Role::Validation,
+        Bundled {
+            name: "elevator-backlash-check",
+            csv: include_str!("../../data/effects/elevator-backlash-check.csv"),
+            scenario: include_str!("../../data/effects/elevator-backlash-check.toml"),
+        },
+    ),
+    (
+        Role::Final,
+        Bundled {
+            name: "elevator-backlash-final",
+            csv: include_str!("../../data/effects/elevator-backlash-final.csv"),
+            scenario: include_str!("../../data/effects/elevator-backlash-final.toml"),
+        },
+    ),
+];
+
+impl Bundled {
+    fn scenario(&self) -> Result<Scenario, Failure> {
+        toml::from_str(self.scenario)
+            .map_err(|error| Failure::new(format!("{}: {error}", self.name)))
+    }
+
+    /// Uploads it; its id.
+    async fn upload(&self, client: &Client) -> Result<String, Failure> {
+        let file = format!("{}.csv", self.name);
+        let stored = client.upload(self.name, Path::new(&file), self.csv.into());
+        Ok(stored.await?.id)
+    }
+}
+
 impl Demo {
     pub async fn run(&self) -> Result<(), Failure> {
         let server = Local::start(&self.listen, self.database.as_deref()).await?;
@@ -67,6 +111,10 @@ impl Demo {
             if stays {
                 println!("look at it: {}", client.url(&format!("/jobs/{job}"))?);
             }
+        }
+        let job = diagnose(&client).await?;
+        if stays {
+            println!("look at it: {}", client.url(&format!("/jobs/{job}"))?);
         }
         if stays {
             println!("\nthe server stays up until you press Ctrl-C");
@@ -81,15 +129,9 @@ async fn fit(client: &Client, model: &str, maneuvers: &[Bundled]) -> Result<Stri
     let mut uses = Vec::new();
     let mut truth: IndexMap<String, f64> = IndexMap::new();
     for maneuver in maneuvers {
-        let file = format!("{}.csv", maneuver.name);
-        let id = client
-            .upload(maneuver.name, Path::new(&file), maneuver.csv.into())
-            .await?
-            .id;
+        let id = maneuver.upload(client).await?;
         uses.push(json!({"id": id, "label": maneuver.name}));
-        let scenario: Scenario = toml::from_str(maneuver.scenario)
-            .map_err(|error| Failure::new(format!("{}: {error}", maneuver.name)))?;
-        truth.extend(scenario.truth);
+        truth.extend(maneuver.scenario()?.truth);
     }
     let names: Vec<&str> = maneuvers.iter().map(|maneuver| maneuver.name).collect();
     let spec = json!({"name": format!("demo: {model}"), "model": model, "maneuvers": uses});
@@ -99,5 +141,37 @@ async fn fit(client: &Client, model: &str, maneuvers: &[Bundled]) -> Result<Stri
     let job = client.submit(&spec).await?.id;
     let estimate = follow(client, &job).await?;
     println!("{}", table::result(&estimate, Some(&truth)));
+    Ok(job)
+}
+
+/// Uploads the flights with an effect in them, has the model diagnosed and prints what it lacks; the job's id.
+async fn diagnose(client: &Client) -> Result<String, Failure> {
+    let [(_, first), ..] = &UNDECLARED;
+    let Scenario {
+        model,
+        truth,
+        effects,
+        ..
+    } = first.scenario()?;
+    println!("\nwhat does {model} lack?");
+    for effect in effects {
+        let value = effect.value.unwrap_or_default();
+        println!(
+            "the truth, which is not told: {} of {}, {value:.4}",
+            effect.kind, effect.target
+        );
+    }
+    let mut uses = Vec::new();
+    for (role, maneuver) in &UNDECLARED {
+        let id = maneuver.upload(client).await?;
+        uses.push(json!({"id": id, "label": maneuver.name, "role": role}));
+    }
+    let spec = json!({"kind": "diagnose", "name": "demo: what is missing", "model": model, "maneuvers": uses});
+    let spec: JobSpec =
+        serde_json::from_value(spec).map_err(|error| Failure::new(error.to_string()))?;
+    let job = client.submit(&spec).await?.id;
+    let estimate = follow(client, &job).await?;
+    println!("{}", table::result(&estimate, Some(&truth)));
+    conclude(client, &job, &estimate).await?;
     Ok(job)
 }

@@ -2,8 +2,9 @@
 
 use super::client::Client;
 use super::request::{Request, read_bytes};
-use super::watch::follow;
+use super::watch::{conclude, follow};
 use super::{Failure, table};
+use crate::job::JobKind;
 
 /// Uploads recordings, submits a job and prints its id.
 #[derive(clap::Args, Debug)]
@@ -12,6 +13,9 @@ pub struct Submit {
     request: Request,
     #[arg(long, env = "TRIMTAB_SERVER", default_value = super::DEFAULT_SERVER)]
     server: String,
+    /// Find what the model lacks: a job of the kind `diagnose`.
+    #[arg(long)]
+    diagnose: bool,
     /// Follow the job and print its parameter table.
     #[arg(long, short)]
     watch: bool,
@@ -27,11 +31,16 @@ impl Submit {
                 .map_or("recording".into(), |stem| stem.to_string_lossy());
             ids.push(client.upload(&name, file, read_bytes(file)?).await?.id);
         }
-        let job = client.submit(&self.request.spec(&ids)?).await?;
+        let mut spec = self.request.spec(&ids)?;
+        if self.diagnose {
+            spec.kind = JobKind::Diagnose;
+        }
+        let job = client.submit(&spec).await?;
         println!("{}", job.id);
         if self.watch {
             let estimate = follow(&client, &job.id).await?;
             println!("{}", table::result(&estimate, None));
+            conclude(&client, &job.id, &estimate).await?;
         }
         Ok(())
     }

@@ -2,11 +2,11 @@
 
 use super::client::Client;
 use super::progress::Progress;
-use super::{Failure, table};
-use crate::estimate::Estimate;
-use crate::job::EventBody;
+use super::{Failure, diagnose, table};
+use crate::estimate::{Estimate, Outcome};
+use crate::job::{EventBody, JobKind};
 
-/// Follows a job and prints its parameter table.
+/// Follows a job and prints its parameter table, and of a diagnosis what it comes to.
 #[derive(clap::Args, Debug)]
 pub struct Watch {
     /// The job's id.
@@ -20,8 +20,18 @@ impl Watch {
         let client = Client::new(&self.server)?;
         let estimate = follow(&client, &self.job).await?;
         println!("{}", table::result(&estimate, None));
-        Ok(())
+        conclude(&client, &self.job, &estimate).await
     }
+}
+
+/// Prints what a diagnosis comes to; nothing of other jobs, nor of one that was stopped before its conclusion.
+pub async fn conclude(client: &Client, job: &str, estimate: &Estimate) -> Result<(), Failure> {
+    let is_diagnosis = client.spec(job).await?.kind == JobKind::Diagnose;
+    if is_diagnosis && estimate.outcome != Outcome::Cancelled {
+        let diagnosis = client.diagnosis(job).await?;
+        println!("{}", diagnose::conclusion(&diagnosis, false));
+    }
+    Ok(())
 }
 
 /// Follows a job with a progress bar; the estimate, when there is one.
