@@ -368,7 +368,7 @@ impl<'c> Rival<'c> {
             trial.likelihood_ratio,
             threshold.of(trial.freedom, trial.starts),
         );
-        if !(ratio >= least) {
+        if ratio.is_nan() || ratio < least {
             let why = format!(
                 "a likelihood ratio of {ratio:.1} is no more than noise gives among so many candidates (critical value {least:.1})"
             );
