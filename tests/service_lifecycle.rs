@@ -26,6 +26,7 @@ async fn running(server: &Server) -> String {
 async fn a_running_job_is_cancelled_and_keeps_its_best_iterate() {
     let server = Server::start().await;
     let id = running(&server).await;
+    let started = Instant::now();
     let asked = server
         .post(&format!("/v1/jobs/{id}/cancel"), "text/plain", "")
         .await;
@@ -36,6 +37,8 @@ async fn a_running_job_is_cancelled_and_keeps_its_best_iterate() {
         .await;
     assert_eq!(again.status, 202, "asking twice is asking once");
     let done = server.wait(&id).await;
+    let took = started.elapsed();
+    assert!(took < LEASE, "the worker is told at once: {took:?}");
     assert_eq!(
         (&done["status"], &done["outcome"]),
         (&json!("cancelled"), &json!("cancelled"))
@@ -52,8 +55,13 @@ async fn a_running_job_is_cancelled_and_keeps_its_best_iterate() {
         .iter()
         .position(|event| event.event == "cancel_requested")
         .unwrap();
-    let behind = &events[asked + 1..];
-    assert!(behind.len() <= 3, "stopped within an iteration: {behind:?}");
+    // how many iterations pass until the worker has heard of it is the machine's affair; that the solver ends with the
+    // one after is shown where it is asked, in src/work/solve.rs
+    let (last, behind) = events[asked + 1..].split_last().unwrap();
+    assert_eq!(last.event, "cancelled");
+    for event in behind {
+        assert_eq!(event.event, "iteration");
+    }
     let again = server
         .post(&format!("/v1/jobs/{id}/cancel"), "text/plain", "")
         .await;
