@@ -19,6 +19,7 @@ mod group;
 mod projection;
 mod report;
 mod residual;
+mod rival;
 mod round;
 mod screen;
 mod sentence;
