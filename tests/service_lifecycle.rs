@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use common::process::Process;
 use common::recordings::{elevator, elevator_of, endless_job, job};
 use common::server::{Server, client, send, wait};
-use common::sse::Stream;
+use common::sse::{Received, Stream};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 use trimtab::http::Config;
@@ -22,11 +22,18 @@ async fn running(server: &Server) -> String {
     id
 }
 
+/// When it was recorded, in seconds of the day.
+fn at(event: &Received) -> f64 {
+    let body: Value = serde_json::from_str(&event.data).unwrap();
+    let (_, time) = body["at"].as_str().unwrap().split_once('T').unwrap();
+    let parts = time.trim_end_matches('Z').split(':');
+    parts.fold(0.0, |sum, part| sum * 60.0 + part.parse::<f64>().unwrap())
+}
+
 #[tokio::test]
 async fn a_running_job_is_cancelled_and_keeps_its_best_iterate() {
     let server = Server::start().await;
     let id = running(&server).await;
-    let started = Instant::now();
     let asked = server
         .post(&format!("/v1/jobs/{id}/cancel"), "text/plain", "")
         .await;
@@ -37,8 +44,6 @@ async fn a_running_job_is_cancelled_and_keeps_its_best_iterate() {
         .await;
     assert_eq!(again.status, 202, "asking twice is asking once");
     let done = server.wait(&id).await;
-    let took = started.elapsed();
-    assert!(took < LEASE, "the worker is told at once: {took:?}");
     assert_eq!(
         (&done["status"], &done["outcome"]),
         (&json!("cancelled"), &json!("cancelled"))
@@ -62,6 +67,10 @@ async fn a_running_job_is_cancelled_and_keeps_its_best_iterate() {
     for event in behind {
         assert_eq!(event.event, "iteration");
     }
+    if let Some(late) = behind.last() {
+        let took = at(late) - at(&events[asked]);
+        assert!(took < 2.0, "the worker is told at once: {took} s");
+    }
     let again = server
         .post(&format!("/v1/jobs/{id}/cancel"), "text/plain", "")
         .await;
@@ -75,7 +84,9 @@ async fn stopping_gives_a_running_job_back_to_the_queue() {
     let store = server.store.clone();
     let started = Instant::now();
     server.stop().await;
-    assert!(started.elapsed() < Duration::from_secs(5));
+    let took = started.elapsed();
+    // given back, not left until its lease has run out; how soon a whole process ends is held where one is terminated
+    assert!(took < LEASE, "{took:?}");
     let id = id.parse().unwrap();
     let job = store.job(id).await.unwrap().unwrap();
     assert_eq!(job.status.name(), "queued");
@@ -225,7 +236,7 @@ async fn sigterm_with_a_queue_and_a_follower_loses_nothing() {
     let mut seen = Vec::new();
     while seen
         .last()
-        .is_none_or(|event: &common::sse::Received| event.event != "iteration")
+        .is_none_or(|event: &Received| event.event != "iteration")
     {
         seen.push(follower.next().await.expect("it runs"));
     }

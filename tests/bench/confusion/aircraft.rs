@@ -132,7 +132,7 @@ impl Aircraft {
             let mut scenario = scenario.clone();
             scenario.seed = seed.wrapping_mul(101).wrapping_add(number as u64);
             for output in scenario.outputs.values_mut() {
-                output.colour = colour.unwrap_or(&WHITE).clone();
+                output.colour = *colour.unwrap_or(&WHITE);
                 if colour.is_none() {
                     output.noise = 0.0;
                 }
