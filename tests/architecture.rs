@@ -3,22 +3,27 @@
 use std::path::{Path, PathBuf};
 
 /// Each room and those it may use. An arrow that is not here is a change of design: make it on purpose.
-const ROOMS: [(&str, &[&str]); 11] = [
+const ROOMS: [(&str, &[&str]); 12] = [
     ("flight", &[]),
     ("ingest", &["flight"]),
     ("model", &["flight"]),
     ("simulate", &["model", "flight"]),
     ("estimate", &["simulate", "model", "flight"]),
-    ("job", &["estimate", "simulate", "model", "flight"]),
+    ("diagnose", &["estimate", "simulate", "model", "flight"]),
+    (
+        "job",
+        &["diagnose", "estimate", "simulate", "model", "flight"],
+    ),
     ("store", &["job", "estimate", "model", "flight", "ingest"]),
     ("work", &["store", "job", "estimate", "model", "flight"]),
-    ("dashboard", &["job", "estimate", "flight"]),
+    ("dashboard", &["job", "diagnose", "estimate", "flight"]),
     (
         "http",
         &[
             "store",
             "job",
             "ingest",
+            "diagnose",
             "estimate",
             "model",
             "flight",
@@ -34,6 +39,7 @@ const ROOMS: [(&str, &[&str]); 11] = [
             "job",
             "ingest",
             "simulate",
+            "diagnose",
             "estimate",
             "model",
             "flight",
@@ -43,12 +49,13 @@ const ROOMS: [(&str, &[&str]); 11] = [
 ];
 
 /// What is synchronous and deterministic: no server, no database, no clock, no environment, no files.
-const CORE: [&str; 7] = [
+const CORE: [&str; 8] = [
     "flight",
     "ingest",
     "model",
     "simulate",
     "estimate",
+    "diagnose",
     "job",
     "dashboard",
 ];

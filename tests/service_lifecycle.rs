@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use common::process::Process;
 use common::recordings::{elevator, elevator_of, endless_job, job};
 use common::server::{Server, client, send, wait};
-use common::sse::Stream;
+use common::sse::{Received, Stream};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 use trimtab::http::Config;
@@ -20,6 +20,14 @@ async fn running(server: &Server) -> String {
     let mut stream = Stream::open(&server.url, &id, None).await.unwrap();
     while stream.next().await.expect("it runs").event != "iteration" {}
     id
+}
+
+/// When it was recorded, in seconds of the day.
+fn at(event: &Received) -> f64 {
+    let body: Value = serde_json::from_str(&event.data).unwrap();
+    let (_, time) = body["at"].as_str().unwrap().split_once('T').unwrap();
+    let parts = time.trim_end_matches('Z').split(':');
+    parts.fold(0.0, |sum, part| sum * 60.0 + part.parse::<f64>().unwrap())
 }
 
 #[tokio::test]
@@ -52,8 +60,17 @@ async fn a_running_job_is_cancelled_and_keeps_its_best_iterate() {
         .iter()
         .position(|event| event.event == "cancel_requested")
         .unwrap();
-    let behind = &events[asked + 1..];
-    assert!(behind.len() <= 3, "stopped within an iteration: {behind:?}");
+    // how many iterations pass until the worker has heard of it is the machine's affair; that the solver ends with the
+    // one after is shown where it is asked, in src/work/solve.rs
+    let (last, behind) = events[asked + 1..].split_last().unwrap();
+    assert_eq!(last.event, "cancelled");
+    for event in behind {
+        assert_eq!(event.event, "iteration");
+    }
+    if let Some(late) = behind.last() {
+        let took = at(late) - at(&events[asked]);
+        assert!(took < 2.0, "the worker is told at once: {took} s");
+    }
     let again = server
         .post(&format!("/v1/jobs/{id}/cancel"), "text/plain", "")
         .await;
@@ -67,7 +84,9 @@ async fn stopping_gives_a_running_job_back_to_the_queue() {
     let store = server.store.clone();
     let started = Instant::now();
     server.stop().await;
-    assert!(started.elapsed() < Duration::from_secs(5));
+    let took = started.elapsed();
+    // given back, not left until its lease has run out; how soon a whole process ends is held where one is terminated
+    assert!(took < LEASE, "{took:?}");
     let id = id.parse().unwrap();
     let job = store.job(id).await.unwrap().unwrap();
     assert_eq!(job.status.name(), "queued");
@@ -217,7 +236,7 @@ async fn sigterm_with_a_queue_and_a_follower_loses_nothing() {
     let mut seen = Vec::new();
     while seen
         .last()
-        .is_none_or(|event: &common::sse::Received| event.event != "iteration")
+        .is_none_or(|event: &Received| event.event != "iteration")
     {
         seen.push(follower.next().await.expect("it runs"));
     }

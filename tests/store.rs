@@ -78,6 +78,7 @@ fn new_job(name: &str) -> NewJob {
         channels: Default::default(),
         parameters: Default::default(),
         constants: Default::default(),
+        candidates: Vec::new(),
         options: Options::default(),
     };
     NewJob {

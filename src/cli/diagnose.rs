@@ -38,7 +38,9 @@ impl Diagnose {
         }
         let progress = Progress::new(spec.options.tolerance);
         let result = job::run_diagnosis(&plan, &mut |step| {
-            progress.diagnosis(step);
+            if let Some(step) = step {
+                progress.diagnosis(step);
+            }
             ControlFlow::Continue(())
         })
         .map_err(|faults| Failure::faults("the job failed", &faults))?;

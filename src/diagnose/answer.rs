@@ -47,6 +47,9 @@ impl Found {
 /// Noise alone makes a residual look coherent with an input once in so many diagnoses.
 const COHERENT: f64 = 1e-3;
 
+/// A member of an alias group that is less likely than this does not keep the likeliest from being named singly.
+const UNLIKELY: f64 = 0.01;
+
 /// Fewer samples than this for each free parameter decide nothing.
 const LEAST_SAMPLES: usize = 5;
 
@@ -201,12 +204,14 @@ fn verdict(
     if !coherent.is_empty() {
         return Verdict::Unexplained;
     }
-    match found
-        .accepted
-        .iter()
-        .map(|accepted| accepted.group.len())
-        .max()
-    {
+    let members = |accepted: &Accepted| {
+        let likely = accepted
+            .group
+            .iter()
+            .filter(|member| member.weight > UNLIKELY);
+        likely.count()
+    };
+    match found.accepted.iter().map(members).max() {
         None => Verdict::NothingMissing,
         Some(1) => Verdict::Named,
         Some(_) => Verdict::NamedGroup,
@@ -339,7 +344,7 @@ fn conclusion(
     match verdict {
         Verdict::Named => format!("{found}. {errors}"),
         Verdict::NamedGroup => {
-            let group = effects.iter().find(|effect| effect.group.len() > 1);
+            let group = effects.iter().find(|effect| effect.group.iter().filter(|member| member.weight > UNLIKELY).count() > 1);
             let names: Vec<String> = (group.iter().flat_map(|effect| &effect.group))
                 .map(|member| format!("{} ({:.0} %)", member.effect.name(), 100.0 * member.weight))
                 .collect();

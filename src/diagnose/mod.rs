@@ -21,6 +21,7 @@ mod polish;
 mod projection;
 mod report;
 mod residual;
+mod rival;
 mod round;
 mod screen;
 mod sentence;
@@ -90,7 +91,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
             };
             base = accepted.fitted.clone();
             found.accepted.push(accepted);
-            if watcher(&step).is_break() {
+            if watcher(Some(&step)).is_break() {
                 return Err(Inconclusive::Stopped);
             }
         }
@@ -120,7 +121,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
         let last = accepted.effect.is_noise();
         base = accepted.fitted.clone();
         found.accepted.push(accepted);
-        if watcher(&step).is_break() {
+        if watcher(Some(&step)).is_break() {
             return Err(Inconclusive::Stopped);
         }
         if last {
@@ -135,7 +136,11 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
 fn declared(case: &Case, watcher: &mut Watcher<'_>) -> Result<Fitted, Inconclusive> {
     let problem = case.problem(&case.document, &case::Values::new())?;
     let mut stopped = false;
-    let solution = estimate(&problem, &mut |_| std::ops::ControlFlow::Continue(()));
+    let solution = estimate(&problem, &mut |_| {
+        let asked = watcher(None);
+        stopped |= asked.is_break();
+        asked
+    });
     let solution = solution.map_err(|_| {
         Unfit("with the start values the simulation of the declared model leaves the range of numbers".into())
     })?;
@@ -144,7 +149,7 @@ fn declared(case: &Case, watcher: &mut Watcher<'_>) -> Result<Fitted, Inconclusi
         cost: solution.estimate.cost,
         iterations: solution.estimate.iterations,
     };
-    stopped |= watcher(&step).is_break();
+    stopped |= watcher(Some(&step)).is_break();
     if stopped {
         return Err(Inconclusive::Stopped);
     }

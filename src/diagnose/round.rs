@@ -9,16 +9,12 @@ use super::colour::Colour;
 use super::effect::{Effect, EffectKind, Treatment};
 use super::fitted::Fitted;
 use super::group::group;
-use super::projection::norm;
-use super::report::{Evidence, Member, OutputGain, Refusal, RefusedEffect, Step};
-use super::screen::{Screen, Screened, critical, independent_questions, tail};
+use super::report::{Evidence, Member, Refusal, RefusedEffect, Step};
+use super::rival::{POWER, Rival, Threshold};
+use super::screen::{Screen, Screened, independent_questions};
 use super::stack::Layout;
-use super::trial::{Trial, fit, is_tried_outright, starts, starts_of_delay};
-use crate::estimate::Role;
-use crate::model::{Added, EditKind, Per};
-
-/// How often the whole family of candidates may find something where there is nothing, by its own statistics.
-const FAMILY_ERROR: f64 = 0.005;
+use super::trial::{Trial, is_tried_outright, starts};
+use crate::model::EditKind;
 
 /// Below this share the declared parameters imitate an effect but for rounding and their own curvature.
 const INVISIBLE: f64 = 0.01;
@@ -27,11 +23,8 @@ const INVISIBLE: f64 = 0.01;
 const WORTH_A_TRIAL: f64 = 6.0;
 const MOST_TRIALS: usize = 16;
 
-/// Sizes in parts of the data may differ like this once in so many effects that are real.
-const UNLIKELY_SCATTER: f64 = 1e-4;
-
-/// 80 % power: this many standard deviations beyond the critical value.
-const POWER: f64 = 0.84;
+/// Candidates between two occasions to stop.
+const TOGETHER: usize = 8;
 
 /// What came of a round.
 pub struct Round {
@@ -49,8 +42,8 @@ pub struct Accepted {
     pub evidence: Evidence,
 }
 
-/// Told of all progress; may stop the diagnosis.
-pub type Watcher<'o> = dyn FnMut(&Step) -> ControlFlow<()> + 'o;
+/// Told of all progress, and asked every now and then with nothing to tell; may stop the diagnosis.
+pub type Watcher<'o> = dyn FnMut(Option<&Step>) -> ControlFlow<()> + 'o;
 
 /// A screened candidate, or why it was not.
 type Seen = (Effect, Result<Screened, String>);
@@ -77,12 +70,18 @@ pub fn round(
             is_tried_outright(effect.kind)
                 || matches!(effect.kind, EffectKind::Treatment(Treatment::ProcessNoise))
         });
-    let seen: Vec<Seen> = (local.into_par_iter())
-        .map(|effect| {
+    let mut seen: Vec<Seen> = Vec::new();
+    for some in local.chunks(TOGETHER) {
+        if watcher(None).is_break() {
+            result.stopped = true;
+            return result;
+        }
+        let screened = some.to_vec().into_par_iter().map(|effect| {
             let screened = screened(case, base, &screen, &effect);
             (effect, screened)
-        })
-        .collect();
+        });
+        seen.extend(screened.collect::<Vec<Seen>>());
+    }
     let visible: Vec<&Seen> = seen.iter().filter(|(_, s)| is_visible(s)).collect();
     let directions: Vec<&[f64]> = visible
         .iter()
@@ -94,7 +93,7 @@ pub fn round(
         candidates: seen.len() + outright.len(),
         visible: visible.len() + outright.len(),
     };
-    if watcher(&step).is_break() {
+    if watcher(Some(&step)).is_break() {
         result.stopped = true;
         return result;
     }
@@ -132,8 +131,11 @@ pub fn round(
     let orders = colour.orders();
     let rival = Rival::new(case, base, &orders);
     let mut trials: Vec<Trial> = Vec::new();
-    // a few at a time, so that who watches can stop it between
-    for some in to_try.chunks(8) {
+    for some in to_try.chunks(TOGETHER) {
+        if watcher(None).is_break() {
+            result.stopped = true;
+            return result;
+        }
         let tried: Vec<(Effect, Result<Trial, String>)> = (some.to_vec().into_par_iter())
             .map(|(effect, screened)| (effect.clone(), rival.trial(effect, screened)))
             .collect();
@@ -146,7 +148,7 @@ pub fn round(
                         likelihood_ratio: trial.likelihood_ratio,
                     };
                     trials.push(trial);
-                    if watcher(&step).is_break() {
+                    if watcher(Some(&step)).is_break() {
                         result.stopped = true;
                         return result;
                     }
@@ -172,7 +174,7 @@ pub fn round(
                         reason,
                         sentence: why.clone(),
                     };
-                    if watcher(&step).is_break() {
+                    if watcher(Some(&step)).is_break() {
                         result.stopped = true;
                     }
                 }
@@ -247,235 +249,6 @@ fn screened(
     let mut best = best.ok_or(failure)?;
     best.starts = count;
     Ok(best)
-}
-
-/// What a likelihood ratio has to pass.
-struct Threshold {
-    /// Independent ones that the candidates ask.
-    questions: f64,
-}
-
-impl Threshold {
-    /// Each start from which a candidate was fitted is a question more: what has no place or frequency before it is
-    /// found has many chances to be found in noise (Davies, Biometrika 74, 1987).
-    fn of(&self, freedom: usize, starts: usize) -> f64 {
-        critical(FAMILY_ERROR / starts.max(1) as f64, self.questions, freedom)
-    }
-}
-
-/// What a candidate has to beat: the model as it is.
-struct Rival<'c> {
-    case: &'c Case,
-    base: &'c Fitted,
-    orders: &'c [usize],
-    ln_likelihood: f64,
-    /// By output, of flights that were not fitted.
-    held_out: Option<Vec<f64>>,
-}
-
-impl<'c> Rival<'c> {
-    fn new(case: &'c Case, base: &'c Fitted, orders: &'c [usize]) -> Self {
-        // both sides at the likeliest for coloured noise
-        let polished = base.clone().polished(orders);
-        let any = case.of_role(Role::Validation).next().is_some();
-        let held_out = any
-            .then(|| polished.held_out(case, Role::Validation, orders).ok())
-            .flatten();
-        Self {
-            case,
-            base,
-            orders,
-            ln_likelihood: polished.ln_likelihood(orders),
-            held_out,
-        }
-    }
-
-    fn trial(&self, effect: Effect, screened: Option<Screened>) -> Result<Trial, String> {
-        let document = effect
-            .apply(&self.base.document)
-            .map_err(|error| error.to_string())?;
-        let starts = match &screened {
-            Some(seen) => {
-                let further = starts_of_delay(self.case, &effect, &seen.added);
-                std::iter::once(seen.start()).chain(further).collect()
-            }
-            None => starts(self.case, &effect, &document, &self.base.document),
-        };
-        let tried = screened.as_ref().map_or(starts.len(), |seen| seen.starts);
-        let mut best: Option<(f64, Fitted)> = None;
-        let mut failure = String::new();
-        for start in &starts {
-            match fit(self.case, self.base, &effect, document.clone(), start) {
-                Ok(fitted) => {
-                    let fitted = match effect.is_noise() {
-                        true => fitted,
-                        false => fitted.polished(self.orders),
-                    };
-                    let gain = 2.0 * (fitted.ln_likelihood(self.orders) - self.ln_likelihood);
-                    if best.as_ref().is_none_or(|(most, _)| gain > *most) {
-                        best = Some((gain, fitted));
-                    }
-                }
-                Err(why) => failure = why.to_string(),
-            }
-        }
-        let (likelihood_ratio, fitted) = best.ok_or(failure)?;
-        let declared = self.base.problem.unknowns.len();
-        let freedom = (fitted.problem.unknowns.len() - declared).max(1);
-        let (mut held_out, mut unpredictable) = (None, None);
-        let repeats = !effect.is_noise() && !is_local_in_time(&effect);
-        if let (Some(before), true) = (&self.held_out, repeats) {
-            match fitted.held_out(self.case, Role::Validation, self.orders) {
-                Ok(after) => {
-                    held_out = Some(
-                        after
-                            .iter()
-                            .zip(before)
-                            .map(|(a, b)| 2.0 * (a - b))
-                            .collect(),
-                    )
-                }
-                Err(why) => unpredictable = Some(why.to_string()),
-            }
-        }
-        Ok(Trial {
-            explained: self.explained(&fitted),
-            effect,
-            starts: tried,
-            screened,
-            fitted,
-            likelihood_ratio,
-            freedom,
-            held_out,
-            unpredictable,
-        })
-    }
-
-    /// What a fit takes off the whitened residual, of length 1.
-    fn explained(&self, fitted: &Fitted) -> Vec<f64> {
-        let layout = Layout::of(&self.base.problem);
-        let before = &self.base.residual;
-        let colour = Colour::of_orders(&layout, before, self.orders);
-        let taken: Vec<f64> = before
-            .iter()
-            .zip(&fitted.residual)
-            .map(|(b, a)| b - a)
-            .collect();
-        let mut taken = colour.whiten(&layout, before, &taken);
-        let length = norm(&taken).max(f64::MIN_POSITIVE);
-        taken.iter_mut().for_each(|value| *value /= length);
-        taken
-    }
-
-    /// What speaks against accepting it.
-    fn objection(&self, trial: &Trial, threshold: &Threshold) -> Option<(Refusal, String)> {
-        let (ratio, least) = (
-            trial.likelihood_ratio,
-            threshold.of(trial.freedom, trial.starts),
-        );
-        if !(ratio >= least) {
-            let why = format!(
-                "a likelihood ratio of {ratio:.1} is no more than noise gives among so many candidates (critical value {least:.1})"
-            );
-            return Some((Refusal::NotSignificant, why));
-        }
-        let at_bound = trial.at_bound(self.base);
-        if let Some((name, _)) = at_bound.first() {
-            let why = format!("its estimate ends at a bound of its physical range ({name})");
-            return Some((Refusal::OutOfRange, why));
-        }
-        if let Some(why) = self.scatter(trial) {
-            return Some((Refusal::NotRepeatable, why));
-        }
-        if let Some(why) = &trial.unpredictable {
-            return Some((Refusal::NotPredictive, why.clone()));
-        }
-        if let Some(gains) = &trial.held_out {
-            let gain: f64 = gains.iter().sum();
-            if gain <= 0.0 {
-                let why = format!(
-                    "flights that were not fitted are predicted worse with it: their log-likelihood falls by {:.1}",
-                    -0.5 * gain
-                );
-                return Some((Refusal::NotPredictive, why));
-            }
-        }
-        None
-    }
-
-    /// Why the sizes in parts of the data do not agree; by the noise that is left with the effect in the model.
-    fn scatter(&self, trial: &Trial) -> Option<String> {
-        let name = trial.screened.as_ref()?.added.first()?;
-        let info = trial
-            .fitted
-            .problem
-            .model
-            .parameters
-            .iter()
-            .find(|info| info.name == *name)?;
-        if info.document.per == Per::Maneuver || is_local_in_time(&trial.effect) {
-            return None;
-        }
-        // from the fit with the effect: how far each part would still pull it
-        let layout = Layout::of(&trial.fitted.problem);
-        let colour = Colour::of_orders(&layout, &trial.fitted.residual, self.orders);
-        let screen = Screen::new(self.case, &trial.fitted, &colour)?;
-        let folds = screen.pulls(&info.name)?;
-        let size = trial.fitted.values.get(&(info.name.clone(), None))?;
-        let chi_squared: f64 = folds
-            .iter()
-            .map(|(pull, error)| (pull / error).powi(2))
-            .sum();
-        let freedom = folds.len().saturating_sub(1);
-        if freedom == 0 || tail(chi_squared, freedom) > UNLIKELY_SCATTER {
-            return None;
-        }
-        // large effects show second-order differences: sizes that agree within a third are the same effect
-        let spread = folds.iter().map(|(pull, _)| pull.abs()).fold(0.0, f64::max);
-        if spread < size.abs() / 3.0 {
-            return None;
-        }
-        let sizes: Vec<String> = folds
-            .iter()
-            .map(|(pull, error)| format!("{:.3e} ± {error:.1e}", size + pull))
-            .collect();
-        Some(format!(
-            "its size differs between parts of the data: {} (SI)",
-            sizes.join(", ")
-        ))
-    }
-
-    fn accepted(&self, best: Trial, group: Vec<Member>, threshold: &Threshold) -> Accepted {
-        let outputs = self.base.problem.model.outputs.iter();
-        let gains = best.held_out.iter().flatten();
-        let screened = best.screened.as_ref();
-        Accepted {
-            group,
-            evidence: Evidence {
-                likelihood_ratio: best.likelihood_ratio,
-                threshold: threshold.of(best.freedom, best.starts),
-                score: screened.map(|s| s.score),
-                visible_fraction: screened.map(|s| s.visible),
-                smallest_seen: screened.map(|s| s.one_sigma * (threshold.of(1, 1).sqrt() + POWER)),
-                held_out: best.held_out.as_ref().map(|gains| gains.iter().sum()),
-                held_out_by_output: (outputs.zip(gains))
-                    .map(|(output, &gain)| OutputGain {
-                        output: output.name.clone(),
-                        gain,
-                    })
-                    .collect(),
-            },
-            added: Added::between(&self.base.document, &best.fitted.document).parameters,
-            effect: best.effect,
-            fitted: best.fitted,
-        }
-    }
-}
-
-/// Effects that stand at one place in time repeat in no other part.
-fn is_local_in_time(effect: &Effect) -> bool {
-    use EditKind::{Gust, InitialState};
-    matches!(effect.kind, EffectKind::Edit(Gust | InitialState))
 }
 
 fn refused(

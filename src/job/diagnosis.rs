@@ -124,7 +124,7 @@ pub(super) fn case(
 /// The declared model cannot be fitted.
 pub fn run_diagnosis(
     plan: &Plan,
-    watcher: &mut dyn FnMut(&Step) -> ControlFlow<()>,
+    watcher: &mut dyn FnMut(Option<&Step>) -> ControlFlow<()>,
 ) -> Result<JobResult, Vec<Fault>> {
     let Some(case) = &plan.case else {
         let message = "the job was not prepared as a diagnosis";
@@ -143,9 +143,9 @@ pub fn run_diagnosis(
             "diverged_at_start",
             why.to_string(),
         )]),
-        // what there is so far is the estimation of the declared model
+        // what there is so far is where the declared model starts from
         Err(Inconclusive::Stopped) => {
-            let mut result = super::run(plan, &mut |_| ControlFlow::Continue(()))?;
+            let mut result = super::run(plan, &mut |_| ControlFlow::Break(()))?;
             result.estimate.outcome = Outcome::Cancelled;
             result.estimate.reason = format!(
                 "the diagnosis was stopped on request; of the declared model: {}",

@@ -79,7 +79,7 @@ pub fn solve(
             })
         }),
         JobKind::Diagnose => job::run_diagnosis(&plan, &mut |step| {
-            tell(Some(EventBody::Diagnosis(step.clone())))
+            tell(step.map(|step| EventBody::Diagnosis(step.clone())))
         }),
     };
     let result = result.map_err(Unanswered::Refused)?;
@@ -90,4 +90,57 @@ pub fn solve(
         reason,
         parts,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Model, catalog};
+    use crate::simulate::Scenario;
+    use crate::work::stop::Reason;
+
+    /// Events that come when the wish to stop is known once so many iterations have been told of, and the outcome.
+    fn stopped_after(iterations: usize) -> (Vec<EventBody>, Outcome) {
+        let model = catalog::find("short-period").unwrap();
+        let scenario: Scenario = toml::from_str(include_str!("../../data/elevator.toml")).unwrap();
+        let maneuver = Arc::new(scenario.fly(&Model::compile(&model).unwrap()).unwrap());
+        let spec: JobSpec = serde_json::from_value(serde_json::json!({
+            "model": "short-period",
+            "maneuvers": [{"id": "elevator"}],
+            "options": {"tolerance": 1e-300, "max_iterations": 1000},
+        }))
+        .unwrap();
+        let stop = Stop::default();
+        // a log that holds one event: the solver is never further ahead than that
+        let (log, mut events) = mpsc::channel(1);
+        std::thread::scope(|scope| {
+            let solver = scope.spawn({
+                let stop = &stop;
+                let spec = &spec;
+                let model = &model;
+                move || solve(spec, model, &[maneuver], stop, &log).unwrap().outcome
+            });
+            let mut told = Vec::new();
+            let is_iteration = |event: &&EventBody| matches!(event, EventBody::Iteration(_));
+            while told.iter().filter(is_iteration).count() < iterations {
+                told.push(events.blocking_recv().expect("it runs"));
+            }
+            stop.ask(Reason::Cancel);
+            let mut behind = Vec::new();
+            while let Some(event) = events.blocking_recv() {
+                behind.push(event);
+            }
+            (behind, solver.join().unwrap())
+        })
+    }
+
+    #[test]
+    fn a_solver_stops_at_the_iteration_after_it_is_asked() {
+        for iterations in 1..=4 {
+            let (behind, outcome) = stopped_after(iterations);
+            assert_eq!(outcome, Outcome::Cancelled);
+            // one that was in the log and one that was on its way there
+            assert!(behind.len() <= 2, "{behind:?}");
+        }
+    }
 }

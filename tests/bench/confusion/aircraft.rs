@@ -58,6 +58,17 @@ fn lateral() -> Aircraft {
             if let Some(amplitude) = design.get("amplitude").and_then(toml::Value::as_float) {
                 design["amplitude"] = (-1.2 * amplitude).into();
             }
+            for pulse in design
+                .get_mut("pulses")
+                .and_then(toml::Value::as_array_mut)
+                .into_iter()
+                .flatten()
+            {
+                let (length, amplitude) = (pulse[0].as_float(), pulse[1].as_float());
+                if let (Some(length), Some(amplitude)) = (length, amplitude) {
+                    *pulse = toml::Value::from(vec![1.3 * length, -1.2 * amplitude]);
+                }
+            }
         }
         value.try_into::<Scenario>().unwrap()
     };
@@ -132,7 +143,7 @@ impl Aircraft {
             let mut scenario = scenario.clone();
             scenario.seed = seed.wrapping_mul(101).wrapping_add(number as u64);
             for output in scenario.outputs.values_mut() {
-                output.colour = colour.unwrap_or(&WHITE).clone();
+                output.colour = *colour.unwrap_or(&WHITE);
                 if colour.is_none() {
                     output.noise = 0.0;
                 }

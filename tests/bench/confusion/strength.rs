@@ -23,7 +23,7 @@ pub fn sizes(
             let mut size = first;
             for _ in 0..12 {
                 let found = worth(aircraft, effect, colour, size)?;
-                if !(found > 1e-9) {
+                if found.is_nan() || found <= 1e-9 {
                     return None;
                 }
                 let share = (ratio / found).sqrt();
