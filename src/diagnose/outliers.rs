@@ -121,7 +121,7 @@ fn outlying(residual: &[f64], measured: &[f64]) -> Vec<(usize, f64)> {
         })
         .collect();
     let scale = 1.4826 * median(&mut off.iter().map(|value| value.abs()).collect());
-    if !(scale > 0.0) {
+    if scale.is_nan() || scale <= 0.0 {
         return Vec::new();
     }
     // where the model moves fast a residual is large for many a reason: the measurement itself must stand out more

@@ -61,7 +61,7 @@ impl Fitted {
                     .for_each(|(e, s)| *e -= step * s);
             }
             let likelihood = moved.ln_likelihood(orders);
-            if !(likelihood > best) || !moved.advance(&step) {
+            if likelihood.is_nan() || likelihood <= best || !moved.advance(&step) {
                 break;
             }
             (best, self) = (likelihood, moved);
