@@ -133,10 +133,23 @@ fn outlying(residual: &[f64], measured: &[f64]) -> Vec<(usize, f64)> {
             .fold(0.0, f64::max);
         ((series(k) - middle).abs(), most)
     };
+    // and alone: turbulence is no less rough than noise, but it does not leap there and back
+    let leaps: Vec<f64> = (0..residual.len())
+        .map(|k| match (k.checked_sub(1), residual.get(k + 1)) {
+            (Some(before), Some(behind)) => residual[k] - 0.5 * (residual[before] + behind),
+            _ => 0.0,
+        })
+        .collect();
+    let leap = 1.4826 * median(&mut leaps.iter().map(|value| value.abs()).collect());
+    let quantum = measured
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]).abs())
+        .filter(|d| *d > 0.0);
+    let quantum = quantum.fold(f64::INFINITY, f64::min);
     let stands_out = |k: usize, least: f64| {
         let (own, _) = off_middle(&|i| measured[i], k);
         let (_, motion) = off_middle(&|i| measured[i] - residual[i], k);
-        own > least + 2.0 * motion
+        own > least + 2.0 * motion && leaps[k].abs() > OUTLYING * leap
     };
     let mut found: Vec<(usize, f64)> = (0..off.len())
         .filter(|&k| off[k].abs() > OUTLYING * scale && stands_out(k, OUTLYING * scale))
@@ -151,7 +164,7 @@ fn outlying(residual: &[f64], measured: &[f64]) -> Vec<(usize, f64)> {
             let part = residual[from..k].iter();
             part.clone().copied().fold(f64::MIN, f64::max) - part.copied().fold(f64::MAX, f64::min)
         };
-        if k - from >= STUCK && spread() > OUTLYING * scale {
+        if k - from >= STUCK && spread() > OUTLYING * scale.max(quantum) {
             let known: Vec<usize> = found.iter().map(|(k, _)| *k).collect();
             found.extend(
                 (from + 1..k)

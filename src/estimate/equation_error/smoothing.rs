@@ -123,20 +123,27 @@ fn local(time: &[f64], values: &[f64], k: usize, half: usize) -> Option<Local> {
         .min(values.len().saturating_sub(2 * half + 1));
     let last = (first + 2 * half).min(values.len() - 1);
     let width = (time[last] - time[first]).max(f64::MIN_POSITIVE);
-    let mut normal = SMatrix::<f64, ORDER, ORDER>::zeros();
+    // the normal matrix of a polynomial has Σ s^(i + j) at (i, j)
+    let mut sums = [0.0; 2 * ORDER - 1];
     let mut right = SVector::<f64, ORDER>::zeros();
     let mut count = 0;
     for j in (first..=last).filter(|&j| values[j].is_finite()) {
         // scaled to the window, so that powers stay of one size
         let s = 2.0 * (time[j] - time[k]) / width;
-        let powers = SVector::<f64, ORDER>::from_fn(|i, _| s.powi(i as i32));
-        normal += powers * powers.transpose();
-        right += powers * values[j];
+        let mut power = 1.0;
+        for (i, sum) in sums.iter_mut().enumerate() {
+            *sum += power;
+            if i < ORDER {
+                right[i] += power * values[j];
+            }
+            power *= s;
+        }
         count += 1;
     }
     if count < ORDER {
         return None;
     }
+    let normal = SMatrix::<f64, ORDER, ORDER>::from_fn(|i, j| sums[i + j]);
     let inverse = normal.cholesky()?.inverse();
     let fit = inverse * right;
     Some(Local {
