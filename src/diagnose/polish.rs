@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::colour::Colour;
 use super::fitted::Fitted;
-use super::projection::{dot, norm};
+use super::projection::{dot, least_squares, norm};
 use super::stack::{Layout, sensitivities};
 use crate::model::Per;
 
@@ -43,10 +43,9 @@ impl Fitted {
                 dot(&whitened[i], &whitened[j]) / (scale[i] * scale[j])
             });
             let moment = DVector::from_fn(count, |i, _| dot(&whitened[i], &residual) / scale[i]);
-            let Ok(inverse) = gram.pseudo_inverse(WEAKEST) else {
+            let Some(step) = least_squares(gram, &moment, WEAKEST) else {
                 break;
             };
-            let step = inverse * moment;
             let step: Vec<f64> = step
                 .iter()
                 .zip(&scale)

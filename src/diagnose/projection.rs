@@ -1,5 +1,7 @@
 //! Projecting columns onto what a declared model can move, and off it.
 
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
 /// An orthonormal basis of the span of some columns.
 #[derive(Clone, Debug, Default)]
 pub struct Basis(Vec<Vec<f64>>);
@@ -44,6 +46,28 @@ impl Basis {
             }
         }
     }
+}
+
+/// x of least length with G x = m, G symmetric and not negative; directions weaker than `weakest` of the strongest are
+/// left out. `None` where G is no matrix of numbers, which an unbounded decomposition would turn over for ever.
+pub fn least_squares(
+    gram: DMatrix<f64>,
+    moment: &DVector<f64>,
+    weakest: f64,
+) -> Option<DVector<f64>> {
+    if !gram
+        .iter()
+        .chain(moment.iter())
+        .all(|value| value.is_finite())
+    {
+        return None;
+    }
+    let eigen = SymmetricEigen::try_new(gram, f64::EPSILON, 10_000)?;
+    let least = weakest * eigen.eigenvalues.max();
+    let inverse = eigen
+        .eigenvalues
+        .map(|value| if value > least { value.recip() } else { 0.0 });
+    Some(&eigen.eigenvectors * inverse.component_mul(&(eigen.eigenvectors.transpose() * moment)))
 }
 
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {

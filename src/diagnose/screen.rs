@@ -16,7 +16,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use super::case::{Case, Values};
 use super::colour::Colour;
 use super::fitted::Fitted;
-use super::projection::{Basis, dot, norm};
+use super::projection::{Basis, dot, least_squares, norm};
 use super::stack::{Layout, sensitivities};
 use crate::model::{ModelDocument, Per};
 
@@ -212,10 +212,7 @@ impl<'c> Screen<'c> {
             dot(&clear[i], &clear[j]) / (scale[i] * scale[j])
         });
         let moment = DVector::from_fn(count, |i, _| dot(&clear[i], &metric.residual) / scale[i]);
-        let sizes = gram
-            .clone()
-            .pseudo_inverse(1e-10)
-            .map_or(DVector::zeros(count), |inverse| inverse * &moment);
+        let sizes = least_squares(gram, &moment, 1e-10).unwrap_or_else(|| DVector::zeros(count));
         let score = sizes.dot(&moment).max(0.0);
         let mut explained = vec![0.0; layout.len];
         for (i, column) in clear.iter().enumerate() {
