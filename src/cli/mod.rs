@@ -12,6 +12,7 @@ mod progress;
 mod request;
 mod serve;
 mod simulate;
+mod stretch;
 mod study;
 mod submit;
 mod table;

@@ -1,11 +1,12 @@
 //! The options by which `fit` and `submit` describe a job: files, a model, and how they meet.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use indexmap::IndexMap;
 
 use super::Failure;
+use super::stretch::Stretch;
 use crate::estimate::{Derivatives, Estimator, Method, Options, Role};
 use crate::flight::Maneuver;
 use crate::ingest::{self, Format, Limits};
@@ -14,15 +15,15 @@ use crate::model::{ModelDocument, Start, catalog};
 
 #[derive(clap::Args, Debug)]
 pub struct Request {
-    /// Recordings: CSV with `name[unit]` headers, or JSON. Several are fitted together.
+    /// Recordings: CSV with `name[unit]` headers, or JSON; of some rows only: FILE:FIRST-LAST. Several are fitted together.
     #[arg(required = true)]
-    pub files: Vec<PathBuf>,
+    pub files: Vec<Stretch>,
     /// A recording that the model is not fitted to but predicts, to see whether it holds.
     #[arg(long, value_name = "FILE")]
-    pub validate: Vec<PathBuf>,
+    pub validate: Vec<Stretch>,
     /// A recording that is predicted at the very end: a diagnosis makes no decision with it.
     #[arg(long = "final", value_name = "FILE")]
-    pub last: Vec<PathBuf>,
+    pub last: Vec<Stretch>,
     /// A catalog model (short-period, lateral-directional-2, ...) or a model document (.toml, .json).
     #[arg(long, short)]
     pub model: String,
@@ -61,19 +62,19 @@ pub struct Request {
 }
 
 impl Request {
-    /// All files: those to fit, then those to predict.
-    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
+    /// All recordings: those to fit, then those to predict.
+    pub fn stretches(&self) -> impl Iterator<Item = &Stretch> {
         self.files.iter().chain(&self.validate).chain(&self.last)
     }
 
     /// The recordings in all files.
     pub fn recordings(&self) -> Result<Vec<Arc<Maneuver>>, Failure> {
-        let read = |file: &PathBuf| {
+        let read = |Stretch { file, .. }: &Stretch| {
             ingest::read(&read_bytes(file)?, format_of(file), &Limits::default())
                 .map(Arc::new)
                 .map_err(|error| Failure::faults(&file.display().to_string(), error.faults()))
         };
-        self.files().map(read).collect()
+        self.stretches().map(read).collect()
     }
 
     /// The model: a name that the catalog (or the server) knows, or the document in a file.
@@ -146,18 +147,14 @@ impl Request {
             })?;
             Ok((name.to_string(), value))
         });
-        let label = |file: &PathBuf| {
-            file.file_stem()
-                .map(|stem| stem.to_string_lossy().into_owned())
-        };
         let fitted = self.files.iter().map(|file| (file, Role::Estimation));
         let predicted = self.validate.iter().map(|file| (file, Role::Validation));
         let last = self.last.iter().map(|file| (file, Role::Final));
         let gaps = if self.join { Gaps::Join } else { Gaps::Split };
-        let usage = |(id, (file, role)): (&String, (&PathBuf, Role))| ManeuverUse {
+        let usage = |(id, (stretch, role)): (&String, (&Stretch, Role))| ManeuverUse {
             id: id.clone(),
-            label: label(file),
-            rows: None,
+            label: stretch.label(),
+            rows: stretch.rows,
             role,
             gaps,
         };

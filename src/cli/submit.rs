@@ -2,6 +2,7 @@
 
 use super::client::Client;
 use super::request::{Request, read_bytes};
+use super::stretch::Stretch;
 use super::watch::{conclude, follow};
 use super::{Failure, table};
 use crate::job::JobKind;
@@ -25,7 +26,7 @@ impl Submit {
     pub async fn run(&self) -> Result<(), Failure> {
         let client = Client::new(&self.server)?;
         let mut ids = Vec::new();
-        for file in self.request.files() {
+        for Stretch { file, .. } in self.request.stretches() {
             let name = file
                 .file_stem()
                 .map_or("recording".into(), |stem| stem.to_string_lossy());

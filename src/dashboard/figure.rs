@@ -1,8 +1,9 @@
-//! Time histories as a picture: measured against model, and the residual below, for each output.
+//! Time histories as a picture: measured against model, and the residual below, for each output; of a diagnosis with the
+//! declared model beside the one that has its effects in it.
 
 use plotters::prelude::*;
 
-use super::style::{MEASURED, MODEL};
+use super::style::{DECLARED, MEASURED, MODEL};
 use crate::estimate::{OutputSeries, TimeHistory};
 
 const WIDTH: u32 = 900;
@@ -44,10 +45,11 @@ fn draw(
     let (scale, unit) = shown_in(&output.unit);
     let measured = points(time, &output.measured, scale);
     let model = points(time, &output.model, scale);
+    let declared = points(time, &output.declared, scale);
     let residual = points(time, &output.residual, scale);
     let label = format!("{} [{unit}]", output.name);
 
-    let range = range_of(measured.iter().chain(&model));
+    let range = range_of(measured.iter().chain(&model).chain(&declared));
     let mut chart = axes(above, time, range)?;
     let mut mesh = chart.configure_mesh();
     mesh.light_line_style(TRANSPARENT)
@@ -67,10 +69,21 @@ fn draw(
         .map_err(|error| error.to_string())?
         .label("measured")
         .legend(|(x, y)| Circle::new((x + 8, y), 3, MEASURED.filled()));
+    if !declared.is_empty() {
+        chart
+            .draw_series(LineSeries::new(declared, DECLARED.stroke_width(2)))
+            .map_err(|error| error.to_string())?
+            .label("declared model")
+            .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], DECLARED.stroke_width(2)));
+    }
+    let name = match output.declared.is_empty() {
+        true => "model",
+        false => "with its effects",
+    };
     chart
         .draw_series(LineSeries::new(model, MODEL.stroke_width(2)))
         .map_err(|error| error.to_string())?
-        .label("model")
+        .label(name)
         .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], MODEL.stroke_width(2)));
     let mut legend = chart.configure_series_labels();
     legend
@@ -79,7 +92,10 @@ fn draw(
         .label_font(("sans-serif", 12));
     legend.draw().map_err(|error| error.to_string())?;
 
-    let mut chart = axes(below, time, range_of(residual.iter()))?;
+    let before = output.measured.iter().zip(&output.declared);
+    let before: Vec<f64> = before.map(|(z, y)| z - y).collect();
+    let before = points(time, &before, scale);
+    let mut chart = axes(below, time, range_of(residual.iter().chain(&before)))?;
     let mut mesh = chart.configure_mesh();
     mesh.light_line_style(TRANSPARENT)
         .bold_line_style(BLACK.mix(0.12))
@@ -88,6 +104,9 @@ fn draw(
         .y_desc("residual")
         .label_style(("sans-serif", 12))
         .draw()
+        .map_err(|error| error.to_string())?;
+    chart
+        .draw_series(LineSeries::new(before, DECLARED.stroke_width(1)))
         .map_err(|error| error.to_string())?;
     // a line only where samples follow each other: not across what is missing
     if output.residual.iter().any(|residual| residual.is_nan()) {
@@ -202,6 +221,7 @@ mod tests {
                 unit: "rad".into(),
                 measured: vec![0.1, 0.2],
                 model: vec![0.1, 0.1],
+                declared: Vec::new(),
                 residual: vec![0.0, 0.1],
             }],
         };

@@ -5,6 +5,9 @@
 pub(super) const MEASURED: plotters::style::RGBColor = plotters::style::RGBColor(0, 114, 178);
 pub(super) const MODEL: plotters::style::RGBColor = plotters::style::RGBColor(213, 94, 0);
 
+/// The model before its effects were found: grey, behind.
+pub(super) const DECLARED: plotters::style::RGBColor = plotters::style::RGBColor(150, 150, 150);
+
 pub(super) const CSS: &str = "
 :root { color-scheme: light dark; --line: #8884; --soft: #777; }
 body { font: 15px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }

@@ -53,9 +53,11 @@ const UNLIKELY: f64 = 0.01;
 /// Fewer samples than this for each free parameter decide nothing.
 const LEAST_SAMPLES: usize = 5;
 
+/// `fitted` are the time histories of the declared model on the flights that it was fitted to.
 pub fn answer(
     case: &Case,
     declared: &Fitted,
+    fitted: &[TimeHistory],
     last: &Fitted,
     found: Found,
 ) -> Result<Conclusion, Unfit> {
@@ -63,6 +65,9 @@ pub fn answer(
     let estimated = after.solution.estimate.clone();
     let mut histories = after.solution.histories.clone();
     let mut fits = Vec::new();
+    for (history, before) in histories.iter_mut().zip(fitted) {
+        compare(history, before);
+    }
     for (b, a) in declared.estimate.outputs.iter().zip(&estimated.outputs) {
         fits.push(FitChange {
             role: Role::Estimation,
@@ -74,7 +79,7 @@ pub fn answer(
     for role in [Role::Validation, Role::Final] {
         let before = predictions(case, role, &declared.problem, &declared.estimate)?;
         let now = predictions(case, role, &after.problem, &estimated)?;
-        for ((label, b, _), (_, a, history)) in before.into_iter().zip(now) {
+        for ((label, b, then), (_, a, history)) in before.into_iter().zip(now) {
             let of = |(before, after): (OutputFit, OutputFit)| FitChange {
                 role,
                 segment: Some(label.clone()),
@@ -82,7 +87,11 @@ pub fn answer(
                 after,
             };
             fits.extend(b.into_iter().zip(a).map(of));
-            histories.extend(history.map(|history| TimeHistory { role, ..history }));
+            histories.extend(history.map(|history| {
+                let mut history = TimeHistory { role, ..history };
+                then.iter().for_each(|then| compare(&mut history, then));
+                history
+            }));
         }
     }
     let residuals = analyse(&after.solution.histories);
@@ -121,6 +130,13 @@ pub fn answer(
         estimate: estimated,
         histories,
     })
+}
+
+/// Puts the declared model's outputs beside those of the model with its effects.
+fn compare(history: &mut TimeHistory, declared: &TimeHistory) {
+    for (output, before) in history.outputs.iter_mut().zip(&declared.outputs) {
+        output.declared.clone_from(&before.model);
+    }
 }
 
 struct Full {

@@ -17,6 +17,10 @@ pub fn candidates(case: &Case, model: &Model) -> Vec<Effect> {
     for (state, term) in terms::of(model) {
         effects.push(Effect::edit(EditKind::MissingTerm, state, Some(&term)));
     }
+    let scaled = Effect::edit(EditKind::MissingTerm, "all", Some("qbar"));
+    if scaled.apply(document).is_ok() {
+        effects.push(scaled);
+    }
     unsteady(document, &mut effects);
     unrecorded(case, model, &mut effects);
     surroundings(document, &mut effects);
@@ -70,11 +74,8 @@ fn inputs(document: &ModelDocument, effects: &mut Vec<Effect>) {
 }
 
 fn unsteady(document: &ModelDocument, effects: &mut Vec<Effect>) {
-    let flow: Vec<&String> = document
-        .states
-        .keys()
-        .filter(|name| terms::is_flow_angle(name))
-        .collect();
+    let known = document.states.keys().chain(document.inputs.keys());
+    let flow: Vec<&String> = known.filter(|name| terms::is_flow_angle(name)).collect();
     for target in terms::aerodynamic(document) {
         for angle in flow.iter().filter(|angle| ***angle != target) {
             effects.push(Effect::edit(

@@ -31,10 +31,27 @@ impl Fitted {
     /// # Errors
     /// The model does not fit the recordings, or the fit came to nothing.
     pub fn trial(case: &Case, document: ModelDocument, start: &Values) -> Result<Self, Unfit> {
+        Self::within(TRIAL_ITERATIONS, case, document, start)
+    }
+
+    /// No fit at all: the model at given values.
+    ///
+    /// # Errors
+    /// The model does not fit the recordings, or leaves the range of numbers.
+    pub fn at(case: &Case, document: ModelDocument, values: &Values) -> Result<Self, Unfit> {
+        Self::within(0, case, document, values)
+    }
+
+    fn within(
+        iterations: usize,
+        case: &Case,
+        document: ModelDocument,
+        start: &Values,
+    ) -> Result<Self, Unfit> {
         let mut problem = case.problem(&document, start)?;
         problem.options.error_bounds = ErrorBoundsKind::Conventional;
         problem.options.tolerance = problem.options.tolerance.max(TRIAL_TOLERANCE);
-        problem.options.max_iterations = TRIAL_ITERATIONS;
+        problem.options.max_iterations = iterations;
         let solution = output_error(&problem, &mut |_| ControlFlow::Continue(()))
             .map_err(|_| Unfit("the simulation leaves the range of numbers".into()))?;
         if solution.estimate.outcome == Outcome::Diverged {
@@ -61,6 +78,13 @@ impl Fitted {
             problem,
             estimate,
         }
+    }
+
+    /// Its values, others put beside or in place of them.
+    pub fn values_with(&self, others: &Values) -> Values {
+        let mut values = self.values.clone();
+        values.extend(others.iter().map(|(key, value)| (key.clone(), *value)));
+        values
     }
 
     pub fn theta(&self) -> Vec<f64> {

@@ -77,7 +77,7 @@ impl From<Unfit> for Inconclusive {
 /// # Errors
 /// The declared model cannot be fitted at all, or `watcher` stopped it.
 pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, Inconclusive> {
-    let declared = declared(case, watcher)?;
+    let (declared, fitted) = declared(case, watcher)?;
     let mut found = Found::default();
     let mut base = declared.clone();
     let mut cleaned = None;
@@ -129,11 +129,14 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
         }
     }
     remove_needless(case, &declared, &mut base, &mut found);
-    Ok(answer(case, &declared, &base, found)?)
+    Ok(answer(case, &declared, &fitted, &base, found)?)
 }
 
-/// The declared model, fitted as the job's options say.
-fn declared(case: &Case, watcher: &mut Watcher<'_>) -> Result<Fitted, Inconclusive> {
+/// The declared model, fitted as the job's options say, and its time histories.
+fn declared(
+    case: &Case,
+    watcher: &mut Watcher<'_>,
+) -> Result<(Fitted, Vec<TimeHistory>), Inconclusive> {
     let problem = case.problem(&case.document, &case::Values::new())?;
     let mut stopped = false;
     let solution = estimate(&problem, &mut |_| {
@@ -153,12 +156,13 @@ fn declared(case: &Case, watcher: &mut Watcher<'_>) -> Result<Fitted, Inconclusi
     if stopped {
         return Err(Inconclusive::Stopped);
     }
-    Ok(Fitted::of(
+    let fitted = Fitted::of(
         case.document.clone(),
         problem,
         solution.estimate,
         &solution.histories,
-    ))
+    );
+    Ok((fitted, solution.histories))
 }
 
 /// Takes out again what later effects made needless.

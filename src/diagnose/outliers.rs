@@ -149,7 +149,7 @@ fn outlying(residual: &[f64], measured: &[f64]) -> Vec<(usize, f64)> {
     let stands_out = |k: usize, least: f64| {
         let (own, _) = off_middle(&|i| measured[i], k);
         let (_, motion) = off_middle(&|i| measured[i] - residual[i], k);
-        own > least + 2.0 * motion && leaps[k].abs() > OUTLYING * leap
+        own > least + motion && leaps[k].abs() > OUTLYING * leap
     };
     let mut found: Vec<(usize, f64)> = (0..off.len())
         .filter(|&k| off[k].abs() > OUTLYING * scale && stands_out(k, OUTLYING * scale))

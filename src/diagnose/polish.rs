@@ -1,5 +1,5 @@
-//! Steps of generalised least squares: output error weighs all samples alike, and where the noise is coloured its
-//! estimate is not the likeliest. An effect that is sharp against slow noise (a delay of half a sample) is lost
+//! Generalised least squares: output error weighs all samples alike, and where the noise is coloured its estimate is not
+//! the likeliest. An effect that is sharp against slow noise (a delay of half a sample) is lost
 //! without them.
 
 use nalgebra::{DMatrix, DVector};
@@ -7,94 +7,133 @@ use nalgebra::{DMatrix, DVector};
 use super::colour::Colour;
 use super::fitted::Fitted;
 use super::projection::{dot, least_squares, norm};
-use super::stack::{Layout, sensitivities};
-use crate::model::Per;
+use super::stack::{Layout, Linearised, linearised};
+use crate::estimate::Bound;
 
-/// The colour and the step depend on each other: twice is enough.
-const STEPS: usize = 2;
+/// The colour is that of the residual, so that each step has another: some are needed.
+const STEPS: usize = 8;
+
+/// What is left of ln L to be gained is not worth a step.
+const SETTLED: f64 = 0.01;
+
+/// Shares of a step that are tried.
+const SHARES: [f64; 4] = [1.0, 0.5, 0.25, 0.1];
 
 /// Directions that are weaker than this, relative to the strongest, stay as they are.
 const WEAKEST: f64 = 1e-8;
 
 impl Fitted {
-    /// The fit moved to where the likelihood with noise of these orders is greatest, the outputs linear in the
-    /// parameters. As it was where all orders are 0, or nothing is gained.
+    /// The fit moved to where the likelihood with noise of these orders is greatest. As it was where all orders are 0, or
+    /// nothing is gained.
     #[must_use]
     pub fn polished(mut self, orders: &[usize]) -> Self {
         if orders.iter().all(|&order| order == 0) || self.problem.unknowns.is_empty() {
             return self;
         }
         let layout = Layout::of(&self.problem);
-        let Some(columns) = self.columns(&layout) else {
+        let mut free: Vec<usize> = (0..self.problem.unknowns.len())
+            .map(|place| self.problem.unknowns.at(place).parameter)
+            .collect();
+        free.dedup();
+        let at = |theta: &[f64]| {
+            // columns stand as the unknowns do: parameter by parameter, each followed by its segments
+            let model = linearised(&self.problem, &layout, theta, &free);
+            model.filter(|model| model.sensitivities.len() == theta.len())
+        };
+        let ln_likelihood = |model: &Linearised| {
+            Colour::of_orders(&layout, &model.residual, orders)
+                .ln_likelihood(&layout, &model.residual)
+        };
+        let mut theta = self.theta();
+        let Some(mut here) = at(&theta) else {
             return self;
         };
-        let mut best: f64 = self.ln_likelihood(orders);
+        let before = ln_likelihood(&here);
+        let mut best = before;
         for _ in 0..STEPS {
-            let colour = Colour::of_orders(&layout, &self.residual, orders);
-            let whiten = |column: &Vec<f64>| colour.whiten(&layout, &self.residual, column);
-            let whitened: Vec<Vec<f64>> = columns.iter().map(whiten).collect();
-            let residual = whiten(&self.residual);
-            let scale: Vec<f64> = whitened
-                .iter()
-                .map(|column| norm(column).max(f64::MIN_POSITIVE))
-                .collect();
-            let count = columns.len();
-            let gram = DMatrix::from_fn(count, count, |i, j| {
-                dot(&whitened[i], &whitened[j]) / (scale[i] * scale[j])
-            });
-            let moment = DVector::from_fn(count, |i, _| dot(&whitened[i], &residual) / scale[i]);
-            let Some(step) = least_squares(gram, &moment, WEAKEST) else {
+            let Some((step, promise)) = self.step(&layout, orders, &theta, &here) else {
                 break;
             };
-            let step: Vec<f64> = step
-                .iter()
-                .zip(&scale)
-                .map(|(step, scale)| step / scale)
-                .collect();
-            let mut moved = self.clone();
-            for (column, step) in columns.iter().zip(&step) {
-                moved
-                    .residual
-                    .iter_mut()
-                    .zip(column)
-                    .for_each(|(e, s)| *e -= step * s);
-            }
-            let likelihood = moved.ln_likelihood(orders);
-            if likelihood.is_nan() || likelihood <= best || !moved.advance(&step) {
+            if promise < SETTLED {
                 break;
             }
-            (best, self) = (likelihood, moved);
+            let further = SHARES.iter().find_map(|share| {
+                let theta = self.moved(&theta, &step, *share);
+                let there = at(&theta)?;
+                let likelihood = ln_likelihood(&there);
+                (likelihood > best).then_some((theta, there, likelihood))
+            });
+            let Some(further) = further else { break };
+            let gain = further.2 - best;
+            (theta, here, best) = further;
+            if gain < SETTLED {
+                break;
+            }
+        }
+        if best > before {
+            self.residual = here.residual;
+            self.put(&theta);
         }
         self
     }
 
-    /// Sensitivities by place of θ.
-    fn columns(&self, layout: &Layout) -> Option<Vec<Vec<f64>>> {
-        let problem = &self.problem;
-        let mut free: Vec<usize> = (0..problem.unknowns.len())
-            .map(|place| problem.unknowns.at(place).parameter)
-            .collect();
-        free.dedup();
-        // as the unknowns are laid out: parameter by parameter, each followed by its segments
-        let of = |parameter: &usize| match problem.model.parameters[*parameter].document.per {
-            Per::Job => 1,
-            Per::Maneuver => problem.segments.len(),
-        };
-        let count: usize = free.iter().map(of).sum();
-        (count == problem.unknowns.len())
-            .then(|| sensitivities(problem, layout, &self.theta(), &free))
-            .flatten()
+    /// The step of generalised least squares, and by how much ln L would grow with it if the outputs were linear. What
+    /// would leave its bounds stays.
+    fn step(
+        &self,
+        layout: &Layout,
+        orders: &[usize],
+        theta: &[f64],
+        here: &Linearised,
+    ) -> Option<(Vec<f64>, f64)> {
+        let colour = Colour::of_orders(layout, &here.residual, orders);
+        let whiten = |column: &Vec<f64>| colour.whiten(layout, &here.residual, column);
+        let residual = whiten(&here.residual);
+        let whitened: Vec<Vec<f64>> = here.sensitivities.iter().map(whiten).collect();
+        let mut held = vec![false; theta.len()];
+        loop {
+            let places: Vec<usize> = (0..theta.len()).filter(|&place| !held[place]).collect();
+            let scale: Vec<f64> = (places.iter())
+                .map(|&place| norm(&whitened[place]).max(f64::MIN_POSITIVE))
+                .collect();
+            let count = places.len();
+            let gram = DMatrix::from_fn(count, count, |i, j| {
+                dot(&whitened[places[i]], &whitened[places[j]]) / (scale[i] * scale[j])
+            });
+            let moment = DVector::from_fn(count, |i, _| {
+                dot(&whitened[places[i]], &residual) / scale[i]
+            });
+            let solved = least_squares(gram, &moment, WEAKEST)?;
+            let mut step = vec![0.0; theta.len()];
+            for (i, &place) in places.iter().enumerate() {
+                step[place] = solved[i] / scale[i];
+            }
+            let leaves = |place: &usize| {
+                let unknown = self.problem.unknowns.at(*place);
+                (theta[*place] <= unknown.lower && step[*place] < 0.0)
+                    || (theta[*place] >= unknown.upper && step[*place] > 0.0)
+            };
+            let leaving: Vec<usize> = places.iter().copied().filter(leaves).collect();
+            if leaving.is_empty() {
+                return Some((step, 0.5 * solved.dot(&moment)));
+            }
+            leaving.iter().for_each(|&place| held[place] = true);
+        }
     }
 
-    /// Moves the estimate; `false` where it would leave its bounds.
-    fn advance(&mut self, step: &[f64]) -> bool {
-        let theta = self.theta();
-        for (place, step) in step.iter().enumerate() {
+    /// A share of a step from `theta`, within the bounds.
+    fn moved(&self, theta: &[f64], step: &[f64], share: f64) -> Vec<f64> {
+        let of = |place: usize| {
             let unknown = self.problem.unknowns.at(place);
-            let value = theta[place] + step;
-            if !(unknown.lower..=unknown.upper).contains(&value) {
-                return false;
-            }
+            (theta[place] + share * step[place]).clamp(unknown.lower, unknown.upper)
+        };
+        (0..theta.len()).map(of).collect()
+    }
+
+    /// Makes `theta` the estimate.
+    fn put(&mut self, theta: &[f64]) {
+        for (place, &value) in theta.iter().enumerate() {
+            let unknown = self.problem.unknowns.at(place);
             let info = &self.problem.model.parameters[unknown.parameter];
             let segment = unknown
                 .segment
@@ -102,9 +141,15 @@ impl Fitted {
             let rows = self.estimate.parameters.iter_mut();
             for row in rows.filter(|row| row.name == info.name && row.segment == segment) {
                 row.estimate = info.unit.from_si(value);
+                row.at_bound = if value <= unknown.lower {
+                    Some(Bound::Lower)
+                } else if value >= unknown.upper {
+                    Some(Bound::Upper)
+                } else {
+                    None
+                };
             }
             self.values.insert((info.name.clone(), segment), value);
         }
-        true
     }
 }

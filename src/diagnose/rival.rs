@@ -22,6 +22,12 @@ const UNLIKELY_SCATTER: f64 = 1e-4;
 /// 80 % power: this many standard deviations beyond the critical value.
 pub const POWER: f64 = 0.84;
 
+/// Fits whose ln L differ by less ended at the same minimum.
+const SAME: f64 = 1e-3;
+
+/// So many of the minima found are followed to where the likelihood is greatest.
+const BEST: usize = 4;
+
 /// What a likelihood ratio has to pass.
 pub struct Threshold {
     /// Independent ones that the candidates ask.
@@ -70,29 +76,41 @@ impl<'c> Rival<'c> {
         let starts = match &screened {
             Some(seen) => {
                 let further = starts_of_delay(self.case, &effect, &seen.added);
-                std::iter::once(seen.start()).chain(further).collect()
+                seen.starts().into_iter().chain(further).collect()
             }
             None => starts(self.case, &effect, &document, &self.base.document),
         };
         let tried = screened.as_ref().map_or(starts.len(), |seen| seen.starts);
-        let mut best: Option<(f64, Fitted)> = None;
         let mut failure = String::new();
+        let mut fits: Vec<(f64, Fitted)> = Vec::new();
         for start in &starts {
             match fit(self.case, self.base, &effect, document.clone(), start) {
-                Ok(fitted) => {
-                    let fitted = match effect.is_noise() {
-                        true => fitted,
-                        false => fitted.polished(self.orders),
-                    };
-                    let gain = 2.0 * (fitted.ln_likelihood(self.orders) - self.ln_likelihood);
-                    if best.as_ref().is_none_or(|(most, _)| gain > *most) {
-                        best = Some((gain, fitted));
-                    }
-                }
+                Ok(fitted) => fits.push((fitted.ln_likelihood(self.orders), fitted)),
                 Err(why) => failure = why.to_string(),
             }
         }
-        let (likelihood_ratio, fitted) = best.ok_or(failure)?;
+        // where noise is coloured, output error may lead away from what is likeliest
+        let coloured = self.orders.iter().any(|&order| order > 0);
+        if let (true, false, Some(step)) = (coloured, effect.is_noise(), starts.first()) {
+            let values = self.base.values_with(step);
+            if let Ok(fitted) = Fitted::at(self.case, document.clone(), &values) {
+                fits.push((fitted.ln_likelihood(self.orders), fitted));
+            }
+        }
+        // most starts end at the same minimum
+        fits.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+        fits.dedup_by(|(a, _), (b, _)| (*a - *b).abs() < SAME);
+        fits.truncate(BEST);
+        let polished = fits.into_iter().map(|(likelihood, fitted)| {
+            if effect.is_noise() {
+                return (likelihood, fitted);
+            }
+            let fitted = fitted.polished(self.orders);
+            (fitted.ln_likelihood(self.orders), fitted)
+        });
+        let best = polished.max_by(|(a, _), (b, _)| a.total_cmp(b));
+        let (ln_likelihood, fitted) = best.ok_or(failure)?;
+        let likelihood_ratio = 2.0 * (ln_likelihood - self.ln_likelihood);
         let declared = self.base.problem.unknowns.len();
         let freedom = (fitted.problem.unknowns.len() - declared).max(1);
         let (mut held_out, mut unpredictable) = (None, None);

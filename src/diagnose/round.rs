@@ -16,8 +16,15 @@ use super::stack::Layout;
 use super::trial::{Trial, is_tried_outright, starts};
 use crate::model::EditKind;
 
-/// Below this share the declared parameters imitate an effect but for rounding and their own curvature.
+/// Below this share the declared parameters imitate an effect but for their own curvature: it counts as visible only
+/// where even so a step promises much.
 const INVISIBLE: f64 = 0.01;
+
+/// A promise that curvature alone does not make.
+const MUCH: f64 = 20.0;
+
+/// Below this share what is left of an effect is rounding.
+const ROUNDING: f64 = 1e-4;
 
 /// A linear step must promise this much for a candidate to be fitted.
 const WORTH_A_TRIAL: f64 = 6.0;
@@ -220,7 +227,9 @@ fn is_delay(effect: &Effect) -> bool {
 }
 
 fn is_visible(screened: &Result<Screened, String>) -> bool {
-    screened.as_ref().is_ok_and(|s| s.visible >= INVISIBLE)
+    screened
+        .as_ref()
+        .is_ok_and(|s| s.visible >= INVISIBLE || (s.visible >= ROUNDING && s.promise > MUCH))
 }
 
 /// The screen of a candidate, from the best of its starts.
@@ -297,7 +306,7 @@ fn of_screen(
         Ok(seen) => seen,
     };
     let root = threshold.of(1, 1).sqrt();
-    if seen.visible < INVISIBLE {
+    if !is_visible(screened) {
         let why = "the declared parameters imitate it: these data cannot show it, whether it is there or not";
         return RefusedEffect {
             smallest_seen: None,

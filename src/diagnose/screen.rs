@@ -44,6 +44,8 @@ pub struct Screen<'c> {
 pub struct Screened {
     /// Where a fit of it begins: the one step.
     start: Values,
+    /// From where that step was made.
+    before: Values,
     /// From how many starts it was screened.
     pub starts: usize,
     /// Names of the parameters that the effect adds, free ones.
@@ -64,8 +66,18 @@ pub struct Screened {
 type Key = (String, Option<String>);
 
 impl Screened {
-    pub fn start(&self) -> Values {
-        self.start.clone()
+    /// Where fits of it begin. Of what the declared parameters imitate closely, the whole step without theirs leads far
+    /// astray: then a small share of it too.
+    pub fn starts(&self) -> Vec<Values> {
+        let mut starts = vec![self.start.clone()];
+        if self.visible < IMITATED {
+            let of = |(key, value): (&Key, &f64)| {
+                let before = self.before.get(key).copied().unwrap_or(*value);
+                (key.clone(), before + self.visible * (value - before))
+            };
+            starts.push(self.start.iter().map(of).collect());
+        }
+        starts
     }
 }
 
@@ -74,6 +86,9 @@ const ORDER_LEFT: usize = 2;
 
 /// How long after an input a residual may follow it, s.
 const AFTER: [f64; 6] = [0.0, 0.1, 0.25, 0.5, 1.0, 2.0];
+
+/// Below this share of its own an effect is closely imitated.
+const IMITATED: f64 = 0.2;
 
 /// Parts of a lone segment in which an effect must show alike.
 const PARTS: usize = 3;
@@ -123,8 +138,7 @@ impl<'c> Screen<'c> {
     /// # Errors
     /// Why it cannot be screened.
     pub fn of(&self, document: &ModelDocument, start: &Values) -> Result<Screened, String> {
-        let mut values = self.base.values.clone();
-        values.extend(start.iter().map(|(key, value)| (key.clone(), *value)));
+        let values = self.base.values_with(start);
         let problem = self
             .case
             .problem(document, &values)
@@ -168,6 +182,10 @@ impl<'c> Screen<'c> {
             let mut seen = self.in_metric(metric, &columns);
             seen.added = names.clone();
             seen.start = start.clone();
+            seen.before = keys
+                .iter()
+                .map(|key| (key.clone(), values.get(key).copied().unwrap_or(0.0)))
+                .collect();
             for (key, size) in keys.iter().zip(std::mem::take(&mut seen.sizes)) {
                 let before = values.get(key).copied().unwrap_or(0.0);
                 seen.start.insert(key.clone(), before + size);
@@ -234,6 +252,7 @@ impl<'c> Screen<'c> {
         let length = norm(&explained).max(f64::MIN_POSITIVE);
         Screened {
             start: Values::new(),
+            before: Values::new(),
             starts: 1,
             added: Vec::new(),
             visible,

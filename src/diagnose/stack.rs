@@ -72,14 +72,33 @@ impl Layout {
     }
 }
 
-/// ∂y/∂ψ at θ for the parameters of the model whose indices are `parameters`: by parameter a column over all
-/// segments, or by segment one where each has its own. `None` where the simulation leaves the range of numbers.
+/// A model at one θ, as columns.
+pub struct Linearised {
+    /// Measured minus model; NaN where there is no sample.
+    pub residual: Vec<f64>,
+    /// ∂y/∂ψ: by parameter a column over all segments, or by segment one where each has its own.
+    pub sensitivities: Vec<Vec<f64>>,
+}
+
+/// ∂y/∂ψ at θ for the parameters of the model whose indices are `parameters`. `None` where the simulation leaves the
+/// range of numbers.
 pub fn sensitivities(
     problem: &Problem,
     layout: &Layout,
     theta: &[f64],
     parameters: &[usize],
 ) -> Option<Vec<Vec<f64>>> {
+    linearised(problem, layout, theta, parameters).map(|model| model.sensitivities)
+}
+
+/// Residual and sensitivities at θ for the parameters of the model whose indices are `parameters`. `None` where the
+/// simulation leaves the range of numbers.
+pub fn linearised(
+    problem: &Problem,
+    layout: &Layout,
+    theta: &[f64],
+    parameters: &[usize],
+) -> Option<Linearised> {
     let model = &problem.model;
     let options = &problem.options;
     let columns = Columns::new(model, parameters);
@@ -99,6 +118,7 @@ pub fn sensitivities(
         count += if own { problem.segments.len() } else { 1 };
     }
     let mut stacked = vec![vec![0.0; layout.len]; count];
+    let mut residual = vec![f64::NAN; layout.len];
     let mut values = Vec::new();
     for (index, segment) in problem.segments.iter().enumerate() {
         problem.unknowns.parameters(index, theta, &mut values);
@@ -109,6 +129,15 @@ pub fn sensitivities(
         let run = machinery.run(segment, &values, |block| {
             for (output, start) in starts.iter().enumerate() {
                 let of_output = columns.of_output(output);
+                let measured = &segment.measured[output][block.first..];
+                let at = start + block.first..start + block.first + block.len;
+                for ((e, z), y) in residual[at]
+                    .iter_mut()
+                    .zip(measured)
+                    .zip(block.output(output))
+                {
+                    *e = z - y;
+                }
                 for k in 0..block.len {
                     for (parameter, value) in of_output.iter().zip(block.row(output, k)) {
                         if let Some(at) = parameters.iter().position(|p| p == parameter) {
@@ -121,5 +150,8 @@ pub fn sensitivities(
         run.ok()?;
     }
     let finite = stacked.iter().flatten().all(|value| value.is_finite());
-    finite.then_some(stacked)
+    finite.then_some(Linearised {
+        residual,
+        sensitivities: stacked,
+    })
 }

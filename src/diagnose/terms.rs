@@ -6,9 +6,8 @@ use crate::model::{Model, ModelDocument, expression};
 
 /// Angle of attack or of sideslip, by the names that the field gives them.
 pub fn is_flow_angle(name: &str) -> bool {
-    ["alpha", "beta", "alfa", "aoa", "aos"]
-        .iter()
-        .any(|angle| name.starts_with(angle))
+    let angles = ["alpha", "beta", "alfa", "aoa", "aos"];
+    angles.iter().any(|angle| name.starts_with(angle)) && !name.contains("dot")
 }
 
 fn is_sideslip(name: &str) -> bool {

@@ -210,9 +210,7 @@ pub fn fit(
     if let EffectKind::Treatment(Treatment::ProcessNoise) = effect.kind {
         return filtered(case, base, &effect.target);
     }
-    let mut values = base.values.clone();
-    values.extend(start.iter().map(|(key, value)| (key.clone(), *value)));
-    Fitted::trial(case, document, &values)
+    Fitted::trial(case, document, &base.values_with(start))
 }
 
 /// The declared model fitted by filter error, with process noise on one state.

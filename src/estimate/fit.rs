@@ -55,6 +55,7 @@ pub(super) fn histories_of(
             residual: measured.iter().zip(&model).map(|(z, y)| z - y).collect(),
             measured: measured.clone(),
             model,
+            declared: Vec::new(),
         });
         TimeHistory {
             segment: segment.label.clone(),

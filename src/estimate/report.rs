@@ -254,6 +254,9 @@ pub struct OutputSeries {
     #[serde(deserialize_with = "nulls_as_nan")]
     pub measured: Vec<f64>,
     pub model: Vec<f64>,
+    /// Of a diagnosis: the declared model, without the effects that were found; empty otherwise.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub declared: Vec<f64>,
     /// measured - model; null where nothing was measured.
     #[schema(value_type = Vec<Option<f64>>)]
     #[serde(deserialize_with = "nulls_as_nan")]
@@ -361,6 +364,7 @@ mod tests {
             unit: "-".into(),
             measured: vec![1.0, f64::NAN],
             model: vec![0.5, 0.5],
+            declared: Vec::new(),
             residual: vec![0.5, f64::NAN],
         };
         let text = serde_json::to_string(&series).unwrap();

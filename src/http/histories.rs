@@ -164,7 +164,16 @@ fn thinned(mut history: TimeHistory, most: usize) -> SegmentHistory {
     let outputs = history
         .outputs
         .iter()
-        .flat_map(|series| [&*series.measured, &*series.model, &*series.residual]);
+        .flat_map(|series| {
+            [
+                &series.measured,
+                &series.model,
+                &series.residual,
+                &series.declared,
+            ]
+        })
+        .filter(|values| !values.is_empty())
+        .map(Vec::as_slice);
     let kept = rows(&inputs.chain(outputs).collect::<Vec<_>>(), samples, most);
     let thin = |values: &mut Vec<f64>| *values = pick(values, &kept);
     thin(&mut history.time);
@@ -175,10 +184,14 @@ fn thinned(mut history: TimeHistory, most: usize) -> SegmentHistory {
         measured,
         model,
         residual,
+        declared,
         ..
     } in &mut history.outputs
     {
         [measured, model, residual].into_iter().for_each(thin);
+        if !declared.is_empty() {
+            thin(declared);
+        }
     }
     SegmentHistory { samples, history }
 }
@@ -218,11 +231,16 @@ fn histories_as_csv(segments: Vec<SegmentHistory>) -> Result<Vec<u8>, Problem> {
         let inputs = inputs.map(|s| (header(&s.name, &s.unit), s.values.clone()));
         let outputs = history.outputs.iter().flat_map(|s| {
             let of = |what: &str| header(&format!("{}_{what}", s.name), &s.unit);
-            [
-                (of("measured"), s.measured.clone()),
-                (of("model"), s.model.clone()),
-                (of("residual"), s.residual.clone()),
-            ]
+            let columns = [
+                (of("measured"), &s.measured),
+                (of("declared"), &s.declared),
+                (of("model"), &s.model),
+                (of("residual"), &s.residual),
+            ];
+            columns
+                .into_iter()
+                .filter(|(_, values)| !values.is_empty())
+                .map(|(name, values)| (name, values.clone()))
         });
         inputs.chain(outputs).collect()
     };
@@ -273,6 +291,7 @@ mod tests {
             unit: "rad/s".into(),
             measured: vec![1.0, f64::NAN, 3.0],
             model: vec![1.0, 2.0, 2.0],
+            declared: Vec::new(),
             residual: vec![0.0, f64::NAN, 1.0],
         };
         TimeHistory {

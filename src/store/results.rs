@@ -91,6 +91,9 @@ struct HistoryHeader {
 struct SeriesHeader {
     name: String,
     unit: String,
+    /// Of an output: whether there is a column of the declared model.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    declared: bool,
 }
 
 impl SeriesHeader {
@@ -98,11 +101,23 @@ impl SeriesHeader {
         Self {
             name: name.to_string(),
             unit: unit.to_string(),
+            declared: false,
         }
+    }
+
+    fn of_output(series: &OutputSeries) -> Self {
+        Self {
+            declared: !series.declared.is_empty(),
+            ..Self::of(&series.name, &series.unit)
+        }
+    }
+
+    fn columns(&self) -> usize {
+        if self.declared { 4 } else { 3 }
     }
 }
 
-/// Columns: time; each input; of each output measured, model, residual.
+/// Columns: time; each input; of each output measured, model, residual, and of a diagnosis the declared model.
 fn encode_history(history: &TimeHistory) -> serde_json::Result<Vec<u8>> {
     let header = HistoryHeader {
         segment: history.segment.clone(),
@@ -115,16 +130,19 @@ fn encode_history(history: &TimeHistory) -> serde_json::Result<Vec<u8>> {
         outputs: history
             .outputs
             .iter()
-            .map(|s| SeriesHeader::of(&s.name, &s.unit))
+            .map(SeriesHeader::of_output)
             .collect(),
     };
     let inputs = history.inputs.iter().map(|series| series.values.as_slice());
     let outputs = history.outputs.iter().flat_map(|series| {
-        [
-            series.measured.as_slice(),
-            series.model.as_slice(),
-            series.residual.as_slice(),
-        ]
+        let all = [
+            &series.measured,
+            &series.model,
+            &series.residual,
+            &series.declared,
+        ];
+        let count = SeriesHeader::of_output(series).columns();
+        all.into_iter().take(count).map(Vec::as_slice)
     });
     let all: Vec<&[f64]> = std::iter::once(history.time.as_slice())
         .chain(inputs)
@@ -137,7 +155,8 @@ fn decode_history(bytes: &[u8]) -> Result<TimeHistory, StoreError> {
     let corrupt = |why: String| StoreError::corrupt("a time history", why);
     let (header, columns): (HistoryHeader, _) =
         columns::decode(bytes).map_err(|error| corrupt(error.to_string()))?;
-    if columns.len() != 1 + header.inputs.len() + 3 * header.outputs.len() {
+    let of_outputs: usize = header.outputs.iter().map(SeriesHeader::columns).sum();
+    if columns.len() != 1 + header.inputs.len() + of_outputs {
         return Err(corrupt(
             "it has another number of columns than its header says".into(),
         ));
@@ -160,6 +179,7 @@ fn decode_history(bytes: &[u8]) -> Result<TimeHistory, StoreError> {
         measured: next(),
         model: next(),
         residual: next(),
+        declared: if s.declared { next() } else { Vec::new() },
     });
     let outputs = outputs.collect();
     Ok(TimeHistory {
@@ -242,6 +262,11 @@ mod tests {
             measured: vec![1.0, 2.0],
             model: vec![1.5, 2.5],
             residual: vec![-0.5, -0.5],
+            declared: Vec::new(),
+        };
+        let diagnosed = OutputSeries {
+            declared: vec![1.75, 2.75],
+            ..series("r")
         };
         let history = TimeHistory {
             segment: "a".into(),
@@ -252,7 +277,7 @@ mod tests {
                 unit: "rad".into(),
                 values: vec![0.0, 1.0],
             }],
-            outputs: vec![series("q"), series("alpha")],
+            outputs: vec![series("q"), diagnosed, series("alpha")],
         };
         let bytes = encode_history(&history).unwrap();
         assert_eq!(decode_history(&bytes).unwrap(), history);

@@ -1,13 +1,16 @@
 //! The confusion matrix of the diagnosis: every effect of the catalogue, put undeclared into simulated flights at
 //! three strengths, with white and with coloured noise; and flights with nothing undeclared.
 //!
-//! `cargo bench --bench confusion [cases] [empty] [first seed] [pairs] [aircraft, or part of an effect's name]`: `cases` for
-//! each effect, strength and colour; `empty` ones for each aircraft and colour; `pairs` of two moderate effects at once. The strength of an effect is the likelihood ratio that it is worth to
-//! who knows it: 30 (weak), 100 (moderate), 300 (clear). Seeds below 1 000 000 are for tuning; the figure is made with
-//! others.
+//! `cargo bench --bench confusion [cases] [empty] [first seed] [pairs] [aircraft] [part of an effect's name]`: `cases` for
+//! each effect, strength and colour; `empty` ones for each aircraft and colour; `pairs` of two moderate effects at once,
+//! for each too. The strength of an effect is the likelihood ratio that it is worth to who knows it: 30 (weak), 100
+//! (moderate), 300 (clear); outliers are 4, 10 or 30 spikes of ten noise deviations. Seeds below 1 000 000 are for tuning;
+//! the figure is made with others. With CONFUSION_STEPS in the environment each step of each diagnosis is told.
 
 #[path = "confusion/aircraft.rs"]
 mod aircraft;
+#[path = "confusion/reached.rs"]
+mod reached;
 #[path = "confusion/strength.rs"]
 mod strength;
 #[path = "confusion/tally.rs"]
@@ -16,10 +19,11 @@ mod tally;
 use std::ops::ControlFlow;
 
 use rayon::prelude::*;
-use trimtab::diagnose::{Conclusion, Diagnosis, Effect, diagnose};
+use trimtab::diagnose::{Conclusion, Diagnosis, Effect, Step, diagnose};
 use trimtab::simulate::NoiseColour;
 
-use aircraft::{Aircraft, aircraft};
+use aircraft::{Aircraft, Flown, aircraft};
+use reached::Reached;
 use tally::{Answer, Both, Tally};
 
 const STRENGTHS: [(&str, f64); 3] = [("weak", 30.0), ("moderate", 100.0), ("clear", 300.0)];
@@ -32,11 +36,6 @@ fn main() {
     let mut numbers = arguments.iter().filter_map(|a| a.parse::<u64>().ok());
     let mut next = |otherwise: u64| numbers.next().unwrap_or(otherwise);
     let (cases, empty, seed, pairs) = (next(1), next(100), next(1_000_000), next(50));
-    let part = arguments
-        .iter()
-        .find(|a| a.parse::<u64>().is_err())
-        .cloned()
-        .unwrap_or_default();
     let colours = [
         ("white", NoiseColour::White),
         (
@@ -49,12 +48,10 @@ fn main() {
     let mut tally = Tally::default();
     let mut both: Vec<Both> = Vec::new();
     let names: Vec<&str> = aircraft().iter().map(|aircraft| aircraft.name).collect();
-    let chosen = names.iter().find(|name| **name == part).copied();
-    let part = if chosen.is_some() {
-        String::new()
-    } else {
-        part
-    };
+    let words = || arguments.iter().filter(|a| a.parse::<u64>().is_err());
+    let chosen = words().find_map(|word| names.iter().find(|name| *name == word).copied());
+    let part = words().find(|word| !names.contains(&word.as_str()));
+    let part = part.cloned().unwrap_or_default();
     for aircraft in aircraft()
         .into_iter()
         .filter(|aircraft| chosen.is_none_or(|name| name == aircraft.name))
@@ -86,15 +83,15 @@ fn main() {
                 .collect();
             let answers: Vec<Answer> = (jobs.par_iter().enumerate())
                 .map(|(number, ((effect, strength, size), _))| {
-                    let diagnosis =
-                        run(&aircraft, &[(effect, *size)], colour, seed + number as u64);
-                    Answer::of(
-                        &aircraft,
-                        colour_name,
-                        strength,
-                        Some((effect, *size)),
-                        diagnosis.as_ref(),
-                    )
+                    let effects = [(effect, *size)];
+                    let seed = seed + number as u64;
+                    let flown = run(&aircraft, &effects, colour, seed);
+                    let reached = (flown.as_ref()).map(|(flown, diagnosis)| {
+                        Reached::of(&aircraft, flown, &effects, diagnosis)
+                    });
+                    let diagnosis = flown.as_ref().map(|(_, diagnosis)| diagnosis);
+                    let truth = Some((effect, *size, reached.unwrap_or_default()));
+                    Answer::of(&aircraft, colour_name, strength, truth, diagnosis, seed)
                 })
                 .collect();
             eprintln!(
@@ -116,8 +113,10 @@ fn main() {
             let answers: Vec<Answer> = (0..empty)
                 .into_par_iter()
                 .map(|number| {
-                    let diagnosis = run(&aircraft, &[], colour, seed + 500_000 + number);
-                    Answer::of(&aircraft, colour_name, "empty", None, diagnosis.as_ref())
+                    let seed = seed + 500_000 + number;
+                    let flown = run(&aircraft, &[], colour, seed);
+                    let diagnosis = flown.as_ref().map(|(_, diagnosis)| diagnosis);
+                    Answer::of(&aircraft, colour_name, "empty", None, diagnosis, seed)
                 })
                 .collect();
             tally.extend(answers);
@@ -149,8 +148,9 @@ fn two_at_once(
             let first = (number as usize * 7919) % n;
             let second = (first + 1 + (number as usize * 104_729) % (n - 1)) % n;
             let (a, b) = (moderate[first], moderate[second]);
-            let diagnosis = run(aircraft, &[(&a.0, a.2), (&b.0, b.2)], colour, seed + number);
-            Both::of(aircraft, [a.0.clone(), b.0.clone()], diagnosis.as_ref())
+            let flown = run(aircraft, &[(&a.0, a.2), (&b.0, b.2)], colour, seed + number);
+            let diagnosis = flown.as_ref().map(|(_, diagnosis)| diagnosis);
+            Both::of(aircraft, [a.0.clone(), b.0.clone()], diagnosis)
         })
         .collect()
 }
@@ -161,10 +161,16 @@ fn run(
     effects: &[(&Effect, f64)],
     colour: &NoiseColour,
     seed: u64,
-) -> Option<Diagnosis> {
-    let case = aircraft.case(effects, Some(colour), seed)?;
-    match diagnose(&case, &mut |_| ControlFlow::Continue(())) {
-        Ok(Conclusion { diagnosis, .. }) => Some(diagnosis),
+) -> Option<(Flown, Diagnosis)> {
+    let flown = aircraft.flown(effects, Some(colour), seed)?;
+    let mut tell = |step: Option<&Step>| {
+        if let (Some(step), true) = (step, std::env::var_os("CONFUSION_STEPS").is_some()) {
+            eprintln!("seed {seed}: {step:?}");
+        }
+        ControlFlow::Continue(())
+    };
+    match diagnose(&flown.case, &mut tell) {
+        Ok(Conclusion { diagnosis, .. }) => Some((flown, diagnosis)),
         Err(_) => None,
     }
 }

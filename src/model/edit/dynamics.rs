@@ -120,7 +120,7 @@ fn channel_of(edit: &Edit) -> Result<(&str, Option<&str>), EditError> {
     Ok((channel.trim(), inside.or(edit.unit.as_deref())))
 }
 
-/// The angle whose history an effect sees: a state or a definition.
+/// The angle whose history an effect sees: a state, a definition or a recorded input.
 pub(super) fn angle<'e>(sheet: &Sheet<'e>) -> Result<(&'e str, String), EditError> {
     let angle = sheet.edit.term.as_deref().unwrap_or("alpha");
     let document = &sheet.document;
@@ -128,11 +128,13 @@ pub(super) fn angle<'e>(sheet: &Sheet<'e>) -> Result<(&'e str, String), EditErro
         let definition = document.definitions.get(angle);
         definition.map(|definition| &definition.unit)
     });
+    let unit = unit.or_else(|| document.inputs.get(angle).map(|input| &input.unit));
     match unit {
         Some(unit) => Ok((angle, unit.clone())),
         None => {
             let known = document.states.keys().chain(document.definitions.keys());
-            Err(sheet.no_target("state or definition", angle, known))
+            let known = known.chain(document.inputs.keys());
+            Err(sheet.no_target("state, definition or input", angle, known))
         }
     }
 }

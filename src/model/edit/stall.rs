@@ -9,7 +9,7 @@ use crate::flight::Dimension;
 /// τ1 Ẋ = ½ (1 - tanh a1 (α - τ2 α̇ - α*)) - X; in a lift α becomes ((1 + √X)/2)² α, to a moment C (1 - X) is added.
 ///
 /// A moment is a coefficient `Cm...` or the equation of a rate; all other targets are lifts, and must read α. α̇ is the
-/// derivative of the state α, or a definition `alphadot`; without either, τ2 is left out.
+/// derivative of the state α, or a definition or input `alphadot`; without either, τ2 is left out.
 pub(super) fn hysteresis(sheet: &mut Sheet) -> Result<(), EditError> {
     let (angle, unit) = angle(sheet)?;
     let targets: Vec<&str> = sheet.edit.target.split('+').map(str::trim).collect();
@@ -25,6 +25,7 @@ pub(super) fn hysteresis(sheet: &mut Sheet) -> Result<(), EditError> {
     sheet.add(&time, unknown("s", 0.2, Some((0.01, 2.0)), words));
     let rate = match (sheet.document.states.get(angle), format!("{angle}dot")) {
         (_, name) if sheet.document.definitions.contains_key(&name) => Some(name),
+        (_, name) if sheet.document.inputs.contains_key(&name) => Some(name),
         (Some(_), _) => Some(String::new()),
         (None, _) => None,
     };

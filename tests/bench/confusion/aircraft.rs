@@ -7,7 +7,7 @@ use trimtab::diagnose::{Case, Effect, EffectKind, Flight, Treatment, candidates}
 use trimtab::estimate::{Options, Role};
 use trimtab::flight::Maneuver;
 use trimtab::model::{EditKind, Model, ModelDocument, catalog};
-use trimtab::simulate::{InputDesign, NoiseColour, Scenario, ScenarioEffect, Steps};
+use trimtab::simulate::{InputDesign, NoiseColour, Scenario, ScenarioEffect, ScenarioInput, Steps};
 
 /// An aircraft with its flights: a declared model, and scenarios by role.
 pub struct Aircraft {
@@ -107,12 +107,11 @@ impl Aircraft {
         let Some(case) = self.case(&[], None, 0) else {
             return Vec::new();
         };
-        let fits = |effect: &Effect| {
-            !matches!(effect.kind, EffectKind::Treatment(Treatment::ProcessNoise))
-        };
+        let outliers = |output| Effect::treatment(Treatment::SensorOutliers, output);
+        let outputs = self.document.outputs.keys();
         candidates(&case, &self.model)
             .into_iter()
-            .filter(fits)
+            .chain(outputs.map(outliers))
             .collect()
     }
 
@@ -138,7 +137,18 @@ impl Aircraft {
         colour: Option<&NoiseColour>,
         seed: u64,
     ) -> Option<Case> {
+        Some(self.flown(effects, colour, seed)?.case)
+    }
+
+    /// The same, with what was true of it.
+    pub fn flown(
+        &self,
+        effects: &[(&Effect, f64)],
+        colour: Option<&NoiseColour>,
+        seed: u64,
+    ) -> Option<Flown> {
         let mut flights = Vec::new();
+        let mut truth = IndexMap::new();
         for (number, (role, label, scenario)) in self.flights.iter().enumerate() {
             let mut scenario = scenario.clone();
             scenario.seed = seed.wrapping_mul(101).wrapping_add(number as u64);
@@ -153,7 +163,8 @@ impl Aircraft {
                 // a gust comes once
                 if !is_local(effect) || number == 0 {
                     trim(&mut scenario, effect, *size);
-                    scenario.effects.push(scenario_effect(effect, *size));
+                    slow_down(&mut scenario, effect);
+                    scenario.effects.push(self.scenario_effect(effect, *size));
                 }
             }
             if effects
@@ -164,14 +175,63 @@ impl Aircraft {
             }
             let maneuver = scenario.fly(&self.model).ok()?;
             flights.push(flight(&maneuver, *role, label, scenario.step));
+            truth.insert(label.to_string(), scenario.truth);
         }
-        Some(Case {
+        let case = Case {
             document: self.document.clone(),
             flights,
             options: Options::default(),
             candidates: Vec::new(),
-        })
+        };
+        Some(Flown { case, truth })
     }
+
+    fn scenario_effect(&self, effect: &Effect, size: f64) -> ScenarioEffect {
+        let target = &effect.target;
+        let of = |kind: &str, value: Option<f64>, values: IndexMap<String, f64>| ScenarioEffect {
+            kind: kind.to_string(),
+            target: target.clone(),
+            term: None,
+            parameter: None,
+            unit: None,
+            value,
+            values,
+        };
+        match effect.kind {
+            EffectKind::Treatment(Treatment::SensorOutliers) => {
+                let scenario = &self.flights[0].2;
+                let samples = scenario.duration / scenario.step;
+                let values = [
+                    ("spikes", size / samples),
+                    ("size", SPIKE * scenario.outputs[target].noise),
+                ];
+                let values = values.map(|(name, value)| (name.to_string(), value));
+                return of("sensor_outliers", None, values.into_iter().collect());
+            }
+            EffectKind::Treatment(_) => return of("process_noise", Some(size), IndexMap::new()),
+            EffectKind::Edit(_) => {}
+        }
+        let mut values = IndexMap::new();
+        if effect.kind == EffectKind::Edit(EditKind::Gust) {
+            values.insert(format!("{target}_gust_time"), 12.0);
+            values.insert(format!("{target}_gust_length"), 1.5);
+        }
+        ScenarioEffect {
+            value: Some(size),
+            values,
+            ..ScenarioEffect::from(&effect.edits[0])
+        }
+    }
+}
+
+/// Noise deviations that a spike is high; the size of outliers is how many there are in a recording.
+const SPIKE: f64 = 10.0;
+
+/// A case and what was true in it.
+pub struct Flown {
+    pub case: Case,
+    /// Parameters, in their own units, by flight.
+    pub truth: IndexMap<String, IndexMap<String, f64>>,
 }
 
 /// The flight is trimmed whatever the recorder says of the deflection.
@@ -186,6 +246,28 @@ fn trim(scenario: &mut Scenario, effect: &Effect, size: f64) {
     }
 }
 
+/// Derivatives that scale with dynamic pressure show where the speed changes.
+fn slow_down(scenario: &mut Scenario, effect: &Effect) {
+    if effect.term.as_deref() != Some("qbar") {
+        return;
+    }
+    let Some(speed) = scenario.channels.shift_remove("V") else {
+        return;
+    };
+    let design = InputDesign::Recorded {
+        file: None,
+        channel: None,
+        time: vec![0.0, 5.0, scenario.duration],
+        values: vec![speed.value, speed.value, 0.85 * speed.value],
+    };
+    let input = ScenarioInput {
+        unit: speed.unit,
+        trim: 0.0,
+        design,
+    };
+    scenario.inputs.insert("V".to_string(), input);
+}
+
 /// How alpha and q move off in the first moment.
 fn drift(scenario: &Scenario, model: &Model) -> Option<[f64; 2]> {
     let mut still = scenario.clone();
@@ -198,6 +280,10 @@ fn drift(scenario: &Scenario, model: &Model) -> Option<[f64; 2]> {
         output.colour = NoiseColour::White;
     }
     still.channels.clear();
+    // what the recorder does to it is no matter of trim
+    still
+        .effects
+        .retain(|effect| effect.kind == EditKind::MissingTerm.name());
     let maneuver = still.fly(model).ok()?;
     let rate = |name: &str| {
         let values = &maneuver.channels().get(name)?.values;
@@ -228,19 +314,6 @@ fn settle(scenario: &mut Scenario, model: &Model) {
         let determinant = slopes[0][0] * slopes[1][1] - slopes[0][1] * slopes[1][0];
         scenario.truth["alpha_eq"] -= (slopes[1][1] * now[0] - slopes[0][1] * now[1]) / determinant;
         scenario.truth["de_eq"] -= (slopes[0][0] * now[1] - slopes[1][0] * now[0]) / determinant;
-    }
-}
-
-fn scenario_effect(effect: &Effect, size: f64) -> ScenarioEffect {
-    let mut values = IndexMap::new();
-    if effect.kind == EffectKind::Edit(EditKind::Gust) {
-        values.insert(format!("{}_gust_time", effect.target), 12.0);
-        values.insert(format!("{}_gust_length", effect.target), 1.5);
-    }
-    ScenarioEffect {
-        value: Some(size),
-        values,
-        ..ScenarioEffect::from(&effect.edits[0])
     }
 }
 

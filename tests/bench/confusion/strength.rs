@@ -2,8 +2,10 @@
 
 use std::ops::ControlFlow;
 
-use trimtab::diagnose::{Effect, EffectKind};
-use trimtab::estimate::{ErrorBoundsKind, Noise, output_error};
+use trimtab::diagnose::{Effect, EffectKind, Treatment};
+use trimtab::estimate::{
+    ErrorBoundsKind, Estimator, Noise, OutputFit, ProcessNoise, filter_error, output_error,
+};
 use trimtab::model::{EditKind, ModelDocument};
 use trimtab::simulate::NoiseColour;
 
@@ -17,6 +19,13 @@ pub fn sizes(
     ratios: &[f64],
 ) -> Vec<Option<f64>> {
     let first = first_guess(effect);
+    if effect.kind == EffectKind::Treatment(Treatment::SensorOutliers) {
+        // spikes are counted, not weighed: each is worth a likelihood ratio of about SPIKE²
+        return ratios
+            .iter()
+            .map(|ratio| Some((ratio / 10.0).max(4.0)))
+            .collect();
+    }
     ratios
         .iter()
         .map(|&ratio| {
@@ -63,6 +72,9 @@ fn worth_with(
     colour: &NoiseColour,
     size: f64,
 ) -> Option<f64> {
+    if effect.is_noise() {
+        return worth_as_noise(aircraft, effect, colour, size);
+    }
     let case = aircraft.case(&[(effect, size)], None, 1)?;
     let mut problem = case.problem(document, &Default::default()).ok()?;
     problem.options.noise = Noise::Given {
@@ -86,10 +98,45 @@ fn worth_with(
     Some(sum)
 }
 
+/// Turbulence makes no noise-free flight: what it is worth to the filter, on the average of some flights.
+fn worth_as_noise(
+    aircraft: &Aircraft,
+    effect: &Effect,
+    colour: &NoiseColour,
+    size: f64,
+) -> Option<f64> {
+    const FLIGHTS: u64 = 3;
+    let of = |seed: u64| {
+        let case = aircraft.case(&[(effect, size)], Some(colour), 900_000 + seed)?;
+        let mut problem = case.problem(&aircraft.document, &Default::default()).ok()?;
+        problem.options.error_bounds = ErrorBoundsKind::Conventional;
+        let without = output_error(&problem, &mut |_| ControlFlow::Continue(())).ok()?;
+        problem.options.estimator = Estimator::FilterError;
+        problem.options.process_noise = (problem.model.states.iter())
+            .filter(|state| state.name != effect.target)
+            .map(|state| {
+                let none = ProcessNoise {
+                    start: Some(0.0),
+                    fixed: true,
+                };
+                (state.name.clone(), none)
+            })
+            .collect();
+        let with = filter_error(&problem, &mut |_| ControlFlow::Continue(())).ok()?;
+        // ln L of white residuals: -n/2 ln det R, R diagonal
+        let gain = |(before, after): (&OutputFit, &OutputFit)| (before.rms / after.rms).ln();
+        let outputs = without.estimate.outputs.iter().zip(&with.estimate.outputs);
+        let samples: usize = without.histories.iter().map(|h| h.time.len()).sum();
+        Some(2.0 * samples as f64 * outputs.map(gain).sum::<f64>())
+    };
+    let all: Vec<f64> = (0..FLIGHTS).filter_map(of).collect();
+    (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
+}
+
 fn first_guess(effect: &Effect) -> f64 {
     use EditKind::*;
     let EffectKind::Edit(kind) = effect.kind else {
-        return 1.0;
+        return 0.01;
     };
     match kind {
         SensorBias | InputBias | Gust | InitialState => 0.005,
@@ -106,6 +153,9 @@ fn first_guess(effect: &Effect) -> f64 {
 
 /// Sizes that the effect's edit allows.
 fn in_range(aircraft: &Aircraft, effect: &Effect, size: f64) -> bool {
+    if effect.edits.is_empty() {
+        return true;
+    }
     let Ok(document) = effect.apply(&aircraft.document) else {
         return false;
     };

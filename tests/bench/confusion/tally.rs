@@ -5,6 +5,10 @@ use std::collections::BTreeMap;
 use trimtab::diagnose::{Diagnosis, Effect};
 
 use crate::aircraft::Aircraft;
+use crate::reached::Reached;
+
+/// Validation error at most this share above the true model's.
+const AS_GOOD: f64 = 1.05;
 
 /// What one diagnosis answered.
 pub struct Answer {
@@ -13,6 +17,7 @@ pub struct Answer {
     strength: String,
     truth: Option<Effect>,
     size: f64,
+    seed: u64,
     /// The effect named first.
     first: Option<String>,
     /// The truth is the first, or a member of its group.
@@ -23,6 +28,7 @@ pub struct Answer {
     verdict: String,
     /// Why the truth was refused.
     why: String,
+    reached: Reached,
 }
 
 impl Answer {
@@ -30,13 +36,14 @@ impl Answer {
         aircraft: &Aircraft,
         colour: &str,
         strength: &str,
-        sized: Option<(&Effect, f64)>,
+        sized: Option<(&Effect, f64, Reached)>,
         diagnosis: Option<&Diagnosis>,
+        seed: u64,
     ) -> Self {
-        let (truth, size) = (
-            sized.map(|(truth, _)| truth),
-            sized.map_or(0.0, |(_, size)| size),
-        );
+        let (truth, size, reached) = match sized {
+            Some((truth, size, reached)) => (Some(truth), size, reached),
+            None => (None, 0.0, Reached::default()),
+        };
         let first = diagnosis.and_then(|d| d.effects.first());
         let is_truth = |effect: &Effect| truth.is_some_and(|truth| effect == truth);
         Self {
@@ -45,6 +52,8 @@ impl Answer {
             strength: strength.to_string(),
             truth: truth.cloned(),
             size,
+            seed,
+            reached,
             right: first
                 .is_some_and(|first| first.group.iter().any(|member| is_truth(&member.effect))),
             single: first.is_some_and(|first| is_truth(&first.effect)),
@@ -113,6 +122,18 @@ impl Both {
     }
 }
 
+/// Of the answers that name the truth and nothing else.
+fn unbiased(answers: &[&Answer]) -> String {
+    let single = answers
+        .iter()
+        .filter(|a| a.right && a.single && a.verdict == "named");
+    let (count, whole) = single.fold((0, 0), |(count, whole), answer| {
+        let one = usize::from(answer.reached.biased.is_empty());
+        (count + one, whole + 1)
+    });
+    format!("{count} of {whole}")
+}
+
 #[derive(Default)]
 pub struct Tally(Vec<Answer>);
 
@@ -153,8 +174,8 @@ impl Tally {
         {
             let truth = answer.truth.as_ref().map_or(String::new(), Effect::name);
             println!(
-                "  refused {truth} = {:.4} ({}, {}): {}",
-                answer.size, answer.strength, answer.colour, answer.why
+                "  refused {truth} = {:.4} (seed {}, {}, {}): {}",
+                answer.size, answer.seed, answer.strength, answer.colour, answer.why
             );
         }
         println!("\nnamed behind the right one:");
@@ -167,7 +188,28 @@ impl Tally {
                 answer.more.join(", ")
             );
         }
-        println!("\naircraft      noise     strength   cases  right  named first  further effects");
+        println!(
+            "\nright, but predicted worse than 5 % above the true model, or a declared parameter still biased:"
+        );
+        for answer in self.0.iter().filter(|a| a.right) {
+            let truth = answer.truth.as_ref().map_or(String::new(), Effect::name);
+            let ratio = answer.reached.error_ratio.unwrap_or(1.0);
+            if ratio > AS_GOOD || !answer.reached.biased.is_empty() {
+                let biased: Vec<String> = (answer.reached.biased.iter())
+                    .map(|(name, off)| format!("{name} {off:.1}"))
+                    .collect();
+                let named = answer.first.as_deref().unwrap_or_default();
+                println!(
+                    "  {truth} ({}, {}; named {named}): error ratio {ratio:.3}, biased {}",
+                    answer.strength,
+                    answer.colour,
+                    biased.join(", ")
+                );
+            }
+        }
+        println!(
+            "\naircraft      noise     strength   cases  right  named first  further effects  predicts as the true model  unbiased  unbiased where named singly"
+        );
         let mut cells: BTreeMap<(&str, &str, &str), Vec<&Answer>> = BTreeMap::new();
         for answer in &self.0 {
             cells
@@ -179,6 +221,10 @@ impl Tally {
             let n = answers.len();
             let share = |count: usize| format!("{:5.1} %", 100.0 * count as f64 / n as f64);
             let right = answers.iter().filter(|a| a.right).count();
+            let of_right = |is: &dyn Fn(&Reached) -> bool| {
+                let found = answers.iter().filter(|a| a.right && is(&a.reached)).count();
+                format!("{:5.1} %", 100.0 * found as f64 / right.max(1) as f64)
+            };
             let single = answers.iter().filter(|a| a.single).count();
             let more = answers.iter().filter(|a| !a.more.is_empty()).count();
             if *strength == "empty" {
@@ -194,10 +240,13 @@ impl Tally {
                 );
             } else {
                 println!(
-                    "{aircraft:13} {colour:9} {strength:9} {n:6}  {}  {}  {}",
+                    "{aircraft:13} {colour:9} {strength:9} {n:6}  {}  {}  {}  {}  {}  {}",
                     share(right),
                     share(single),
-                    share(more)
+                    share(more),
+                    of_right(&|reached| reached.error_ratio.is_none_or(|ratio| ratio < AS_GOOD)),
+                    of_right(&|reached| reached.biased.is_empty()),
+                    unbiased(answers),
                 );
             }
         }
