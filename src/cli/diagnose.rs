@@ -1,6 +1,7 @@
 //! `trimtab diagnose`: what a model lacks, here and now.
 
 use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
 
 use comfy_table::Table;
 use comfy_table::presets::UTF8_BORDERS_ONLY;
@@ -8,8 +9,9 @@ use comfy_table::presets::UTF8_BORDERS_ONLY;
 use super::progress::Progress;
 use super::request::Request;
 use super::{Failure, table};
+use crate::dashboard::history_svg;
 use crate::diagnose::{Diagnosis, FitChange, Refusal};
-use crate::estimate::{Role, five_digits};
+use crate::estimate::{Role, TimeHistory, five_digits};
 use crate::job::{self, JobKind};
 
 /// Fits a model, finds what it lacks, adds that, and shows the error before and after.
@@ -20,6 +22,9 @@ pub struct Diagnose {
     /// Show every candidate that was refused, with the reason.
     #[arg(long)]
     all: bool,
+    /// Write a picture of each segment to this directory: measured, declared model and model with its effects.
+    #[arg(long, value_name = "DIRECTORY")]
+    figures: Option<PathBuf>,
     /// Print the whole result as JSON instead.
     #[arg(long)]
     json: bool,
@@ -48,6 +53,9 @@ impl Diagnose {
             return Err(Failure::new(result.estimate.reason));
         };
         progress.finish(diagnosis.verdict.name());
+        if let Some(directory) = &self.figures {
+            write_figures(&result.histories, directory)?;
+        }
         if self.json {
             let text = serde_json::to_string_pretty(&result)
                 .map_err(|error| Failure::new(error.to_string()))?;
@@ -58,6 +66,27 @@ impl Diagnose {
         }
         Ok(())
     }
+}
+
+/// One file for each segment, by its label.
+fn write_figures(histories: &[TimeHistory], directory: &Path) -> Result<(), Failure> {
+    let unwritten =
+        |path: &Path, error: std::io::Error| Failure::new(format!("{}: {error}", path.display()));
+    std::fs::create_dir_all(directory).map_err(|error| unwritten(directory, error))?;
+    for history in histories {
+        let plain = |c: char| {
+            if c.is_alphanumeric() || c == '-' {
+                c
+            } else {
+                '_'
+            }
+        };
+        let name: String = history.segment.chars().map(plain).collect();
+        let path = directory.join(format!("{name}.svg"));
+        let svg = history_svg(history).map_err(Failure::new)?;
+        std::fs::write(&path, svg).map_err(|error| unwritten(&path, error))?;
+    }
+    Ok(())
 }
 
 /// The refused candidates, the error before and after, and the verdict last.

@@ -87,7 +87,7 @@ fn draw(
         .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], MODEL.stroke_width(2)));
     let mut legend = chart.configure_series_labels();
     legend
-        .position(SeriesLabelPosition::UpperRight)
+        .position(emptiest(&measured, time, range))
         .background_style(WHITE.mix(0.8))
         .label_font(("sans-serif", 12));
     legend.draw().map_err(|error| error.to_string())?;
@@ -120,6 +120,31 @@ fn draw(
     }
     .map_err(|error| error.to_string())?;
     Ok(())
+}
+
+/// The corner in which a legend hides the fewest samples.
+fn emptiest(measured: &[(f64, f64)], time: &[f64], (low, high): (f64, f64)) -> SeriesLabelPosition {
+    let (first, last) = (
+        time.first().copied().unwrap_or(0.0),
+        time.last().copied().unwrap_or(1.0),
+    );
+    let hidden = |(right, lower): (bool, bool)| {
+        let within = |(t, v): &&(f64, f64)| {
+            let (x, y) = ((t - first) / (last - first), (v - low) / (high - low));
+            (if right { x > 0.8 } else { x < 0.2 }) && (if lower { y < 0.5 } else { y > 0.5 })
+        };
+        measured.iter().filter(within).count()
+    };
+    let corners = [
+        ((true, false), SeriesLabelPosition::UpperRight),
+        ((false, false), SeriesLabelPosition::UpperLeft),
+        ((true, true), SeriesLabelPosition::LowerRight),
+        ((false, true), SeriesLabelPosition::LowerLeft),
+    ];
+    let best = corners
+        .into_iter()
+        .min_by_key(|(corner, _)| hidden(*corner));
+    best.map_or(SeriesLabelPosition::UpperRight, |(_, position)| position)
 }
 
 type Chart<'a, 'b> = ChartContext<

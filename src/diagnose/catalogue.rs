@@ -88,13 +88,14 @@ fn unsteady(document: &ModelDocument, effects: &mut Vec<Effect>) {
     let lifting = |name: &&str| document.definitions.contains_key(*name);
     let coefficients: Vec<&str> = ["CL", "CD", "Cm"].into_iter().filter(lifting).collect();
     if let (Some(angle), true) = (flow.first(), coefficients.contains(&"CL")) {
-        effects.push(Effect::edit(EditKind::StallHysteresis, "CL", Some(angle)));
-        if coefficients.contains(&"Cm") {
-            effects.push(Effect::edit(
-                EditKind::StallHysteresis,
-                "CL+Cm",
-                Some(angle),
-            ));
+        for targets in ["CL", "CL+Cm", "CL+CD", "CL+CD+Cm"] {
+            if targets.split('+').all(|name| coefficients.contains(&name)) {
+                effects.push(Effect::edit(
+                    EditKind::StallHysteresis,
+                    targets,
+                    Some(angle),
+                ));
+            }
         }
     }
 }

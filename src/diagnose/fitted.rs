@@ -6,7 +6,7 @@ use super::case::{Case, Unfit, Values, values};
 use super::colour::Colour;
 use super::stack::Layout;
 use crate::estimate::{
-    ErrorBoundsKind, Estimate, Outcome, Problem, Role, TimeHistory, output_error, predict,
+    Bound, ErrorBoundsKind, Estimate, Outcome, Problem, Role, TimeHistory, output_error, predict,
 };
 use crate::model::ModelDocument;
 
@@ -85,6 +85,15 @@ impl Fitted {
         let mut values = self.values.clone();
         values.extend(others.iter().map(|(key, value)| (key.clone(), *value)));
         values
+    }
+
+    /// Names of the parameters added that stand at a bound of their range.
+    pub fn at_bound(&self, base: &Self) -> Vec<(String, Bound)> {
+        let declared = &base.problem.model.parameters;
+        let rows = self.estimate.parameters.iter();
+        rows.filter(|row| !declared.iter().any(|info| info.name == row.name))
+            .filter_map(|row| Some((row.name.clone(), row.at_bound?)))
+            .collect()
     }
 
     pub fn theta(&self) -> Vec<f64> {

@@ -39,6 +39,7 @@ pub use report::{
 };
 pub use residual::{ResidualAnalysis, analyse};
 pub use round::Watcher;
+pub use terms::{is_control, is_flow_angle};
 
 use answer::{Found, answer};
 use fitted::Fitted;
@@ -119,12 +120,13 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
             sentence: sentence::of(&accepted.effect, &accepted.added, &accepted.fitted.estimate),
         };
         let last = accepted.effect.is_noise();
-        base = accepted.fitted.clone();
+        let calm = std::mem::replace(&mut base, accepted.fitted.clone());
         found.accepted.push(accepted);
         if watcher(Some(&step)).is_break() {
             return Err(Inconclusive::Stopped);
         }
         if last {
+            base = trial::disturbed_throughout(case, &calm, base);
             break;
         }
     }

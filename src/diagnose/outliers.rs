@@ -15,6 +15,9 @@ const OUTLYING: f64 = 6.0;
 /// Samples on either side that make the neighbourhood.
 const SIDE: usize = 4;
 
+/// Samples on either side by which roughness is judged.
+const WIDE: usize = 25;
+
 /// A value that stays the same to the last digit for so many samples, while the model moves, is stuck.
 const STUCK: usize = 6;
 
@@ -120,7 +123,7 @@ fn outlying(residual: &[f64], measured: &[f64]) -> Vec<(usize, f64)> {
             residual[k] - median(&mut residual[around].to_vec())
         })
         .collect();
-    let scale = 1.4826 * median(&mut off.iter().map(|value| value.abs()).collect());
+    let scale = robust_deviation(&off);
     if scale.is_nan() || scale <= 0.0 {
         return Vec::new();
     }
@@ -140,7 +143,7 @@ fn outlying(residual: &[f64], measured: &[f64]) -> Vec<(usize, f64)> {
             _ => 0.0,
         })
         .collect();
-    let leap = 1.4826 * median(&mut leaps.iter().map(|value| value.abs()).collect());
+    let leap = robust_deviation(&leaps);
     let quantum = measured
         .windows(2)
         .map(|pair| (pair[1] - pair[0]).abs())
@@ -151,9 +154,17 @@ fn outlying(residual: &[f64], measured: &[f64]) -> Vec<(usize, f64)> {
         let (_, motion) = off_middle(&|i| measured[i] - residual[i], k);
         own > least + motion && leaps[k].abs() > OUTLYING * leap
     };
+    // in a stall or in rough air it is rougher than elsewhere
+    let local = |k: usize| {
+        let around = k.saturating_sub(WIDE)..(k + WIDE + 1).min(off.len());
+        robust_deviation(&off[around]).max(scale)
+    };
+    let far = |k: &usize| off[*k].abs() > OUTLYING * scale;
     let mut found: Vec<(usize, f64)> = (0..off.len())
-        .filter(|&k| off[k].abs() > OUTLYING * scale && stands_out(k, OUTLYING * scale))
-        .map(|k| (k, off[k] / scale))
+        .filter(far)
+        .map(|k| (k, local(k)))
+        .filter(|&(k, scale)| off[k].abs() > OUTLYING * scale && stands_out(k, OUTLYING * scale))
+        .map(|(k, scale)| (k, off[k] / scale))
         .collect();
     let mut from = 0;
     for k in 1..=measured.len() {
@@ -164,7 +175,10 @@ fn outlying(residual: &[f64], measured: &[f64]) -> Vec<(usize, f64)> {
             let part = residual[from..k].iter();
             part.clone().copied().fold(f64::MIN, f64::max) - part.copied().fold(f64::MAX, f64::min)
         };
-        if k - from >= STUCK && spread() > OUTLYING * scale.max(quantum) {
+        // what was stuck leaps when it comes loose; an aircraft in steady flight does not
+        let leap = measured.get(k).map_or(0.0, |z| (z - measured[from]).abs());
+        let least = OUTLYING * scale.max(quantum);
+        if k - from >= STUCK && spread() > least && leap > least.max(0.5 * spread()) {
             let known: Vec<usize> = found.iter().map(|(k, _)| *k).collect();
             found.extend(
                 (from + 1..k)
@@ -175,6 +189,20 @@ fn outlying(residual: &[f64], measured: &[f64]) -> Vec<(usize, f64)> {
         from = k;
     }
     found
+}
+
+/// Standard deviation without regard to outliers: from the median and from the fourth quintile of the sizes, whichever
+/// says more. Of what mostly stays the same and sometimes moves by a digit the median alone says nothing.
+fn robust_deviation(values: &[f64]) -> f64 {
+    let mut sizes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
+    sizes.retain(|size| size.is_finite());
+    sizes.sort_by(f64::total_cmp);
+    let at = |share: f64| {
+        let place = (share * sizes.len() as f64) as usize;
+        sizes.get(place).copied().unwrap_or(f64::NAN)
+    };
+    // quantiles of the normal distribution's sizes
+    (at(0.5) / 0.6745).max(at(0.8) / 1.2816)
 }
 
 #[cfg(test)]

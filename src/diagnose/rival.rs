@@ -10,7 +10,7 @@ use super::round::Accepted;
 use super::screen::{Screen, Screened, critical, tail};
 use super::stack::Layout;
 use super::trial::{Trial, fit, starts, starts_of_delay};
-use crate::estimate::Role;
+use crate::estimate::{Bound, Role};
 use crate::model::{Added, EditKind, Per};
 
 /// How often the whole family of candidates may find something where there is nothing, by its own statistics.
@@ -170,9 +170,19 @@ impl<'c> Rival<'c> {
             );
             return Some((Refusal::NotSignificant, why));
         }
-        let at_bound = trial.at_bound(self.base);
+        let shapes = |name: &String| !decides(&trial.effect, name);
+        let mut at_bound = trial.fitted.at_bound(self.base);
+        at_bound.retain(|(name, _)| !shapes(name));
         if let Some((name, _)) = at_bound.first() {
             let why = format!("its estimate ends at a bound of its physical range ({name})");
+            return Some((Refusal::OutOfRange, why));
+        }
+        let mut settled = self.settled_at_bound(trial);
+        settled.retain(|(name, _)| !shapes(name));
+        if let Some((name, _)) = settled.first() {
+            let why = format!(
+                "output error takes its estimate to a bound of its physical range ({name})"
+            );
             return Some((Refusal::OutOfRange, why));
         }
         if let Some(why) = self.scatter(trial) {
@@ -192,6 +202,18 @@ impl<'c> Rival<'c> {
             }
         }
         None
+    }
+
+    /// The likelihood weighs fast residuals, output error slow ones: an effect that is real stands before both.
+    fn settled_at_bound(&self, trial: &Trial) -> Vec<(String, Bound)> {
+        let coloured = self.orders.iter().any(|&order| order > 0);
+        if !coloured || trial.effect.is_noise() {
+            return Vec::new();
+        }
+        let document = trial.fitted.document.clone();
+        Fitted::trial(self.case, document, &trial.fitted.values)
+            .map(|settled| settled.at_bound(self.base))
+            .unwrap_or_default()
     }
 
     /// Why the sizes in parts of the data do not agree; by the noise that is left with the effect in the model.
@@ -261,6 +283,16 @@ impl<'c> Rival<'c> {
             fitted: best.fitted,
         }
     }
+}
+
+/// Whether a parameter at its bound speaks against the effect: how steeply and how late the flow separates is hardly seen
+/// in many a stall, at which angle it does is.
+fn decides(effect: &Effect, parameter: &str) -> bool {
+    let is_stall = effect.kind == EffectKind::Edit(EditKind::StallHysteresis);
+    !is_stall
+        || !["_steepness", "_time", "_delay"]
+            .iter()
+            .any(|shape| parameter.contains(shape))
 }
 
 /// Effects that stand at one place in time repeat in no other part.

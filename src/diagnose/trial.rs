@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use super::case::{Case, Unfit, Values};
 use super::effect::{Effect, EffectKind, Treatment};
 use super::fitted::Fitted;
-use super::screen::Screened;
-use crate::estimate::{Bound, Estimator, Outcome, ProcessNoise, Role, filter_error};
+use super::screen::{Screened, critical};
+use crate::estimate::{Estimator, Outcome, ProcessNoise, Role, filter_error};
 use crate::model::{Added, EditKind, ModelDocument, Start};
 
 /// A candidate, fitted.
@@ -34,15 +34,6 @@ impl Trial {
     pub fn merit(&self) -> f64 {
         let held_out: f64 = self.held_out.iter().flatten().sum();
         self.likelihood_ratio + held_out - 2.0 * self.freedom as f64
-    }
-
-    /// Names of the parameters added that stand at a bound of their range.
-    pub fn at_bound(&self, base: &Fitted) -> Vec<(String, Bound)> {
-        let declared = &base.problem.model.parameters;
-        let rows = self.fitted.estimate.parameters.iter();
-        rows.filter(|row| !declared.iter().any(|info| info.name == row.name))
-            .filter_map(|row| Some((row.name.clone(), row.at_bound?)))
-            .collect()
     }
 }
 
@@ -208,18 +199,36 @@ pub fn fit(
     start: &Values,
 ) -> Result<Fitted, Unfit> {
     if let EffectKind::Treatment(Treatment::ProcessNoise) = effect.kind {
-        return filtered(case, base, &effect.target);
+        let held = |state: &str| state != effect.target;
+        return filtered(case, base, &held);
     }
     Fitted::trial(case, document, &base.values_with(start))
 }
 
-/// The declared model fitted by filter error, with process noise on one state.
-fn filtered(case: &Case, base: &Fitted, target: &str) -> Result<Fitted, Unfit> {
+/// What disturbs one state disturbs others: the same model with process noise on all of them, where the likelihood says
+/// so. `calm` is the fit without any.
+pub fn disturbed_throughout(case: &Case, calm: &Fitted, one: Fitted) -> Fitted {
+    const ERROR: f64 = 0.01;
+    let Ok(all) = filtered(case, calm, &|_| false) else {
+        return one;
+    };
+    // both are filters, whose innovations should be white: their costs are their likelihoods
+    let gain = 2.0 * (one.estimate.cost - all.estimate.cost);
+    let others = one.problem.model.states.len() - 1;
+    if gain > critical(ERROR, 1.0, others) {
+        all
+    } else {
+        one
+    }
+}
+
+/// The declared model fitted by filter error, without process noise on the states that are `held`.
+fn filtered(case: &Case, base: &Fitted, held: &dyn Fn(&str) -> bool) -> Result<Fitted, Unfit> {
     let mut problem = case.problem(&base.document, &base.values)?;
     problem.options.estimator = Estimator::FilterError;
     problem.options.tolerance = problem.options.tolerance.max(1e-3);
     problem.options.process_noise = (problem.model.states.iter())
-        .filter(|state| state.name != target)
+        .filter(|state| held(&state.name))
         .map(|state| {
             (
                 state.name.clone(),

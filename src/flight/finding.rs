@@ -15,7 +15,7 @@ pub enum Severity {
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Finding {
     /// A stable word: `gap`, `uneven_sampling`, `missing_values`, `repeated_values`, `repeated_rows`, `spikes`, `wrap`,
-    /// `constant`.
+    /// `constant`, `implausible`.
     #[schema(example = "gap")]
     pub code: String,
     pub severity: Severity,

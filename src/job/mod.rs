@@ -7,6 +7,7 @@ mod diagnosis;
 mod event;
 mod filter;
 mod missing;
+mod plausible;
 mod prepare;
 mod resolve;
 mod run;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::resolve::{self, Named, Stretch};
 use super::unknown_name::unknown_name;
 use super::{Fault, JobKind, JobSpec, Prepared, diagnosis, study};
-use super::{bounds, checks, filter, missing};
+use super::{bounds, checks, filter, missing, plausible};
 use crate::diagnose::Case;
 use crate::estimate::{Problem, Role, Unknowns, Validation};
 use crate::flight::{Maneuver, escape};
@@ -100,6 +100,7 @@ pub fn prepare(
         validation.push(Validation { segment, unknowns });
     }
     filter::check_data(&model, &segments, &unknowns, &spec.options)?;
+    findings.extend(plausible::findings(&model, &segments));
     let problem = Problem::new(model, segments, unknowns, spec.options.clone());
     if spec.kind == JobKind::DerivativeStudy {
         study::check(&problem)?;

@@ -1,7 +1,7 @@
 //! The confusion matrix of the diagnosis: every effect of the catalogue, put undeclared into simulated flights at
 //! three strengths, with white and with coloured noise; and flights with nothing undeclared.
 //!
-//! `cargo bench --bench confusion [cases] [empty] [first seed] [pairs] [aircraft] [part of an effect's name]`: `cases` for
+//! `cargo bench --bench confusion [cases] [empty] [first seed] [pairs] [aircraft] [white|coloured] [part of an effect's name]`: `cases` for
 //! each effect, strength and colour; `empty` ones for each aircraft and colour; `pairs` of two moderate effects at once,
 //! for each too. The strength of an effect is the likelihood ratio that it is worth to who knows it: 30 (weak), 100
 //! (moderate), 300 (clear); outliers are 4, 10 or 30 spikes of ten noise deviations. Seeds below 1 000 000 are for tuning;
@@ -50,13 +50,18 @@ fn main() {
     let names: Vec<&str> = aircraft().iter().map(|aircraft| aircraft.name).collect();
     let words = || arguments.iter().filter(|a| a.parse::<u64>().is_err());
     let chosen = words().find_map(|word| names.iter().find(|name| *name == word).copied());
-    let part = words().find(|word| !names.contains(&word.as_str()));
+    let is_choice = |word: &str| names.contains(&word) || ["white", "coloured"].contains(&word);
+    let part = words().find(|word| !is_choice(word));
     let part = part.cloned().unwrap_or_default();
+    let only = words().find(|word| colours.iter().any(|(name, _)| name == word));
     for aircraft in aircraft()
         .into_iter()
         .filter(|aircraft| chosen.is_none_or(|name| name == aircraft.name))
     {
-        for (colour_name, colour) in &colours {
+        for (colour_name, colour) in colours
+            .iter()
+            .filter(|(name, _)| only.is_none_or(|only| only == name))
+        {
             let effects: Vec<Effect> = aircraft
                 .effects()
                 .into_iter()

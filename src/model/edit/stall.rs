@@ -6,9 +6,11 @@ use super::sheet::{Sheet, dimension, unknown};
 use super::text::replace_name;
 use crate::flight::Dimension;
 
-/// τ1 Ẋ = ½ (1 - tanh a1 (α - τ2 α̇ - α*)) - X; in a lift α becomes ((1 + √X)/2)² α, to a moment C (1 - X) is added.
+/// τ1 Ẋ = ½ (1 - tanh a1 (α - τ2 α̇ - α*)) - X; in a lift α becomes ((1 + √X)/2)² α, to a moment or a drag C (1 - X) is
+/// added.
 ///
-/// A moment is a coefficient `Cm...` or the equation of a rate; all other targets are lifts, and must read α. α̇ is the
+/// A moment is a coefficient `Cm...` or the equation of a rate, a drag a coefficient `CD...`; all other targets are lifts,
+/// and must read α. α̇ is the
 /// derivative of the state α, or a definition or input `alphadot`; without either, τ2 is left out.
 pub(super) fn hysteresis(sheet: &mut Sheet) -> Result<(), EditError> {
     let (angle, unit) = angle(sheet)?;
@@ -32,7 +34,8 @@ pub(super) fn hysteresis(sheet: &mut Sheet) -> Result<(), EditError> {
     for target in targets {
         let is_rate = (sheet.document.states.get(target))
             .is_some_and(|state| dimension(&state.unit) == Dimension::NONE.over(Dimension::SECOND));
-        if is_rate || target.to_lowercase().starts_with("cm") {
+        let is_added = |kind: &str| target.to_lowercase().starts_with(kind);
+        if is_rate || is_added("cm") || is_added("cd") {
             let (_, measures) = sheet.law(target)?;
             let moment = sheet.free(&format!("{target}_{separation}"));
             let words = format!("effect on {target} of the separation of the flow");
