@@ -104,6 +104,20 @@ async fn every_result_has_its_forms() {
         "the residuals are those of the estimate"
     );
 
+    let analysis = server.get(&at("residual-analysis")).await.json();
+    let alpha = &analysis["outputs"][0];
+    assert_eq!(
+        (&alpha["output"], &alpha["samples"]),
+        (&json!("alpha"), &json!(626))
+    );
+    let rms = alpha["rms"].as_f64().unwrap();
+    assert!((rms / estimate.outputs[0].rms - 1.0).abs() < 1e-12);
+    // simulated with white noise
+    assert!(
+        alpha["portmanteau"]["probability"].as_f64().unwrap() > 1e-4,
+        "{alpha}"
+    );
+
     let csv = server
         .get_as(&at("time-histories"), "text/csv")
         .await
@@ -147,6 +161,7 @@ async fn results_are_not_sent_twice() {
         "estimate",
         "parameters",
         "residuals",
+        "residual-analysis",
         "time-histories",
         "model",
         "spec",
@@ -176,6 +191,7 @@ async fn results_before_the_end_are_a_conflict() {
         "estimate",
         "parameters",
         "residuals",
+        "residual-analysis",
         "time-histories",
         "model",
     ] {

@@ -219,6 +219,7 @@ fn links(view: &JobView<'_>) -> Markup {
         ul.links {
             li { a href={ (base) "/parameters?format=csv" } { "parameters (CSV)" } }
             li { a href={ (base) "/time-histories?format=csv" } { "time histories (CSV)" } }
+            li { a href={ (base) "/residual-analysis" } { "residual analysis (JSON)" } }
             li { a href={ (base) "/estimate" } { "estimate (JSON)" } }
             li { a href={ (base) "/model" } { "model" } }
             @if view.study.is_some() { li { a href={ (base) "/derivative-study" } { "derivative study (JSON)" } } }

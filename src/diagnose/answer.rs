@@ -6,9 +6,9 @@ use super::case::{Case, Unfit};
 use super::colour::Colour;
 use super::difference::difference;
 use super::fitted::Fitted;
+use super::found::Found;
 use super::report::{
-    Diagnosis, EffectParameter, FitChange, NamedEffect, ParameterChange, Refusal, RefusedEffect,
-    Verdict,
+    Diagnosis, EffectParameter, FitChange, NamedEffect, ParameterChange, Refusal, Verdict,
 };
 use super::residual::analyse;
 use super::round::Accepted;
@@ -20,29 +20,6 @@ use crate::estimate::{
 };
 use crate::flight::Unit;
 use crate::model::{Model, ModelDocument, Start};
-
-/// What the rounds found.
-#[derive(Default)]
-pub struct Found {
-    pub accepted: Vec<Accepted>,
-    pub refused: Vec<RefusedEffect>,
-}
-
-impl Found {
-    pub fn needless(&mut self, removed: Accepted, cost: f64) {
-        self.refused.push(RefusedEffect {
-            sentence: format!(
-                "it was accepted in an earlier round; with the later effects in the model its likelihood ratio is only {cost:.1}"
-            ),
-            effect: removed.effect,
-            reason: Refusal::Needless,
-            likelihood_ratio: Some(cost),
-            visible_fraction: removed.evidence.visible_fraction,
-            smallest_seen: removed.evidence.smallest_seen,
-            held_out: removed.evidence.held_out,
-        });
-    }
-}
 
 /// Noise alone makes a residual look coherent with an input once in so many diagnoses.
 const COHERENT: f64 = 1e-3;
@@ -116,7 +93,7 @@ pub fn answer(
         verdict,
         sentence: conclusion(verdict, &effects, &fits, &incoherent),
         effects,
-        refused: found.refused,
+        refused: found.truly_refused(),
         parameters: changes(&declared.estimate, &estimated),
         before: declared.estimate.clone(),
         model: estimated_document(&after.problem.model, &estimated),

@@ -15,6 +15,7 @@ mod difference;
 mod effect;
 mod fitted;
 mod flight;
+mod found;
 mod group;
 mod outliers;
 mod polish;
@@ -41,8 +42,9 @@ pub use residual::{ResidualAnalysis, analyse};
 pub use round::Watcher;
 pub use terms::{is_control, is_flow_angle};
 
-use answer::{Found, answer};
+use answer::answer;
 use fitted::Fitted;
+use found::Found;
 use round::{Accepted, cost_of_removal, round};
 
 use crate::estimate::{Estimate, TimeHistory, estimate};
@@ -109,7 +111,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
         if round.stopped {
             return Err(Inconclusive::Stopped);
         }
-        found.refused = round.refused;
+        found.refuse(round.refused);
         let Some(accepted) = round.accepted else {
             break;
         };

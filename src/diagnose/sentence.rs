@@ -62,17 +62,29 @@ pub fn words(effect: &Effect) -> String {
             format!("{target} is recorded with a time shift")
         }
         EditKind::MissingTerm => format!("the equation of {target} lacks a term in {term}"),
-        other => {
-            let word = serde_json::to_value(other).ok();
-            let word = word
-                .and_then(|w| w.as_str().map(|w| w.replace('_', " ")))
-                .unwrap_or_default();
-            let by = if term.is_empty() {
-                String::new()
-            } else {
-                format!(" ({term})")
-            };
-            format!("{word} at {target}{by}")
+        EditKind::SensorLag => format!("{target} is recorded with a lag"),
+        EditKind::SensorPosition => {
+            format!("the sensor of {target} is not where the model has it along {term}")
+        }
+        EditKind::ActuatorLag => format!("the aircraft follows the recorded {target} with a lag"),
+        EditKind::ActuatorRateLimit => format!("the actuator behind {target} is limited in rate"),
+        EditKind::Backlash => format!("there is play (backlash) behind {target}"),
+        EditKind::UnrecordedInput => {
+            format!("the equation of {target} lacks the input {term}, which is recorded")
+        }
+        EditKind::UnsteadyAero => {
+            format!("{target} follows {term} with a lag of the flow (unsteady aerodynamics)")
+        }
+        EditKind::StallHysteresis => {
+            format!(
+                "the flow separates, and comes back late (stall hysteresis), which {target} shows"
+            )
+        }
+        EditKind::Gust => format!("{target} meets a gust"),
+        EditKind::Wind => format!("there is wind along {target} ({term})"),
+        EditKind::InitialState => format!("{target} does not begin where the model has it"),
+        EditKind::StructuralMode => {
+            format!("{target} swings with a structural mode that {term} excites")
         }
     }
 }

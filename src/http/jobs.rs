@@ -75,12 +75,16 @@ struct JobLinks {
     estimate: String,
     parameters: String,
     residuals: String,
+    residual_analysis: String,
     time_histories: String,
     model: String,
+    /// Of a job of the kind `diagnose`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    diagnosis: Option<String>,
 }
 
 impl JobLinks {
-    fn of(id: Uuid) -> Self {
+    fn of(id: Uuid, kind: &str) -> Self {
         let this = format!("/v1/jobs/{id}");
         let under = |name: &str| format!("{this}/{name}");
         Self {
@@ -91,8 +95,10 @@ impl JobLinks {
             estimate: under("estimate"),
             parameters: under("parameters"),
             residuals: under("residuals"),
+            residual_analysis: under("residual-analysis"),
             time_histories: under("time-histories"),
             model: under("model"),
+            diagnosis: (kind == kind_name(JobKind::Diagnose)).then(|| under("diagnosis")),
             this,
         }
     }
@@ -115,7 +121,7 @@ impl JobResource {
             _ => {}
         }
         Self {
-            links: JobLinks::of(job.id),
+            links: JobLinks::of(job.id, &job.kind),
             id: job.id,
             kind: job.kind,
             name: job.name,

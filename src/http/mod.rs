@@ -24,6 +24,7 @@ mod pages;
 pub mod problem;
 mod problems;
 mod query;
+mod residual_analysis;
 mod results;
 mod routes;
 mod serve;

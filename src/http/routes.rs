@@ -20,7 +20,7 @@ use super::code::Code;
 use super::problem::{self, Problem};
 use super::{
     Service, coefficients, diagnosis, events, health, histories, jobs, maneuvers, models, problems,
-    results, study, submit,
+    residual_analysis, results, study, submit,
 };
 
 /// Every resource.
@@ -36,6 +36,7 @@ pub(super) fn api() -> OpenApiRouter<Service> {
         .merge(diagnosis::router())
         .merge(coefficients::router())
         .merge(histories::router())
+        .merge(residual_analysis::router())
         .merge(problems::router())
         .merge(health::router())
 }

@@ -1,0 +1,57 @@
+//! What the rounds found, and what they refused.
+
+use super::effect::Effect;
+use super::report::{Refusal, RefusedEffect};
+use super::round::Accepted;
+
+#[derive(Default)]
+pub struct Found {
+    pub accepted: Vec<Accepted>,
+    pub refused: Vec<RefusedEffect>,
+}
+
+impl Found {
+    /// Takes over why a round refused candidates. Of each, that is kept which speaks of the most that it explained.
+    pub fn refuse(&mut self, refused: Vec<RefusedEffect>) {
+        let explained =
+            |refused: &RefusedEffect| refused.likelihood_ratio.unwrap_or(f64::NEG_INFINITY);
+        for new in refused {
+            match self.refused.iter_mut().find(|old| old.effect == new.effect) {
+                Some(old) if explained(old) > explained(&new) => {}
+                Some(old) => *old = new,
+                None => self.refused.push(new),
+            }
+        }
+    }
+
+    /// Candidates that stand in the group of one that was accepted, or were accepted later, were not refused.
+    pub fn truly_refused(&self) -> Vec<RefusedEffect> {
+        let stands = |effect: &Effect| {
+            let groups = self.accepted.iter().flat_map(|accepted| &accepted.group);
+            groups
+                .map(|member| &member.effect)
+                .any(|member| member == effect)
+        };
+        let refused = self
+            .refused
+            .iter()
+            .filter(|refused| !stands(&refused.effect));
+        refused.cloned().collect()
+    }
+
+    pub fn needless(&mut self, removed: Accepted, cost: f64) {
+        self.refused
+            .retain(|refused| refused.effect != removed.effect);
+        self.refused.push(RefusedEffect {
+            sentence: format!(
+                "it was accepted in an earlier round; with the later effects in the model its likelihood ratio is only {cost:.1}"
+            ),
+            effect: removed.effect,
+            reason: Refusal::Needless,
+            likelihood_ratio: Some(cost),
+            visible_fraction: removed.evidence.visible_fraction,
+            smallest_seen: removed.evidence.smallest_seen,
+            held_out: removed.evidence.held_out,
+        });
+    }
+}
