@@ -4,6 +4,7 @@ use super::effect::Effect;
 use super::report::{Refusal, RefusedEffect};
 use super::round::Accepted;
 
+/// Effects that were accepted, in their order, and candidates that were not, with the reason.
 #[derive(Default)]
 pub struct Found {
     pub accepted: Vec<Accepted>,

@@ -97,6 +97,7 @@ impl<'c> Rival<'c> {
                 fits.push((fitted.ln_likelihood(self.orders), fitted));
             }
         }
+        fits.retain(|(likelihood, _)| !likelihood.is_nan());
         // most starts end at the same minimum
         fits.sort_by(|(a, _), (b, _)| b.total_cmp(a));
         fits.dedup_by(|(a, _), (b, _)| (*a - *b).abs() < SAME);
@@ -170,15 +171,14 @@ impl<'c> Rival<'c> {
             );
             return Some((Refusal::NotSignificant, why));
         }
-        let shapes = |name: &String| !decides(&trial.effect, name);
         let mut at_bound = trial.fitted.at_bound(self.base);
-        at_bound.retain(|(name, _)| !shapes(name));
+        at_bound.retain(|(name, _)| decides(&trial.effect, name));
         if let Some((name, _)) = at_bound.first() {
             let why = format!("its estimate ends at a bound of its physical range ({name})");
             return Some((Refusal::OutOfRange, why));
         }
         let mut settled = self.settled_at_bound(trial);
-        settled.retain(|(name, _)| !shapes(name));
+        settled.retain(|(name, _)| decides(&trial.effect, name));
         if let Some((name, _)) = settled.first() {
             let why = format!(
                 "output error takes its estimate to a bound of its physical range ({name})"
