@@ -1,11 +1,12 @@
 //! The bundled maneuvers are what their scenarios make, and the truth can be found in them.
 
+mod common;
+
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
+use common::recordings::maneuver;
 use serde_json::json;
-use trimtab::ingest::{self, Format, Limits};
 use trimtab::job::{self, JobSpec};
 use trimtab::model::{Model, catalog};
 use trimtab::simulate::Scenario;
@@ -35,7 +36,7 @@ fn each_file_is_what_its_scenario_makes() {
         let scenario = scenario(&name);
         let model = Model::compile(&catalog::find(&scenario.model).expect("a catalog model"))
             .expect("a model");
-        let made = ingest::to_csv_as_recorded(&scenario.fly(&model).expect("a maneuver"));
+        let made = trimtab::ingest::to_csv_as_recorded(&scenario.fly(&model).expect("a maneuver"));
         let kept = std::fs::read_to_string(file(&format!("{name}.csv"))).expect("a file");
         assert!(
             made == kept,
@@ -52,11 +53,7 @@ fn the_truth_is_within_four_standard_errors() {
     ] {
         let maneuvers: Vec<_> = (names.iter())
             .map(|name| std::fs::read(file(&format!("{name}.csv"))).expect("a file"))
-            .map(|bytes| {
-                Arc::new(
-                    ingest::read(&bytes, Format::Csv, &Limits::default()).expect("a recording"),
-                )
-            })
+            .map(|bytes| maneuver(&bytes))
             .collect();
         let uses: Vec<_> = maneuvers
             .iter()

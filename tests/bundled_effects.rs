@@ -1,13 +1,14 @@
 //! What the bundled flights have in them and the model does not declare is named by a diagnosis.
 
+mod common;
+
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::Arc;
 
+use common::recordings::maneuver;
 use serde_json::{Value, json};
 use trimtab::diagnose::{Diagnosis, NamedEffect, Verdict};
 use trimtab::estimate::Role;
-use trimtab::ingest::{self, Format, Limits};
 use trimtab::job::{self, JobSpec};
 use trimtab::model::catalog;
 use trimtab::simulate::{Scenario, ScenarioEffect};
@@ -36,10 +37,9 @@ fn diagnosis(name: &str, parameters: Value) -> Diagnosis {
 fn diagnosis_of(model: &str, files: &[(String, &str)], parameters: Value) -> Diagnosis {
     let (mut maneuvers, mut uses) = (Vec::new(), Vec::new());
     for (file, role) in files {
-        let maneuver =
-            ingest::read(&read(file), Format::Csv, &Limits::default()).expect("a recording");
+        let maneuver = maneuver(&read(file));
         uses.push(json!({"id": maneuver.digest(), "label": file, "role": role}));
-        maneuvers.push(Arc::new(maneuver));
+        maneuvers.push(maneuver);
     }
     let spec =
         json!({"kind": "diagnose", "model": model, "maneuvers": uses, "parameters": parameters});

@@ -7,15 +7,13 @@ use std::sync::Arc;
 
 use common::estimation::{solve, solve_all};
 use common::published_cases::read;
+use common::recordings::maneuver;
 use serde_json::{Map, Value, json};
 use trimtab::estimate::Estimate;
 use trimtab::flight::Maneuver;
-use trimtab::ingest::{self, Format, Limits};
 
 fn recording(directory: &Path, file: &str) -> Arc<Maneuver> {
-    let bytes = std::fs::read(directory.join(file)).expect("a recording");
-    let maneuver = ingest::read(&bytes, Format::Csv, &Limits::default());
-    Arc::new(maneuver.expect("a maneuver"))
+    maneuver(&std::fs::read(directory.join(file)).expect("a recording"))
 }
 
 /// The largest distance of an estimate from the reference's, in standard errors; `name` says what it is called here.

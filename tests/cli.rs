@@ -191,6 +191,35 @@ fn a_diagnosis_is_submitted_and_watched_to_its_conclusion() {
 }
 
 #[test]
+fn parts_of_a_recording_are_diagnosed_and_drawn() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let figures = directory.path().join("new").join("figures");
+    let flight = "data/effects/elevator-lag-fit.csv";
+    let table = succeeds(&[
+        "diagnose",
+        &format!("{flight}:1-500"),
+        "--validate",
+        &format!("{flight}:501-626"),
+        "-m",
+        "short-period",
+        "--figures",
+        figures.to_str().expect("a path"),
+    ]);
+    assert!(table.contains("verdict: "), "{table}");
+    let mut drawn: Vec<String> = (std::fs::read_dir(&figures).expect("a directory"))
+        .map(|entry| entry.expect("a file").file_name().into_string().unwrap())
+        .collect();
+    drawn.sort();
+    assert_eq!(
+        drawn,
+        [
+            "1-elevator-lag-fit_1-500.svg",
+            "2-elevator-lag-fit_501-626.svg"
+        ]
+    );
+}
+
+#[test]
 fn a_server_is_not_put_where_others_can_reach_it() {
     let directory = tempfile::tempdir().expect("a directory");
     let database = directory.path().join("never.db");

@@ -7,12 +7,11 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use common::estimation::solve;
-use common::recordings::elevator;
+use common::recordings::{elevator, maneuver};
 use serde_json::json;
 use trimtab::diagnose::{Case, Flight, Refusal, diagnose};
 use trimtab::estimate::{Options, Role};
 use trimtab::flight::{Channel, Finding, Maneuver, Unit};
-use trimtab::ingest::{self, Format, Limits};
 use trimtab::model::{Model, ModelDocument, catalog};
 use trimtab::simulate::{Scenario, Steps};
 
@@ -20,12 +19,12 @@ use trimtab::simulate::{Scenario, Steps};
 fn document(accelerometer: bool) -> ModelDocument {
     let mut document = catalog::find("short-period").unwrap();
     document.parameters.get_mut("alpha_0").unwrap().fixed = false;
-    let text = r#"
+    let az = r#"
         unit = "m/s^2"
-        equation = "130*(Za*(alpha - alpha_eq) + (Zq - 1)*q + Zde*(de - de_eq)) + az_bias"
+        equation = "V_e*(Za*(alpha - alpha_eq) + (Zq - 1)*q + Zde*(de - de_eq)) + az_bias"
     "#;
     if accelerometer {
-        let output = toml::from_str(&text.replace("130*", "V_e*")).unwrap();
+        let output = toml::from_str(az).unwrap();
         document.outputs.insert("az".to_string(), output);
         let speed = toml::from_str("value = 130.0\nunit = \"m/s\"").unwrap();
         document.constants.insert("V_e".to_string(), speed);
@@ -86,40 +85,52 @@ fn an_accelerometer_makes_the_vane_visible() {
     }
 }
 
-/// Degrees that a header calls radians: the fit is as good as ever, since the control derivatives take up the scale.
-#[test]
-fn a_slipped_unit_of_an_input_is_told() {
-    let recorded = ingest::read(elevator().as_bytes(), Format::Csv, &Limits::default());
-    let recorded = Arc::new(recorded.unwrap());
-    let right = solve("short-period", &recorded, &json!({}));
-    let mut channels = recorded.channels().clone();
-    let radian = Unit::parse("rad").unwrap();
+/// The maneuver with another unit declared for its elevator.
+fn slipped(maneuver: &Maneuver, unit: &str, factor: f64) -> Arc<Maneuver> {
+    let mut channels = maneuver.channels().clone();
     let elevator = &mut channels["de"];
     *elevator = Channel {
-        recorded_unit: "rad".to_string(),
-        unit: radian,
-        values: elevator.values.iter().map(|v| v.to_degrees()).collect(),
+        recorded_unit: unit.to_string(),
+        unit: Unit::parse(unit).unwrap(),
+        values: elevator.values.iter().map(|v| v * factor).collect(),
     };
-    let slipped = Arc::new(Maneuver::new(recorded.time().to_vec(), channels).unwrap());
-    let wrong = solve("short-period", &slipped, &json!({}));
-    let ratio = wrong.estimate.det_r / right.estimate.det_r;
-    assert!((ratio - 1.0).abs() < 1e-4, "{ratio}");
+    Arc::new(Maneuver::new(maneuver.time().to_vec(), channels).unwrap())
+}
 
-    let findings = |maneuver: &Arc<Maneuver>| {
-        let spec = json!({"model": "short-period", "maneuvers": [{"id": maneuver.digest()}]});
-        let spec = serde_json::from_value(spec).unwrap();
-        let document = catalog::find("short-period").unwrap();
-        let plan = trimtab::job::prepare(&spec, &document, std::slice::from_ref(maneuver));
-        plan.unwrap().prepared.findings
-    };
-    let odd = |f: &&Finding| f.code == "implausible";
-    assert!(!findings(&recorded).iter().any(|f| odd(&f)));
-    let found = findings(&slipped);
-    let found = found.iter().find(odd).expect("a finding");
-    assert_eq!(found.channel.as_deref(), Some("de"));
-    assert!(
-        found.message.contains("degrees declared as radians"),
-        "{}",
-        found.message
-    );
+fn implausible(maneuver: &Arc<Maneuver>) -> Option<Finding> {
+    let spec = json!({"model": "short-period", "maneuvers": [{"id": maneuver.digest()}]});
+    let spec = serde_json::from_value(spec).unwrap();
+    let document = catalog::find("short-period").unwrap();
+    let plan = trimtab::job::prepare(&spec, &document, std::slice::from_ref(maneuver));
+    let mut findings = plan.unwrap().prepared.findings.into_iter();
+    findings.find(|finding| finding.code == "implausible")
+}
+
+/// A header that calls degrees radians, or the reverse: the fit is as good as ever, since the control derivatives take
+/// up the scale; so the range must tell, and the remedy must be the right one.
+#[test]
+fn a_slipped_unit_of_an_input_is_told() {
+    let recorded = maneuver(elevator().as_bytes());
+    assert!(implausible(&recorded).is_none());
+    let right = solve("short-period", &recorded, &json!({}));
+    let degree = 1f64.to_radians();
+    for (unit, factor, looks, remedy) in [
+        (
+            "rad",
+            1.0 / degree,
+            "degrees declared as radians",
+            "de*pi/180",
+        ),
+        ("deg", degree, "radians declared as degrees", "de*180/pi"),
+    ] {
+        let slipped = slipped(&recorded, unit, factor);
+        let wrong = solve("short-period", &slipped, &json!({}));
+        // the same optimum to the accuracy that both stop at
+        let ratio = wrong.estimate.det_r / right.estimate.det_r;
+        assert!((ratio - 1.0).abs() < 1e-4, "{ratio}");
+        let found = implausible(&slipped).expect("a finding");
+        assert_eq!(found.channel.as_deref(), Some("de"));
+        assert!(found.message.contains(looks), "{}", found.message);
+        assert!(found.remedy.contains(remedy), "{}", found.remedy);
+    }
 }

@@ -5,18 +5,14 @@ mod common;
 use std::sync::Arc;
 
 use common::estimation::{compiled, fly, scenario, solve};
+use common::recordings::maneuver;
 use serde_json::{Map, Value, json};
 use trimtab::estimate::{Estimate, Measure, Mode};
 use trimtab::flight::Maneuver;
-use trimtab::ingest::{self, Format, Limits};
 use trimtab::simulate::Scenario;
 
-fn bundled(csv: &str) -> Arc<Maneuver> {
-    Arc::new(ingest::read(csv.as_bytes(), Format::Csv, &Limits::default()).expect("a maneuver"))
-}
-
 fn elevator() -> Arc<Maneuver> {
-    bundled(include_str!("../data/elevator.csv"))
+    maneuver(include_bytes!("../data/elevator.csv"))
 }
 
 fn named(estimate: &Estimate, name: &str) -> f64 {
@@ -124,7 +120,7 @@ fn the_lateral_modes_of_the_navion_are_those_published() {
         .map(|(name, value)| (name.to_string(), json!({"start": value, "fixed": true})))
         .collect();
     // whatever is flown: the controls' derivatives are estimated, the modes are those of what is given
-    let maneuver = bundled(include_str!("../data/aileron.csv"));
+    let maneuver = maneuver(include_bytes!("../data/aileron.csv"));
     let free = ["Yda", "Ydr", "Ldr", "Ndr"].map(|n| (n.to_string(), json!({"fixed": true})));
     let spec = json!({"parameters": known.into_iter().chain(free).collect::<Map<_, _>>()});
     let modes = solve("lateral-directional-4", &maneuver, &spec)

@@ -111,6 +111,15 @@ async fn a_diagnosis_tells_its_steps_and_names_what_is_missing() {
             .any(|parameter| parameter.name == "Mde")
     );
     assert_eq!(diagnosis.residuals.len(), 2);
+    // each segment is there as the declared model has it, too
+    let histories = server.get(&format!("/v1/jobs/{id}/time-histories")).await;
+    let histories = histories.json()["segments"].take();
+    for segment in histories.as_array().unwrap() {
+        let alpha = &segment["outputs"][0];
+        let samples = alpha["model"].as_array().unwrap().len();
+        assert_eq!(alpha["declared"].as_array().unwrap().len(), samples);
+        assert_ne!(alpha["declared"], alpha["model"]);
+    }
     let estimate = server.get(&format!("/v1/jobs/{id}/estimate")).await.json();
     let names = estimate["parameters"].as_array().unwrap();
     assert!(names.iter().any(|row| row["name"] == "de_backlash"));

@@ -1,14 +1,14 @@
 //! `trimtab diagnose`: what a model lacks, here and now.
 
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use comfy_table::Table;
 use comfy_table::presets::UTF8_BORDERS_ONLY;
 
 use super::progress::Progress;
 use super::request::Request;
-use super::{Failure, table};
+use super::{Failure, figures, table};
 use crate::dashboard::history_svg;
 use crate::diagnose::{Diagnosis, FitChange, Refusal};
 use crate::estimate::{Role, TimeHistory, five_digits};
@@ -53,9 +53,6 @@ impl Diagnose {
             return Err(Failure::new(result.estimate.reason));
         };
         progress.finish(diagnosis.verdict.name());
-        if let Some(directory) = &self.figures {
-            write_figures(&result.histories, directory)?;
-        }
         if self.json {
             let text = serde_json::to_string_pretty(&result)
                 .map_err(|error| Failure::new(error.to_string()))?;
@@ -64,29 +61,22 @@ impl Diagnose {
             println!("{}", table::result(&result.estimate, None));
             println!("{}", conclusion(diagnosis, self.all));
         }
+        if let Some(directory) = &self.figures {
+            figures::write(directory, pictures(&result.histories))?;
+        }
         Ok(())
     }
 }
 
-/// One file for each segment, by its label.
-fn write_figures(histories: &[TimeHistory], directory: &Path) -> Result<(), Failure> {
-    let unwritten =
-        |path: &Path, error: std::io::Error| Failure::new(format!("{}: {error}", path.display()));
-    std::fs::create_dir_all(directory).map_err(|error| unwritten(directory, error))?;
-    for history in histories {
-        let plain = |c: char| {
-            if c.is_alphanumeric() || c == '-' {
-                c
-            } else {
-                '_'
-            }
-        };
-        let name: String = history.segment.chars().map(plain).collect();
-        let path = directory.join(format!("{name}.svg"));
-        let svg = history_svg(history).map_err(Failure::new)?;
-        std::fs::write(&path, svg).map_err(|error| unwritten(&path, error))?;
-    }
-    Ok(())
+/// A picture of each segment, numbered: labels may differ in what no file name can have.
+fn pictures(
+    histories: &[TimeHistory],
+) -> impl Iterator<Item = (String, Result<String, String>)> + '_ {
+    histories.iter().enumerate().map(|(number, history)| {
+        let is_plain = |c: char| c.is_alphanumeric() || c == '-';
+        let label = history.segment.replace(|c| !is_plain(c), "_");
+        (format!("{}-{label}.svg", number + 1), history_svg(history))
+    })
 }
 
 /// The refused candidates, the error before and after, and the verdict last.

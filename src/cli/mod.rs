@@ -6,6 +6,7 @@ mod demo;
 mod derivatives;
 mod diagnose;
 mod failure;
+mod figures;
 mod fit;
 mod model;
 mod progress;

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use indexmap::IndexMap;
+use indexmap::{IndexMap, IndexSet};
 
 use super::Failure;
 use super::stretch::Stretch;
@@ -15,14 +15,14 @@ use crate::model::{ModelDocument, Start, catalog};
 
 #[derive(clap::Args, Debug)]
 pub struct Request {
-    /// Recordings: CSV with `name[unit]` headers, or JSON; of some rows only: FILE:FIRST-LAST. Several are fitted together.
-    #[arg(required = true)]
+    /// Recordings: CSV with `name[unit]` headers, or JSON; rows count from 1. Several are fitted together.
+    #[arg(required = true, value_name = "FILE[:FIRST-LAST]")]
     pub files: Vec<Stretch>,
     /// A recording that the model is not fitted to but predicts, to see whether it holds.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE[:FIRST-LAST]")]
     pub validate: Vec<Stretch>,
     /// A recording that is predicted at the very end: a diagnosis makes no decision with it.
-    #[arg(long = "final", value_name = "FILE")]
+    #[arg(long = "final", value_name = "FILE[:FIRST-LAST]")]
     pub last: Vec<Stretch>,
     /// A catalog model (short-period, lateral-directional-2, ...) or a model document (.toml, .json).
     #[arg(long, short)]
@@ -67,14 +67,24 @@ impl Request {
         self.files.iter().chain(&self.validate).chain(&self.last)
     }
 
-    /// The recordings in all files.
+    /// The file of each recording, once where several rows of it are used.
+    pub fn files(&self) -> IndexSet<&Path> {
+        self.stretches()
+            .map(|stretch| stretch.file.as_path())
+            .collect()
+    }
+
+    /// The recording of each stretch.
     pub fn recordings(&self) -> Result<Vec<Arc<Maneuver>>, Failure> {
-        let read = |Stretch { file, .. }: &Stretch| {
+        let read = |file: &Path| {
             ingest::read(&read_bytes(file)?, format_of(file), &Limits::default())
                 .map(Arc::new)
                 .map_err(|error| Failure::faults(&file.display().to_string(), error.faults()))
         };
-        self.stretches().map(read).collect()
+        let files = self.files().into_iter().map(|file| Ok((file, read(file)?)));
+        let files: IndexMap<&Path, Arc<Maneuver>> = files.collect::<Result<_, Failure>>()?;
+        let of = |stretch: &Stretch| files[stretch.file.as_path()].clone();
+        Ok(self.stretches().map(of).collect())
     }
 
     /// The model: a name that the catalog (or the server) knows, or the document in a file.

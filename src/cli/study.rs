@@ -1,14 +1,14 @@
 //! `trimtab study`: derivative techniques compared on a problem, here and now.
 
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use comfy_table::presets::UTF8_BORDERS_ONLY;
 use comfy_table::{CellAlignment, Table};
 
-use super::Failure;
 use super::progress::Progress;
 use super::request::Request;
+use super::{Failure, figures};
 use crate::dashboard::{cost_figure, error_figure};
 use crate::estimate::Scaling;
 use crate::estimate::study::DerivativeStudy;
@@ -50,9 +50,6 @@ impl Study {
         let Some(study) = result.study else {
             return Err(Failure::new(result.estimate.reason));
         };
-        if let Some(directory) = &self.figures {
-            write_figures(&study, directory)?;
-        }
         if self.json {
             let text = serde_json::to_string_pretty(&study)
                 .map_err(|error| Failure::new(error.to_string()))?;
@@ -60,21 +57,18 @@ impl Study {
         } else {
             println!("{}", tables(&study));
         }
+        if let Some(directory) = &self.figures {
+            let pictures = [
+                ("gradient-error.svg", error_figure(&study.error_curves)),
+                ("gradient-cost.svg", cost_figure(&study.costs)),
+            ];
+            figures::write(
+                directory,
+                pictures.map(|(name, svg)| (name.to_string(), svg)),
+            )?;
+        }
         Ok(())
     }
-}
-
-fn write_figures(study: &DerivativeStudy, directory: &Path) -> Result<(), Failure> {
-    let figures = [
-        ("gradient-error.svg", error_figure(&study.error_curves)),
-        ("gradient-cost.svg", cost_figure(&study.costs)),
-    ];
-    for (name, svg) in figures {
-        let path = directory.join(name);
-        let written = std::fs::write(&path, svg.map_err(Failure::new)?);
-        written.map_err(|error| Failure::new(format!("{}: {error}", path.display())))?;
-    }
-    Ok(())
 }
 
 /// Techniques, best steps and descents, for the terminal.

@@ -1,8 +1,9 @@
 //! `trimtab submit`: recordings and a job to a server.
 
+use indexmap::IndexMap;
+
 use super::client::Client;
 use super::request::{Request, read_bytes};
-use super::stretch::Stretch;
 use super::watch::{conclude, follow};
 use super::{Failure, table};
 use crate::job::JobKind;
@@ -25,13 +26,18 @@ pub struct Submit {
 impl Submit {
     pub async fn run(&self) -> Result<(), Failure> {
         let client = Client::new(&self.server)?;
-        let mut ids = Vec::new();
-        for Stretch { file, .. } in self.request.stretches() {
+        let mut uploaded = IndexMap::new();
+        for file in self.request.files() {
             let name = file
                 .file_stem()
                 .map_or("recording".into(), |stem| stem.to_string_lossy());
-            ids.push(client.upload(&name, file, read_bytes(file)?).await?.id);
+            let id = client.upload(&name, file, read_bytes(file)?).await?.id;
+            uploaded.insert(file, id);
         }
+        let stretches = self.request.stretches();
+        let ids: Vec<String> = stretches
+            .map(|stretch| uploaded[stretch.file.as_path()].clone())
+            .collect();
         let mut spec = self.request.spec(&ids)?;
         if self.diagnose {
             spec.kind = JobKind::Diagnose;

@@ -76,9 +76,10 @@ fn draw(
             .label("declared model")
             .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], DECLARED.stroke_width(2)));
     }
-    let name = match output.declared.is_empty() {
-        true => "model",
-        false => "with its effects",
+    let name = if output.declared.is_empty() {
+        "model"
+    } else {
+        "with its effects"
     };
     chart
         .draw_series(LineSeries::new(model, MODEL.stroke_width(2)))
@@ -105,24 +106,22 @@ fn draw(
         .label_style(("sans-serif", 12))
         .draw()
         .map_err(|error| error.to_string())?;
-    chart
-        .draw_series(LineSeries::new(before, DECLARED.stroke_width(1)))
-        .map_err(|error| error.to_string())?;
     // a line only where samples follow each other: not across what is missing
-    if output.residual.iter().any(|residual| residual.is_nan()) {
-        chart.draw_series(
-            residual
-                .iter()
-                .map(|&point| Circle::new(point, 1, MEASURED.filled())),
-        )
-    } else {
-        chart.draw_series(LineSeries::new(residual, MEASURED.stroke_width(1)))
+    let gaps = output.residual.iter().any(|residual| residual.is_nan());
+    for (points, colour) in [(before, DECLARED), (residual, MEASURED)] {
+        if gaps {
+            let dots = points.iter().map(|&at| Circle::new(at, 1, colour.filled()));
+            chart.draw_series(dots).map(|_| ())
+        } else {
+            let line = LineSeries::new(points, colour.stroke_width(1));
+            chart.draw_series(line).map(|_| ())
+        }
+        .map_err(|error| error.to_string())?;
     }
-    .map_err(|error| error.to_string())?;
     Ok(())
 }
 
-/// The corner in which a legend hides the fewest samples.
+/// The corner in which a legend, a fifth as wide as the picture and half as high, hides the fewest samples.
 fn emptiest(measured: &[(f64, f64)], time: &[f64], (low, high): (f64, f64)) -> SeriesLabelPosition {
     let (first, last) = (
         time.first().copied().unwrap_or(0.0),
@@ -236,7 +235,7 @@ mod tests {
 
     #[test]
     fn angles_are_shown_in_degrees() {
-        let history = TimeHistory {
+        let mut history = TimeHistory {
             segment: "1".into(),
             role: crate::estimate::Role::default(),
             time: vec![0.0, 1.0],
@@ -252,5 +251,9 @@ mod tests {
         };
         let svg = history_svg(&history).unwrap();
         assert!(svg.starts_with("<svg") && svg.contains("alpha [deg]"));
+        assert!(!svg.contains("declared model"));
+        history.outputs[0].declared = vec![0.1, 0.15];
+        let svg = history_svg(&history).unwrap();
+        assert!(svg.contains("declared model") && svg.contains("with its effects"));
     }
 }

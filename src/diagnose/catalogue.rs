@@ -6,6 +6,7 @@ use super::case::Case;
 use super::effect::{Effect, Treatment};
 use super::terms;
 use crate::estimate::Role;
+use crate::flight::{is_control, is_flow_angle};
 use crate::model::{EditKind, Model, ModelDocument};
 
 /// Candidates for a model, in the order of the catalogue: instruments before aerodynamics.
@@ -75,7 +76,7 @@ fn inputs(document: &ModelDocument, effects: &mut Vec<Effect>) {
 
 fn unsteady(document: &ModelDocument, effects: &mut Vec<Effect>) {
     let known = document.states.keys().chain(document.inputs.keys());
-    let flow: Vec<&String> = known.filter(|name| terms::is_flow_angle(name)).collect();
+    let flow: Vec<&String> = known.filter(|name| is_flow_angle(name)).collect();
     for target in terms::aerodynamic(document) {
         for angle in flow.iter().filter(|angle| ***angle != target) {
             effects.push(Effect::edit(
@@ -110,7 +111,7 @@ fn unrecorded(case: &Case, model: &Model, effects: &mut Vec<Effect>) {
                 || document.outputs.contains_key(name)
                 || document.states.contains_key(name);
             let finite = values.iter().all(|value| value.is_finite());
-            if !used && finite && dimension.is_none() && terms::is_control(name) {
+            if !used && finite && dimension.is_none() && is_control(name) {
                 names.insert(name.clone());
             }
         }
@@ -135,20 +136,12 @@ fn surroundings(document: &ModelDocument, effects: &mut Vec<Effect>) {
     for state in document.states.keys() {
         effects.push(Effect::edit(EditKind::InitialState, state.as_str(), None));
     }
-    for state in document
-        .states
-        .keys()
-        .filter(|name| terms::is_flow_angle(name))
-    {
+    for state in document.states.keys().filter(|name| is_flow_angle(name)) {
         effects.push(Effect::edit(EditKind::Gust, state.as_str(), None));
         effects.push(Effect::treatment(Treatment::ProcessNoise, state.as_str()));
     }
     for output in document.outputs.keys() {
-        for input in document
-            .inputs
-            .keys()
-            .filter(|name| terms::is_control(name))
-        {
+        for input in document.inputs.keys().filter(|name| is_control(name)) {
             effects.push(Effect::edit(
                 EditKind::StructuralMode,
                 output.as_str(),

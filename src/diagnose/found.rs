@@ -56,3 +56,34 @@ impl Found {
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::EditKind;
+
+    #[test]
+    fn of_all_rounds_the_reason_is_kept_that_explains_most() {
+        let refused = |ratio: Option<f64>, reason: Refusal| RefusedEffect {
+            effect: Effect::edit(EditKind::SensorBias, "q", None),
+            reason,
+            sentence: String::new(),
+            likelihood_ratio: ratio,
+            visible_fraction: None,
+            smallest_seen: None,
+            held_out: None,
+        };
+        let mut found = Found::default();
+        for (ratio, reason) in [
+            (None, Refusal::Invisible),
+            (Some(40.0), Refusal::NotPredictive),
+            (Some(0.3), Refusal::NotSignificant),
+        ] {
+            found.refuse(vec![refused(ratio, reason)]);
+        }
+        assert_eq!(
+            found.truly_refused(),
+            [refused(Some(40.0), Refusal::NotPredictive)]
+        );
+    }
+}

@@ -40,7 +40,6 @@ pub use report::{
 };
 pub use residual::{ResidualAnalysis, analyse};
 pub use round::Watcher;
-pub use terms::{is_control, is_flow_angle};
 
 use answer::answer;
 use fitted::Fitted;

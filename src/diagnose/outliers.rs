@@ -231,4 +231,28 @@ mod tests {
         );
         assert!(found.len() <= 17, "{found:?}");
     }
+
+    /// Three recordings without an outlier in which one was seen: airspeed that stays and then moves by many digits,
+    /// buffet in a stall, and steady flight recorded to a coarse digit while the model drifts off.
+    #[test]
+    fn rough_stretches_and_coarse_digits_are_no_outliers() {
+        let noise = |k: usize| ((k * 7919 + 13) % 101) as f64 / 101.0 - 0.5;
+        let of = |measured: &dyn Fn(usize) -> f64, model: &dyn Fn(usize) -> f64| {
+            let measured: Vec<f64> = (0..600).map(measured).collect();
+            let residual: Vec<f64> = (0..600).map(|k| measured[k] - model(k)).collect();
+            outlying(&residual, &measured)
+        };
+        let lumps = |k: usize| (noise(k / 2) * 8.0).round() * 0.04 + 1e-4 * noise(k);
+        assert_eq!(of(&lumps, &|_| 0.0), []);
+        let buffet = |k: usize| noise(k) * if k < 500 { 1.0 } else { 15.0 };
+        assert_eq!(of(&buffet, &|_| 0.0), []);
+        let steady = |k: usize| {
+            if k < 300 {
+                0.5
+            } else {
+                0.5 + 0.1 * (noise(k) * 4.0).round()
+            }
+        };
+        assert_eq!(of(&steady, &|k| 0.004 * k as f64), []);
+    }
 }

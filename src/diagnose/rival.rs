@@ -211,6 +211,7 @@ impl<'c> Rival<'c> {
             return Vec::new();
         }
         let document = trial.fitted.document.clone();
+        // where output error comes to nothing it speaks neither for nor against
         Fitted::trial(self.case, document, &trial.fitted.values)
             .map(|settled| settled.at_bound(self.base))
             .unwrap_or_default()

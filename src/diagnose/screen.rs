@@ -182,12 +182,9 @@ impl<'c> Screen<'c> {
             let mut seen = self.in_metric(metric, &columns);
             seen.added = names.clone();
             seen.start = start.clone();
-            seen.before = keys
-                .iter()
-                .map(|key| (key.clone(), values.get(key).copied().unwrap_or(0.0)))
-                .collect();
             for (key, size) in keys.iter().zip(std::mem::take(&mut seen.sizes)) {
                 let before = values.get(key).copied().unwrap_or(0.0);
+                seen.before.insert(key.clone(), before);
                 seen.start.insert(key.clone(), before + size);
             }
             match &mut best {

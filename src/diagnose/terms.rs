@@ -2,13 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use crate::flight::{is_control, is_flow_angle};
 use crate::model::{Model, ModelDocument, expression};
-
-/// Angle of attack or of sideslip, by the names that the field gives them.
-pub fn is_flow_angle(name: &str) -> bool {
-    let angles = ["alpha", "beta", "alfa", "aoa", "aos"];
-    angles.iter().any(|angle| name.starts_with(angle)) && !name.contains("dot")
-}
 
 fn is_sideslip(name: &str) -> bool {
     name.starts_with("beta") || name.starts_with("aos")
@@ -16,11 +11,6 @@ fn is_sideslip(name: &str) -> bool {
 
 fn is_rate(name: &str) -> bool {
     matches!(name, "p" | "q" | "r")
-}
-
-/// A control deflection: `de`, `da_right`, `delta_e`, ...
-pub fn is_control(name: &str) -> bool {
-    name.starts_with("delta") || (name.starts_with('d') && name.len() >= 2 && !name.contains("dt"))
 }
 
 /// Equations that carry aerodynamics: named coefficients where the document has them (C..), else the state equations

@@ -4,6 +4,7 @@
 //! nothing behind this room ever sees a degree or a knot.
 
 mod aircraft;
+mod convention;
 mod derivatives;
 mod dimension;
 mod fault;
@@ -14,6 +15,7 @@ mod si_name;
 mod unit;
 
 pub use aircraft::Aircraft;
+pub use convention::{is_control, is_flow_angle};
 pub use derivatives::{Derivative, WeightedSum, coefficients, derivatives};
 pub use dimension::Dimension;
 pub use fault::{Fault, escape};

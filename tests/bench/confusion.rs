@@ -1,11 +1,13 @@
 //! The confusion matrix of the diagnosis: every effect of the catalogue, put undeclared into simulated flights at
 //! three strengths, with white and with coloured noise; and flights with nothing undeclared.
 //!
-//! `cargo bench --bench confusion [cases] [empty] [first seed] [pairs] [aircraft] [white|coloured] [part of an effect's name]`: `cases` for
-//! each effect, strength and colour; `empty` ones for each aircraft and colour; `pairs` of two moderate effects at once,
-//! for each too. The strength of an effect is the likelihood ratio that it is worth to who knows it: 30 (weak), 100
+//! `cargo bench --bench confusion [cases] [empty] [first seed] [pairs] [aircraft] [white|coloured] [part of an effect's
+//! name]`: `cases` for each effect, strength and colour; `empty` ones for each aircraft and colour; `pairs` of two
+//! moderate effects at once, for each too. The strength of an effect is the likelihood ratio that it is worth to who knows it: 30 (weak), 100
 //! (moderate), 300 (clear); outliers are 4, 10 or 30 spikes of ten noise deviations. Seeds below 1 000 000 are for tuning;
-//! the figure is made with others. With CONFUSION_STEPS in the environment each step of each diagnosis is told.
+//! the figure is made with others. The true model that
+//! predictions are compared with is one of output error: what it lacks where the truth is process noise or outliers, it
+//! lacks too. With CONFUSION_STEPS in the environment each step of each diagnosis is told.
 
 #[path = "confusion/aircraft.rs"]
 mod aircraft;

@@ -14,6 +14,9 @@ mod preprocessing;
 mod published_cases;
 #[path = "../common/random_starts.rs"]
 mod random_starts;
+#[path = "../common/recordings.rs"]
+#[allow(dead_code)]
+mod recordings;
 
 use std::time::Instant;
 

@@ -1,27 +1,21 @@
 //! Estimations from random starts: how many end in the best known optimum.
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::json;
 use trimtab::estimate::{Problem, StartMethod, estimate};
-use trimtab::ingest;
 use trimtab::job::{self, JobSpec, ModelSource};
 
 use super::published_cases::Case;
+use super::recordings::maneuver;
 
 /// A published case, ready to be solved, and the reference's estimate at the places of θ (SI).
 pub fn problem(case: &Case) -> (Problem, Vec<f64>) {
     let (text, rows) = &case.segments[0];
-    let recording = ingest::read(
-        text.as_bytes(),
-        ingest::Format::Csv,
-        &ingest::Limits::default(),
-    );
-    let recording = Arc::new(recording.expect("a recording"));
+    let recording = maneuver(text.as_bytes());
     let spec = json!({
         "model": case.model, "channels": case.channels,
         "maneuvers": [{"id": recording.digest(), "rows": rows, "gaps": "join"}],

@@ -1,8 +1,18 @@
 //! Simulated recordings of known truth, and jobs on them.
 
+use std::sync::Arc;
+
 use serde_json::{Value, json};
+use trimtab::flight::Maneuver;
+use trimtab::ingest::{self, Format, Limits};
 use trimtab::model::{Model, catalog};
 use trimtab::simulate::Scenario;
+
+/// A recording as the service reads it.
+pub fn maneuver(csv: &[u8]) -> Arc<Maneuver> {
+    let read = ingest::read(csv, Format::Csv, &Limits::default());
+    Arc::new(read.expect("a recording"))
+}
 
 /// The bundled elevator maneuver as CSV: 626 samples.
 pub fn elevator() -> String {
@@ -14,7 +24,7 @@ pub fn elevator_of(duration: f64, seed: u64) -> String {
     let mut scenario: Scenario = toml::from_str(include_str!("../../data/elevator.toml")).unwrap();
     (scenario.duration, scenario.seed) = (duration, seed);
     let model = Model::compile(&catalog::find("short-period").unwrap()).unwrap();
-    trimtab::ingest::to_csv(&scenario.fly(&model).unwrap(), |_| true)
+    ingest::to_csv(&scenario.fly(&model).unwrap(), |_| true)
 }
 
 /// A short-period job.

@@ -10,8 +10,8 @@ use crate::flight::Dimension;
 /// added.
 ///
 /// A moment is a coefficient `Cm...` or the equation of a rate, a drag a coefficient `CD...`; all other targets are lifts,
-/// and must read α. α̇ is the
-/// derivative of the state α, or a definition or input `alphadot`; without either, τ2 is left out.
+/// and must read α. α̇ is the derivative of the state α, or a definition or input `alphadot`; without these, τ2 is left
+/// out.
 pub(super) fn hysteresis(sheet: &mut Sheet) -> Result<(), EditError> {
     let (angle, unit) = angle(sheet)?;
     let targets: Vec<&str> = sheet.edit.target.split('+').map(str::trim).collect();
@@ -34,14 +34,14 @@ pub(super) fn hysteresis(sheet: &mut Sheet) -> Result<(), EditError> {
     for target in targets {
         let is_rate = (sheet.document.states.get(target))
             .is_some_and(|state| dimension(&state.unit) == Dimension::NONE.over(Dimension::SECOND));
-        let is_added = |kind: &str| target.to_lowercase().starts_with(kind);
-        if is_rate || is_added("cm") || is_added("cd") {
+        let is = |coefficient: &str| target.to_lowercase().starts_with(coefficient);
+        if is_rate || is("cm") || is("cd") {
             let (_, measures) = sheet.law(target)?;
-            let moment = sheet.free(&format!("{target}_{separation}"));
+            let share = sheet.free(&format!("{target}_{separation}"));
             let words = format!("effect on {target} of the separation of the flow");
-            sheet.add(&moment, unknown(measures.to_string(), 0.0, None, words));
+            sheet.add(&share, unknown(measures.to_string(), 0.0, None, words));
             let (equation, _) = sheet.law(target)?;
-            *equation = format!("{equation} + {moment}*(1 - {separation})");
+            *equation = format!("{equation} + {share}*(1 - {separation})");
         } else {
             // the square root must stay a number that can be derived
             let attached = format!("(((1 + sqrt(max({separation}, 0.0001)))/2)^2*{angle})");
