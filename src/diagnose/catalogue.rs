@@ -6,7 +6,7 @@ use super::case::Case;
 use super::effect::{Effect, Treatment};
 use super::terms;
 use crate::estimate::Role;
-use crate::flight::{is_control, is_flow_angle};
+use crate::flight::{is_control, is_flow_angle, is_motion};
 use crate::model::{EditKind, Model, ModelDocument};
 
 /// Candidates for a model, in the order of the catalogue: instruments before aerodynamics.
@@ -57,20 +57,14 @@ fn sensors(document: &ModelDocument, effects: &mut Vec<Effect>) {
 
 fn inputs(document: &ModelDocument, effects: &mut Vec<Effect>) {
     use EditKind::{ActuatorLag, ActuatorRateLimit, Backlash, InputBias, InputDelay, InputScale};
-    for kind in [
-        InputBias,
-        InputScale,
-        InputDelay,
-        ActuatorLag,
-        ActuatorRateLimit,
-        Backlash,
-    ] {
-        effects.extend(
-            document
-                .inputs
-                .keys()
-                .map(|input| Effect::edit(kind, input.as_str(), None)),
-        );
+    for kind in [InputBias, InputScale, InputDelay] {
+        let edits = document.inputs.keys();
+        effects.extend(edits.map(|input| Effect::edit(kind, input.as_str(), None)));
+    }
+    // what a sensor records of the motion comes through no actuator
+    for kind in [ActuatorLag, ActuatorRateLimit, Backlash] {
+        let driven = (document.inputs.iter()).filter(|(name, input)| !is_motion(name, &input.unit));
+        effects.extend(driven.map(|(input, _)| Effect::edit(kind, input.as_str(), None)));
     }
 }
 

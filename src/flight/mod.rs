@@ -15,7 +15,7 @@ mod si_name;
 mod unit;
 
 pub use aircraft::Aircraft;
-pub use convention::{is_control, is_flow_angle};
+pub use convention::{is_control, is_flow_angle, is_motion};
 pub use derivatives::{Derivative, WeightedSum, coefficients, derivatives};
 pub use dimension::Dimension;
 pub use fault::{Fault, escape};
