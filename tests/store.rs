@@ -1,8 +1,10 @@
 //! What the store promises to those on both sides of it.
 
+mod common;
+
 use std::time::Duration;
 
-use tempfile::TempDir;
+use common::database::Database;
 use trimtab::estimate::Options;
 use trimtab::estimate::Outcome;
 use trimtab::job::{EventBody, Fault, JobSpec, ModelSource, Status};
@@ -15,24 +17,23 @@ use trimtab::store::{
 struct Bench {
     store: Store,
     clock: Clock,
-    directory: TempDir,
+    database: Database,
 }
 
 impl Bench {
-    async fn new() -> Self {
-        let directory = TempDir::new().unwrap();
+    async fn on(database: Database) -> Self {
         let clock = Clock::default();
-        let store = open(&directory, &clock).await;
+        let store = open(&database, &clock).await;
         Self {
             store,
             clock,
-            directory,
+            database,
         }
     }
 
-    /// Another process on the same file.
+    /// Another process on the same database.
     async fn other(&self) -> Store {
-        open(&self.directory, &self.clock).await
+        open(&self.database, &self.clock).await
     }
 
     async fn submit(&self, name: &str) -> uuid::Uuid {
@@ -60,9 +61,8 @@ impl Bench {
     }
 }
 
-async fn open(directory: &TempDir, clock: &Clock) -> Store {
-    let path = directory.path().join("store.db");
-    Store::open_with_clock(path.to_str().unwrap(), clock.clone())
+async fn open(database: &Database, clock: &Clock) -> Store {
+    Store::open_with_clock(&database.address, clock.clone())
         .await
         .unwrap()
 }
@@ -108,9 +108,46 @@ fn prepared() -> EventBody {
     })
 }
 
-#[tokio::test]
-async fn jobs_are_claimed_once_and_oldest_first() {
-    let bench = Bench::new().await;
+/// Each promise is kept on a file, and on a PostgreSQL.
+macro_rules! on_both {
+    ($($promise:ident,)*) => {
+        mod sqlite {
+            use super::*;
+            $(#[tokio::test] async fn $promise() {
+                super::$promise(Bench::on(Database::file()).await).await;
+            })*
+        }
+        mod postgres {
+            use super::*;
+            $(#[tokio::test] async fn $promise() {
+                if let Some(database) = Database::postgres(stringify!($promise)).await {
+                    super::$promise(Bench::on(database).await).await;
+                }
+            })*
+        }
+    };
+}
+
+on_both! {
+    jobs_are_claimed_once_and_oldest_first,
+    many_workers_on_two_processes_never_share_a_job,
+    a_worker_that_lost_its_lease_cannot_write_any_more,
+    the_same_worker_with_an_earlier_claim_is_a_ghost_too,
+    heartbeats_keep_a_lease,
+    a_job_that_kills_its_workers_is_given_up,
+    giving_a_job_back_is_no_loss,
+    cancelling_a_queued_job_ends_it_at_once,
+    the_wish_to_cancel_outlives_the_worker,
+    what_was_accepted_is_there_after_reopening,
+    lists_page_through_everything_once,
+    who_listens_before_looking_misses_nothing,
+    a_later_schema_is_refused_not_damaged,
+    what_is_written_again_is_written_once,
+    a_claim_that_was_not_heard_of_is_given_again,
+    processes_that_start_at_once_do_not_disturb_each_other,
+}
+
+async fn jobs_are_claimed_once_and_oldest_first(bench: Bench) {
     let (first, second) = (bench.submit("first").await, bench.submit("second").await);
     assert_eq!(bench.claim("w1").await.job, first);
     assert_eq!(bench.claim("w2").await.job, second);
@@ -119,9 +156,7 @@ async fn jobs_are_claimed_once_and_oldest_first() {
     assert_eq!(bench.status(first).await, Status::Running);
 }
 
-#[tokio::test]
-async fn many_workers_on_two_processes_never_share_a_job() {
-    let bench = Bench::new().await;
+async fn many_workers_on_two_processes_never_share_a_job(bench: Bench) {
     let other = bench.other().await;
     let mut submitted = Vec::new();
     for number in 0..24 {
@@ -136,7 +171,8 @@ async fn many_workers_on_two_processes_never_share_a_job() {
         };
         workers.spawn(async move {
             let mut jobs = Vec::new();
-            while let Some(claim) = store.claim(&format!("w{number}")).await.unwrap() {
+            let worker = |jobs: &Vec<uuid::Uuid>| format!("w{number}/{}", jobs.len());
+            while let Some(claim) = store.claim(&worker(&jobs)).await.unwrap() {
                 assert_eq!(claim.attempt, 1);
                 jobs.push(claim.job);
             }
@@ -148,9 +184,7 @@ async fn many_workers_on_two_processes_never_share_a_job() {
     assert_eq!(claimed, submitted);
 }
 
-#[tokio::test]
-async fn a_worker_that_lost_its_lease_cannot_write_any_more() {
-    let bench = Bench::new().await;
+async fn a_worker_that_lost_its_lease_cannot_write_any_more(bench: Bench) {
     let job = bench.submit("job").await;
     let ghost = bench.claim("ghost").await;
     bench.clock.advance(LEASE + Duration::from_secs(1));
@@ -159,24 +193,27 @@ async fn a_worker_that_lost_its_lease_cannot_write_any_more() {
 
     let lost = |result| assert!(matches!(result, Err(StoreError::LeaseLost)));
     lost(bench.store.heartbeat(&ghost).await.map(drop));
-    lost(bench.store.record(&ghost, &[prepared()]).await);
+    lost(bench.store.record(&ghost, 0, &[prepared()]).await);
     lost(bench.store.finish(&ghost, succeeded(), None).await);
     lost(bench.store.release(&ghost, "late").await);
 
-    bench.store.record(&successor, &[prepared()]).await.unwrap();
+    bench
+        .store
+        .record(&successor, 0, &[prepared()])
+        .await
+        .unwrap();
     bench
         .store
         .finish(&successor, succeeded(), None)
         .await
         .unwrap();
-    lost(bench.store.finish(&successor, succeeded(), None).await);
+    lost(bench.store.record(&successor, 1, &[prepared()]).await);
+    lost(bench.store.finish(&ghost, succeeded(), None).await);
     let log = ["queued", "claimed", "claimed", "prepared", "succeeded"];
     assert_eq!(bench.event_names(job).await, log);
 }
 
-#[tokio::test]
-async fn the_same_worker_with_an_earlier_claim_is_a_ghost_too() {
-    let bench = Bench::new().await;
+async fn the_same_worker_with_an_earlier_claim_is_a_ghost_too(bench: Bench) {
     bench.submit("job").await;
     let before = bench.claim("w").await;
     bench.clock.advance(LEASE + Duration::from_secs(1));
@@ -185,9 +222,7 @@ async fn the_same_worker_with_an_earlier_claim_is_a_ghost_too() {
     assert!(matches!(result, Err(StoreError::LeaseLost)));
 }
 
-#[tokio::test]
-async fn heartbeats_keep_a_lease() {
-    let bench = Bench::new().await;
+async fn heartbeats_keep_a_lease(bench: Bench) {
     bench.submit("job").await;
     let claim = bench.claim("w").await;
     for _ in 0..5 {
@@ -200,9 +235,7 @@ async fn heartbeats_keep_a_lease() {
     }
 }
 
-#[tokio::test]
-async fn a_job_that_kills_its_workers_is_given_up() {
-    let bench = Bench::new().await;
+async fn a_job_that_kills_its_workers_is_given_up(bench: Bench) {
     let job = bench.submit("killer").await;
     for _ in 0..MOST_LOST_WORKERS {
         bench.claim("victim").await;
@@ -218,9 +251,7 @@ async fn a_job_that_kills_its_workers_is_given_up() {
     assert_eq!(faults[0].code, "workers_lost");
 }
 
-#[tokio::test]
-async fn giving_a_job_back_is_no_loss() {
-    let bench = Bench::new().await;
+async fn giving_a_job_back_is_no_loss(bench: Bench) {
     let job = bench.submit("job").await;
     for _ in 0..=2 * MOST_LOST_WORKERS {
         let claim = bench.claim("w").await;
@@ -230,9 +261,7 @@ async fn giving_a_job_back_is_no_loss() {
     assert_eq!(bench.claim("w").await.job, job);
 }
 
-#[tokio::test]
-async fn cancelling_a_queued_job_ends_it_at_once() {
-    let bench = Bench::new().await;
+async fn cancelling_a_queued_job_ends_it_at_once(bench: Bench) {
     let job = bench.submit("job").await;
     let CancelReply::Asked(record) = bench.store.cancel(job).await.unwrap() else {
         panic!()
@@ -252,9 +281,7 @@ async fn cancelling_a_queued_job_ends_it_at_once() {
     assert_eq!(unknown, CancelReply::Unknown);
 }
 
-#[tokio::test]
-async fn the_wish_to_cancel_outlives_the_worker() {
-    let bench = Bench::new().await;
+async fn the_wish_to_cancel_outlives_the_worker(bench: Bench) {
     let job = bench.submit("job").await;
     let claim = bench.claim("w1").await;
     bench.store.cancel(job).await.unwrap();
@@ -284,9 +311,7 @@ async fn the_wish_to_cancel_outlives_the_worker() {
     );
 }
 
-#[tokio::test]
-async fn what_was_accepted_is_there_after_reopening() {
-    let bench = Bench::new().await;
+async fn what_was_accepted_is_there_after_reopening(bench: Bench) {
     let job = bench.submit("job").await;
     let claim = bench.claim("w").await;
     let faults = vec![Fault::new("/model", "some_code", "a message")];
@@ -309,9 +334,7 @@ async fn what_was_accepted_is_there_after_reopening() {
     );
 }
 
-#[tokio::test]
-async fn lists_page_through_everything_once() {
-    let bench = Bench::new().await;
+async fn lists_page_through_everything_once(bench: Bench) {
     let mut submitted = Vec::new();
     for number in 0..7 {
         submitted.push(bench.submit(&format!("{number}")).await);
@@ -362,13 +385,11 @@ async fn lists_page_through_everything_once() {
     );
 }
 
-#[tokio::test]
-async fn who_listens_before_looking_misses_nothing() {
-    let bench = Bench::new().await;
+async fn who_listens_before_looking_misses_nothing(bench: Bench) {
     let job = bench.submit("job").await;
     let claim = bench.claim("w").await;
     let mut listener = bench.store.listen();
-    bench.store.record(&claim, &[prepared()]).await.unwrap();
+    bench.store.record(&claim, 0, &[prepared()]).await.unwrap();
     let forever = Duration::from_secs(3600);
     let heard = listener.wait_for(Signal::Log(job), forever);
     tokio::time::timeout(Duration::from_secs(5), heard)
@@ -376,19 +397,80 @@ async fn who_listens_before_looking_misses_nothing() {
         .expect("was signalled");
 }
 
-#[tokio::test]
-async fn a_later_schema_is_refused_not_damaged() {
-    let bench = Bench::new().await;
-    let path = bench.directory.path().join("store.db");
-    let url = format!("sqlite://{}", path.display());
-    let pool = sqlx::AnyPool::connect(&url).await.unwrap();
+async fn a_later_schema_is_refused_not_damaged(bench: Bench) {
+    let pool = sqlx::AnyPool::connect(&bench.database.url()).await.unwrap();
     sqlx::query("INSERT INTO schema_steps (version, applied) VALUES (999, 'later')")
         .execute(&pool)
         .await
         .unwrap();
-    let refused = Store::open(path.to_str().unwrap())
+    let refused = Store::open(&bench.database.address)
         .await
         .err()
         .expect("refused");
     assert!(refused.to_string().contains("later version"), "{refused}");
+}
+
+/// The answer of a write may be lost when the write is not.
+async fn what_is_written_again_is_written_once(bench: Bench) {
+    let job = bench.submit("job").await;
+    let claim = bench.claim("w").await;
+    let events = [prepared(), prepared(), prepared()];
+    bench.store.record(&claim, 0, &events[..2]).await.unwrap();
+    bench.store.record(&claim, 0, &events[..2]).await.unwrap();
+    bench.store.heartbeat(&claim).await.unwrap();
+    bench.store.record(&claim, 0, &events).await.unwrap();
+    bench.store.finish(&claim, succeeded(), None).await.unwrap();
+    bench.store.finish(&claim, succeeded(), None).await.unwrap();
+    let log = [
+        "queued",
+        "claimed",
+        "prepared",
+        "prepared",
+        "prepared",
+        "succeeded",
+    ];
+    assert_eq!(bench.event_names(job).await, log);
+}
+
+/// A claim that the worker did not hear of is its own when it asks again, and not after a lease.
+async fn a_claim_that_was_not_heard_of_is_given_again(bench: Bench) {
+    let job = bench.submit("job").await;
+    bench.submit("behind").await;
+    bench.claim("w").await;
+    let again = bench.claim("w").await;
+    assert_eq!((again.job, again.attempt), (job, 2));
+}
+
+async fn processes_that_start_at_once_do_not_disturb_each_other(bench: Bench) {
+    let stores = futures_util::future::join_all((0..4).map(|_| bench.other())).await;
+    bench.submit("job").await;
+    assert!(stores[3].claim("w").await.unwrap().is_some());
+}
+
+/// On a file, another process looks after a while; a PostgreSQL tells it.
+#[tokio::test]
+async fn a_signal_reaches_other_processes() {
+    let Some(database) = Database::postgres("a_signal_reaches_other_processes").await else {
+        return;
+    };
+    let bench = Bench::on(database).await;
+    let other = bench.other().await;
+    let forever = Duration::from_secs(3600);
+    let within = Duration::from_secs(5);
+    let mut listener = other.listen();
+    let job = bench.submit("job").await;
+    let heard = listener.wait_for(Signal::Work, forever);
+    tokio::time::timeout(within, heard)
+        .await
+        .expect("of the job");
+    bench.claim("w").await;
+    let heard = listener.wait_for(Signal::Log(job), forever);
+    tokio::time::timeout(within, heard)
+        .await
+        .expect("of its log");
+    bench.store.cancel(job).await.unwrap();
+    let heard = listener.wait_for(Signal::Cancel(job), forever);
+    tokio::time::timeout(within, heard)
+        .await
+        .expect("of the wish");
 }

@@ -1,26 +1,38 @@
 //! Where the database is: what a user writes, and what the driver wants.
 
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use sqlx::postgres::PgConnectOptions;
 
 use super::StoreError;
+use super::engine::Engine;
 
-/// The connection URL of an embedded database, from a path or a `sqlite:` URL.
-pub(super) fn connection_url(address: &str) -> Result<String, StoreError> {
+/// The engine and the connection URL, from a path, a `sqlite:` URL or a `postgres:` URL.
+pub(super) fn connection(address: &str) -> Result<(Engine, String), StoreError> {
     let refuse = |why: &str| {
         Err(StoreError::Address {
-            address: address.to_string(),
+            address: without_password(address),
             why: why.to_string(),
         })
     };
-    if address.starts_with("postgres:") || address.starts_with("postgresql:") {
-        return refuse("PostgreSQL is not supported yet; give the path of a file");
+    if is_postgres(address) {
+        // what the driver says of a URL that it cannot read has no remedy in it
+        return match PgConnectOptions::from_str(address) {
+            Ok(_) => Ok((Engine::Postgres, address.to_string())),
+            Err(error) => refuse(&format!(
+                "{error}; give it as postgres://USER:PASSWORD@HOST:PORT/DATABASE"
+            )),
+        };
     }
     let path = match address.strip_prefix("sqlite:") {
         Some(rest) => rest.strip_prefix("//").unwrap_or(rest),
         None => address,
     };
     if path.contains("://") {
-        return refuse("only files are supported: give a path, or sqlite:PATH");
+        return refuse(
+            "only files (a path, or sqlite:PATH) and PostgreSQL (postgres://...) are supported",
+        );
     }
     if path.is_empty() || path.contains(":memory:") || path.contains('?') || path.contains('\0') {
         return refuse("give the path of a file; what is accepted must outlive the process");
@@ -40,7 +52,27 @@ pub(super) fn connection_url(address: &str) -> Result<String, StoreError> {
     };
     // what would end the path or be decoded in a URL
     let escaped = absolute.replace('%', "%25").replace('#', "%23");
-    Ok(format!("sqlite://{escaped}?mode=rwc"))
+    Ok((Engine::Sqlite, format!("sqlite://{escaped}?mode=rwc")))
+}
+
+fn is_postgres(address: &str) -> bool {
+    address.starts_with("postgres:") || address.starts_with("postgresql:")
+}
+
+/// An address as it may be shown and logged.
+pub(super) fn without_password(address: &str) -> String {
+    let Some((scheme, rest)) = address.split_once("://").filter(|_| is_postgres(address)) else {
+        return address.to_string();
+    };
+    // parameters may have one, too
+    let rest = rest.split('?').next().unwrap_or_default();
+    match rest.rsplit_once('@') {
+        Some((user, host)) => {
+            let user = user.split(':').next().unwrap_or_default();
+            format!("{scheme}://{user}@{host}")
+        }
+        None => format!("{scheme}://{rest}"),
+    }
 }
 
 #[cfg(test)]
@@ -49,13 +81,12 @@ mod tests {
 
     #[test]
     fn paths_and_urls_mean_the_same_file() {
-        let url = connection_url("/tmp/a b#1%.db").unwrap();
+        let file = |address| connection(address).unwrap();
+        let (engine, url) = file("/tmp/a b#1%.db");
+        assert_eq!(engine, Engine::Sqlite);
         assert_eq!(url, "sqlite:///tmp/a b%231%25.db?mode=rwc");
-        assert_eq!(connection_url("sqlite:///tmp/a b#1%.db").unwrap(), url);
-        assert_eq!(
-            connection_url("trimtab.db").unwrap(),
-            connection_url("sqlite:trimtab.db").unwrap()
-        );
+        assert_eq!(file("sqlite:///tmp/a b#1%.db").1, url);
+        assert_eq!(file("trimtab.db"), file("sqlite:trimtab.db"));
     }
 
     #[test]
@@ -66,12 +97,23 @@ mod tests {
             "",
             "/tmp",
             "/no/such/directory/x.db",
+            "mysql://host/db",
+            "postgres://host:port/db",
         ] {
-            assert!(connection_url(address).is_err(), "{address}");
+            assert!(connection(address).is_err(), "{address}");
         }
-        let refusal = connection_url("postgres://host/db")
-            .unwrap_err()
-            .to_string();
-        assert!(refusal.contains("not supported yet"), "{refusal}");
+    }
+
+    #[test]
+    fn a_password_is_not_shown() {
+        let address = "postgres://lab:s3cr@t@host:5432/trimtab?password=s3cret&sslmode=require";
+        assert_eq!(connection(address).unwrap().0, Engine::Postgres);
+        assert_eq!(
+            without_password(address),
+            "postgres://lab@host:5432/trimtab"
+        );
+        let refusal = connection("postgres://lab:s3cret@host:nonsense/x").unwrap_err();
+        assert!(!refusal.to_string().contains("s3cret"), "{refusal}");
+        assert_eq!(without_password("/data/a@b.db"), "/data/a@b.db");
     }
 }

@@ -7,15 +7,19 @@ use std::time::Duration;
 use jiff::{SignedDuration, Timestamp};
 use uuid::{ContextV7, Uuid};
 
-/// The system's clock, which a test may put forward.
+/// The system's clock, or the database's where many machines share one; a test may put it forward.
 #[derive(Clone, Default)]
 pub struct Clock {
+    /// Of the database's clock before the system's.
+    offset_ms: Arc<AtomicI64>,
     ahead_ms: Arc<AtomicI64>,
 }
 
 impl Clock {
     pub fn now(&self) -> Timestamp {
-        let ahead = SignedDuration::from_millis(self.ahead_ms.load(Ordering::Relaxed));
+        let [offset, ahead] =
+            [&self.offset_ms, &self.ahead_ms].map(|of| of.load(Ordering::Relaxed));
+        let ahead = SignedDuration::from_millis(offset.saturating_add(ahead));
         Timestamp::now()
             .saturating_add(ahead)
             .unwrap_or(Timestamp::MAX)
@@ -34,6 +38,12 @@ impl Clock {
                 .saturating_add(duration)
                 .unwrap_or(Timestamp::MAX),
         )
+    }
+
+    /// Goes by another clock from now on, which shows `now`, ms since 1970.
+    pub(super) fn follow(&self, now: i64) {
+        let offset = now.saturating_sub(Timestamp::now().as_millisecond());
+        self.offset_ms.store(offset, Ordering::Relaxed);
     }
 
     /// Puts the clock of this store forward: what would happen later happens now.
@@ -71,5 +81,7 @@ mod tests {
         assert!(ids.is_sorted());
         clock.advance(Duration::from_secs(2));
         assert!(clock.now_text() > later);
+        clock.follow(Timestamp::now().as_millisecond() - 3_600_000);
+        assert!(clock.now_text() < now);
     }
 }

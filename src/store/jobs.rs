@@ -92,7 +92,7 @@ impl Store {
     pub async fn submit(&self, job: &NewJob) -> Result<JobRecord, StoreError> {
         let (id, now) = (self.clock.new_id(), self.clock.now_text());
         let tags = serde_json::Value::from(job.tags.clone()).to_string();
-        let mut tx = self.begin().await?;
+        let mut writing = self.begin().await?;
         sqlx::query(
             "INSERT INTO jobs (id, kind, name, tags, status, created, last_seq, attempt, lost, spec, model) \
              VALUES ($1, $2, $3, $4, $5, $6, 0, 0, 0, $7, $8)",
@@ -105,22 +105,23 @@ impl Store {
         .bind(&now)
         .bind(&job.spec)
         .bind(&job.model)
-        .execute(&mut *tx)
+        .execute(writing.connection())
         .await?;
         for tag in &job.tags {
             sqlx::query("INSERT INTO job_tags (tag, job) VALUES ($1, $2) ON CONFLICT DO NOTHING")
                 .bind(tag)
                 .bind(id.to_string())
-                .execute(&mut *tx)
+                .execute(writing.connection())
                 .await?;
         }
         let mut head = Head {
             status: None,
             last_seq: 0,
         };
-        append(&mut tx, id, &mut head, &now, &[EventBody::Queued]).await?;
-        tx.commit().await?;
-        self.signals.send(Signal::Work);
+        let queued = [EventBody::Queued];
+        append(writing.connection(), id, &mut head, &now, &queued).await?;
+        writing.tell(Signal::Work);
+        writing.commit().await?;
         Ok(JobRecord {
             id,
             kind: job.kind.clone(),
@@ -211,10 +212,14 @@ impl Store {
     /// # Errors
     /// The database cannot be written.
     pub async fn cancel(&self, id: Uuid) -> Result<CancelReply, StoreError> {
-        let mut tx = self.begin().await?;
-        let row = sqlx::query("SELECT status, last_seq FROM jobs WHERE id = $1")
+        let mut writing = self.begin().await?;
+        let sql = format!(
+            "SELECT status, last_seq FROM jobs WHERE id = $1 {}",
+            self.engine.locking()
+        );
+        let row = sqlx::query(AssertSqlSafe(sql))
             .bind(id.to_string())
-            .fetch_optional(&mut *tx)
+            .fetch_optional(writing.connection())
             .await?;
         let Some(row) = row else {
             return Ok(CancelReply::Unknown);
@@ -233,13 +238,12 @@ impl Store {
             Status::Cancelling | Status::Succeeded | Status::Failed | Status::Cancelled => &[],
         };
         if !events.is_empty() {
-            append(&mut tx, id, &mut head, &self.clock.now_text(), events).await?;
+            let now = self.clock.now_text();
+            append(writing.connection(), id, &mut head, &now, events).await?;
+            writing.tell(Signal::Log(id));
+            writing.tell(Signal::Cancel(id));
         }
-        tx.commit().await?;
-        if !events.is_empty() {
-            self.signals.send(Signal::Log(id));
-            self.signals.send(Signal::Cancel(id));
-        }
+        writing.commit().await?;
         Ok(match self.job(id).await? {
             None => CancelReply::Unknown,
             Some(job) if status.is_over() => CancelReply::AlreadyOver(job),

@@ -2,11 +2,12 @@
 
 use std::time::Duration;
 
-use sqlx::{Any, Row, Transaction};
+use sqlx::{AssertSqlSafe, Row};
 use uuid::Uuid;
 
 use super::jobs::read_id;
 use super::log::{Head, append, read_status};
+use super::writing::Writing;
 use super::{ResultParts, Signal, Store, StoreError, results};
 use crate::job::{EventBody, Fault, JobSpec, Status};
 use crate::model::ModelDocument;
@@ -30,27 +31,33 @@ pub struct Claim {
     pub cancelling: bool,
 }
 
-const CLAIMABLE: &str = "SELECT id, status, last_seq, attempt, lost, lease_until, spec, model FROM jobs \
-     WHERE status = 'queued' OR (status IN ('running', 'cancelling') AND (lease_until IS NULL OR lease_until < $1)) \
-     ORDER BY id LIMIT 1";
+/// Waiting jobs, those that a worker has left behind, and one that this worker was given without hearing of it.
+const CLAIMABLE: &str = "SELECT id, status, last_seq, attempt, lost, lease_owner, spec, model FROM jobs \
+     WHERE status = 'queued' \
+     OR (status IN ('running', 'cancelling') AND (lease_until IS NULL OR lease_until < $1 OR lease_owner = $2)) \
+     ORDER BY priority DESC, turn, id LIMIT 1";
 
 impl Store {
-    /// The oldest job that waits, or that a worker has left behind.
+    /// The first job that waits, or that a worker has left behind. A worker has one job at a time: one that is its own
+    /// already is what it was given when the answer was lost.
     ///
     /// # Errors
     /// The database cannot be written.
     pub async fn claim(&self, worker: &str) -> Result<Option<Claim>, StoreError> {
-        // an idle worker should not take the write lock each time it looks
+        // an idle worker should not take a lock each time it looks
         let look = sqlx::query(CLAIMABLE).bind(self.clock.now_text());
-        if look.fetch_optional(&self.readers).await?.is_none() {
+        let seen = look.bind(worker).fetch_optional(&self.readers).await?;
+        if seen.is_none() {
             return Ok(None);
         }
+        let claimable = format!("{CLAIMABLE} {}", self.engine.locking_the_next());
         loop {
             let now = self.clock.now_text();
-            let mut tx = self.begin().await?;
-            let row = sqlx::query(CLAIMABLE)
+            let mut writing = self.begin().await?;
+            let row = sqlx::query(AssertSqlSafe(claimable.as_str()))
                 .bind(&now)
-                .fetch_optional(&mut *tx)
+                .bind(worker)
+                .fetch_optional(writing.connection())
                 .await?;
             let Some(row) = row else { return Ok(None) };
             let job = read_id(&row, "id")?;
@@ -59,7 +66,7 @@ impl Store {
                 status: Some(status),
                 last_seq: row.try_get("last_seq")?,
             };
-            let was_lost = row.try_get::<Option<&str>, _>("lease_until")?.is_some();
+            let was_lost = row.try_get::<Option<&str>, _>("lease_owner")?.is_some();
             let lost = row.try_get::<i64, _>("lost")? + i64::from(was_lost);
             let attempt = row.try_get::<i64, _>("attempt")? + 1;
 
@@ -79,19 +86,19 @@ impl Store {
                 },
             };
             let claimed = matches!(event, EventBody::Claimed { .. });
-            append(&mut tx, job, &mut head, &now, &[event]).await?;
+            append(writing.connection(), job, &mut head, &now, &[event]).await?;
             sqlx::query(
-                "UPDATE jobs SET attempt = $2, lost = $3, lease_owner = $4, lease_until = $5 WHERE id = $1",
+                "UPDATE jobs SET attempt = $2, lost = $3, written = 0, lease_owner = $4, lease_until = $5 WHERE id = $1",
             )
             .bind(job.to_string())
             .bind(attempt)
             .bind(lost)
             .bind(claimed.then_some(worker))
             .bind(claimed.then(|| self.clock.text_after(LEASE)))
-            .execute(&mut *tx)
+            .execute(writing.connection())
             .await?;
-            tx.commit().await?;
-            self.signals.send(Signal::Log(job));
+            writing.tell(Signal::Log(job));
+            writing.commit().await?;
             if let (true, Ok((spec, model))) = (claimed, readable) {
                 return Ok(Some(Claim {
                     job,
@@ -110,33 +117,41 @@ impl Store {
     /// # Errors
     /// [`StoreError::LeaseLost`]: the job has another worker or is over.
     pub async fn heartbeat(&self, claim: &Claim) -> Result<Status, StoreError> {
-        let (mut tx, head) = self.begin_as(claim).await?;
-        self.extend_lease(&mut tx, claim).await?;
-        tx.commit().await?;
-        Ok(head.status.unwrap_or(Status::Running))
+        let (mut writing, held) = self.begin_as(claim).await?;
+        self.keep(&mut writing, claim, held.written).await?;
+        writing.commit().await?;
+        Ok(held.head.status.unwrap_or(Status::Running))
     }
 
-    /// Appends to the log of a claimed job; as good as a heartbeat.
+    /// Appends to the log of a claimed job; as good as a heartbeat. `before` counts the events that this claim has
+    /// recorded: those which arrived, though the answer that said so did not, are not written twice.
     ///
     /// # Errors
     /// [`StoreError::LeaseLost`]: the job has another worker or is over. Nothing is written then.
-    pub async fn record(&self, claim: &Claim, events: &[EventBody]) -> Result<(), StoreError> {
-        let (mut tx, mut head) = self.begin_as(claim).await?;
+    pub async fn record(
+        &self,
+        claim: &Claim,
+        before: usize,
+        events: &[EventBody],
+    ) -> Result<(), StoreError> {
+        let (mut writing, mut held) = self.begin_as(claim).await?;
+        let arrived = held.written.saturating_sub(before).min(events.len());
+        let now = self.clock.now_text();
         append(
-            &mut tx,
+            writing.connection(),
             claim.job,
-            &mut head,
-            &self.clock.now_text(),
-            events,
+            &mut held.head,
+            &now,
+            &events[arrived..],
         )
         .await?;
-        self.extend_lease(&mut tx, claim).await?;
-        tx.commit().await?;
-        self.signals.send(Signal::Log(claim.job));
-        Ok(())
+        let written = held.written.max(before + events.len());
+        self.keep(&mut writing, claim, written).await?;
+        writing.tell(Signal::Log(claim.job));
+        writing.commit().await
     }
 
-    /// Ends a job: its last event and its result, together.
+    /// Ends a job: its last event and its result, together. Ending it again changes nothing.
     ///
     /// # Errors
     /// [`StoreError::LeaseLost`]: the job has another worker or is over. Nothing is written then.
@@ -147,22 +162,24 @@ impl Store {
         result: Option<&ResultParts>,
     ) -> Result<(), StoreError> {
         debug_assert!(ending.is_last());
-        let (mut tx, mut head) = self.begin_as(claim).await?;
+        let (mut writing, mut held) = match self.begin_as(claim).await {
+            Err(StoreError::LeaseLost) if self.is_ended(claim).await? => return Ok(()),
+            begun => begun?,
+        };
         if let Some(result) = result {
-            results::insert(&mut tx, claim.job, result).await?;
+            results::insert(writing.connection(), claim.job, result).await?;
         }
+        let now = self.clock.now_text();
         append(
-            &mut tx,
+            writing.connection(),
             claim.job,
-            &mut head,
-            &self.clock.now_text(),
+            &mut held.head,
+            &now,
             &[ending],
         )
         .await?;
-        give_up_lease(&mut tx, claim).await?;
-        tx.commit().await?;
-        self.signals.send(Signal::Log(claim.job));
-        Ok(())
+        give_up_lease(&mut writing, claim).await?;
+        writing.commit().await
     }
 
     /// Gives an unfinished job back; the next worker starts it anew.
@@ -170,77 +187,94 @@ impl Store {
     /// # Errors
     /// [`StoreError::LeaseLost`]: the job has another worker or is over. Nothing is written then.
     pub async fn release(&self, claim: &Claim, reason: &str) -> Result<(), StoreError> {
-        let (mut tx, mut head) = self.begin_as(claim).await?;
+        let (mut writing, mut held) = self.begin_as(claim).await?;
         let event = EventBody::Released {
             reason: reason.to_string(),
         };
+        let now = self.clock.now_text();
         append(
-            &mut tx,
+            writing.connection(),
             claim.job,
-            &mut head,
-            &self.clock.now_text(),
+            &mut held.head,
+            &now,
             &[event],
         )
         .await?;
-        give_up_lease(&mut tx, claim).await?;
-        tx.commit().await?;
-        self.signals.send(Signal::Log(claim.job));
-        self.signals.send(Signal::Work);
-        Ok(())
+        give_up_lease(&mut writing, claim).await?;
+        writing.tell(Signal::Work);
+        writing.commit().await
     }
 
     /// A transaction that has made sure that the claim still stands. That its time has run out is
     /// no harm as long as nobody else has taken the job.
-    async fn begin_as(
-        &self,
-        claim: &Claim,
-    ) -> Result<(Transaction<'static, Any>, Head), StoreError> {
-        let mut tx = self.begin().await?;
-        let sql =
-            "SELECT status, last_seq FROM jobs WHERE id = $1 AND attempt = $2 AND lease_owner = $3";
-        let row = sqlx::query(sql)
+    async fn begin_as(&self, claim: &Claim) -> Result<(Writing, Held), StoreError> {
+        let mut writing = self.begin().await?;
+        let sql = format!(
+            "SELECT status, last_seq, written FROM jobs WHERE id = $1 AND attempt = $2 AND lease_owner = $3 {}",
+            self.engine.locking()
+        );
+        let row = sqlx::query(AssertSqlSafe(sql))
             .bind(claim.job.to_string())
             .bind(i64::from(claim.attempt))
             .bind(&claim.worker)
-            .fetch_optional(&mut *tx)
+            .fetch_optional(writing.connection())
             .await?;
         let row = row.ok_or(StoreError::LeaseLost)?;
         let status = read_status(row.try_get("status")?)?;
         if !matches!(status, Status::Running | Status::Cancelling) {
             return Err(StoreError::LeaseLost);
         }
-        let last_seq = row.try_get("last_seq")?;
-        Ok((
-            tx,
-            Head {
-                status: Some(status),
-                last_seq,
-            },
-        ))
+        let head = Head {
+            status: Some(status),
+            last_seq: row.try_get("last_seq")?,
+        };
+        let written = usize::try_from(row.try_get::<i64, _>("written")?).unwrap_or(0);
+        Ok((writing, Held { head, written }))
     }
 
-    async fn extend_lease(
+    /// Whether this very claim has ended the job: only whoever holds the attempt can.
+    async fn is_ended(&self, claim: &Claim) -> Result<bool, StoreError> {
+        let row = sqlx::query("SELECT status FROM jobs WHERE id = $1 AND attempt = $2")
+            .bind(claim.job.to_string())
+            .bind(i64::from(claim.attempt))
+            .fetch_optional(&self.readers)
+            .await?;
+        match row {
+            Some(row) => Ok(read_status(row.try_get("status")?)?.is_over()),
+            None => Ok(false),
+        }
+    }
+
+    async fn keep(
         &self,
-        tx: &mut Transaction<'static, Any>,
+        writing: &mut Writing,
         claim: &Claim,
+        written: usize,
     ) -> Result<(), StoreError> {
-        sqlx::query("UPDATE jobs SET lease_until = $2 WHERE id = $1")
+        sqlx::query("UPDATE jobs SET lease_until = $2, written = $3 WHERE id = $1")
             .bind(claim.job.to_string())
             .bind(self.clock.text_after(LEASE))
-            .execute(&mut **tx)
+            .bind(i64::try_from(written).unwrap_or(i64::MAX))
+            .execute(writing.connection())
             .await?;
         Ok(())
     }
 }
 
-async fn give_up_lease(
-    tx: &mut Transaction<'static, Any>,
-    claim: &Claim,
-) -> Result<(), StoreError> {
+/// What a claim that stands finds.
+struct Held {
+    head: Head,
+    /// Events that this claim has recorded.
+    written: usize,
+}
+
+/// The log has grown by its last event for now.
+async fn give_up_lease(writing: &mut Writing, claim: &Claim) -> Result<(), StoreError> {
     sqlx::query("UPDATE jobs SET lease_owner = NULL, lease_until = NULL WHERE id = $1")
         .bind(claim.job.to_string())
-        .execute(&mut **tx)
+        .execute(writing.connection())
         .await?;
+    writing.tell(Signal::Log(claim.job));
     Ok(())
 }
 

@@ -1,6 +1,6 @@
 //! The log of a job: appending to it, and reading on from where one stopped.
 
-use sqlx::{Any, Row, Transaction};
+use sqlx::{AnyConnection, Row};
 use uuid::Uuid;
 
 use super::page::one_more;
@@ -42,7 +42,7 @@ pub(super) struct Head {
 
 /// Appends events and brings status and times of the job along with them.
 pub(super) async fn append(
-    tx: &mut Transaction<'static, Any>,
+    connection: &mut AnyConnection,
     job: Uuid,
     head: &mut Head,
     now: &str,
@@ -69,7 +69,7 @@ pub(super) async fn append(
             .bind(now)
             .bind(event.name())
             .bind(body)
-            .execute(&mut **tx)
+            .execute(&mut *connection)
             .await?;
     }
     let Some(status) = head.status else {
@@ -83,7 +83,7 @@ pub(super) async fn append(
     .bind(head.last_seq)
     .bind(started)
     .bind(finished)
-    .execute(&mut **tx)
+    .execute(&mut *connection)
     .await?;
     Ok(())
 }

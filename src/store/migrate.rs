@@ -1,6 +1,6 @@
 //! The schema, as numbered steps that are run once and recorded.
 
-use sqlx::Row;
+use sqlx::{AssertSqlSafe, Row};
 
 use super::{Store, StoreError};
 
@@ -10,19 +10,28 @@ struct Step {
 }
 
 /// In order. A step that was released is never edited: a change is a further step.
-const STEPS: &[Step] = &[Step {
-    version: 1,
-    sql: include_str!("migrations/sqlite/0001_first.sql"),
-}];
+const STEPS: &[Step] = &[
+    Step {
+        version: 1,
+        sql: include_str!("migrations/0001_first.sql"),
+    },
+    Step {
+        version: 2,
+        sql: include_str!("migrations/0002_many_machines.sql"),
+    },
+];
 
-/// Brings the schema up to date. Two processes that start at once do not disturb each other: each
-/// step looks and writes in one transaction.
+/// Brings the schema up to date. Processes that start at once do not disturb each other: all steps are looked for and
+/// written in one transaction.
 pub(super) async fn run(store: &Store) -> Result<(), StoreError> {
     let table = "CREATE TABLE IF NOT EXISTS schema_steps (version BIGINT PRIMARY KEY NOT NULL, applied TEXT NOT NULL)";
-    let mut tx = store.begin().await?;
-    sqlx::query(table).execute(&mut *tx).await?;
+    let mut writing = store.begin().await?;
+    if let Some(lock) = store.engine.lock_of_schema() {
+        sqlx::query(lock).execute(writing.connection()).await?;
+    }
+    sqlx::query(table).execute(writing.connection()).await?;
     let row = sqlx::query("SELECT MAX(version) AS version FROM schema_steps")
-        .fetch_one(&mut *tx)
+        .fetch_one(writing.connection())
         .await?;
     let reached = row.try_get::<Option<i64>, _>("version")?.unwrap_or(0);
     let known = STEPS.last().map_or(0, |step| step.version);
@@ -30,14 +39,15 @@ pub(super) async fn run(store: &Store) -> Result<(), StoreError> {
         return Err(StoreError::LaterVersion { reached, known });
     }
     for step in STEPS.iter().filter(|step| step.version > reached) {
-        sqlx::raw_sql(step.sql).execute(&mut *tx).await?;
+        // safe: put together from this program's own text
+        let sql = AssertSqlSafe(store.engine.schema(step.sql));
+        sqlx::raw_sql(sql).execute(writing.connection()).await?;
         sqlx::query("INSERT INTO schema_steps (version, applied) VALUES ($1, $2)")
             .bind(step.version)
             .bind(store.clock().now_text())
-            .execute(&mut *tx)
+            .execute(writing.connection())
             .await?;
         tracing::info!(version = step.version, "database schema brought up to date");
     }
-    tx.commit().await?;
-    Ok(())
+    writing.commit().await
 }

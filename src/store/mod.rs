@@ -12,20 +12,23 @@
 mod address;
 mod clock;
 mod columns;
+mod engine;
 mod jobs;
 mod lease;
 mod log;
 mod maneuvers;
 mod migrate;
 mod models;
+mod neighbours;
 mod page;
 mod results;
 mod signal;
+mod writing;
 
-use std::time::Duration;
+use std::sync::Arc;
 
-use sqlx::any::AnyPoolOptions;
-use sqlx::{Any, AnyPool, Executor, Transaction};
+use sqlx::AnyPool;
+use tokio_util::sync::DropGuard;
 
 pub use clock::Clock;
 pub use jobs::{CancelReply, JobFilter, JobRecord, NewJob};
@@ -37,8 +40,7 @@ pub use page::{BadCursor, Page};
 pub use results::{Part, ResultParts};
 pub use signal::{Listener, Signal};
 
-/// A statement that waits longer than this for the database gives up.
-const ACQUIRE_TIMEOUT: Duration = Duration::from_secs(10);
+use engine::Engine;
 
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
@@ -70,16 +72,18 @@ impl StoreError {
 /// A handle; clones share one database.
 #[derive(Clone)]
 pub struct Store {
+    engine: Engine,
     readers: AnyPool,
-    /// SQLite has one writer at a time: queueing for the one connection is fair and cheap, where
-    /// several connections would poll for the lock.
     writer: AnyPool,
     clock: Clock,
     signals: signal::Signals,
+    /// Kept as long as signals of other processes are to be heard.
+    _neighbours: Option<Arc<DropGuard>>,
 }
 
 impl Store {
-    /// Opens the database at `address` (a path or `sqlite:PATH`), creates what is missing.
+    /// Opens the database at `address` and creates what is missing: a file (a path or `sqlite:PATH`), or
+    /// `postgres://USER:PASSWORD@HOST/DATABASE`, which many machines may share.
     ///
     /// # Errors
     /// The address cannot be used, or the database is of a later version.
@@ -93,18 +97,26 @@ impl Store {
     /// As [`Store::open`].
     pub async fn open_with_clock(address: &str, clock: Clock) -> Result<Self, StoreError> {
         sqlx::any::install_default_drivers();
-        let url = address::connection_url(address)?;
+        let (engine, url) = address::connection(address)?;
         let cannot = |error: sqlx::Error| StoreError::Address {
-            address: address.to_string(),
+            address: address::without_password(address),
             why: error.to_string(),
         };
-        let writer = pool(1).connect(&url).await.map_err(cannot)?;
-        let readers = pool(8).connect(&url).await.map_err(cannot)?;
+        let writer = engine.pool(engine.writers()).connect(&url).await;
+        let writer = writer.map_err(cannot)?;
+        let readers = engine.pool(8).connect(&url).await.map_err(cannot)?;
+        let signals = signal::Signals::new();
+        let neighbours = match engine {
+            Engine::Sqlite => None,
+            Engine::Postgres => Some(neighbours::listen(&url, &readers, &clock, &signals).await?),
+        };
         let store = Self {
+            engine,
             readers,
             writer,
             clock,
-            signals: signal::Signals::new(),
+            signals,
+            _neighbours: neighbours,
         };
         migrate::run(&store).await?;
         Ok(store)
@@ -135,34 +147,6 @@ impl Store {
         self.readers.close().await;
         self.writer.close().await;
     }
-
-    /// A transaction that reads, and then writes what follows from it: it has the write lock from
-    /// the beginning, so nothing it read can have changed when it writes.
-    async fn begin(&self) -> Result<Transaction<'static, Any>, StoreError> {
-        Ok(self.writer.begin_with("BEGIN IMMEDIATE").await?)
-    }
-}
-
-fn pool(connections: u32) -> AnyPoolOptions {
-    AnyPoolOptions::new()
-        .max_connections(connections)
-        .acquire_timeout(ACQUIRE_TIMEOUT)
-        .idle_timeout(None)
-        .max_lifetime(None)
-        .after_connect(|connection, _| {
-            Box::pin(async move {
-                // WAL: readers do not block the writer. FULL: what was committed outlives a power cut.
-                for pragma in [
-                    "PRAGMA busy_timeout = 5000",
-                    "PRAGMA journal_mode = WAL",
-                    "PRAGMA synchronous = FULL",
-                    "PRAGMA foreign_keys = ON",
-                ] {
-                    connection.execute(pragma).await?;
-                }
-                Ok(())
-            })
-        })
 }
 
 /// Runs what takes long (encoding and decoding of long columns) where it does not hold up the reactor.

@@ -1,7 +1,7 @@
 //! Results, kept in parts so that a reader loads only what it is asked for.
 
 use serde::{Deserialize, Serialize};
-use sqlx::{Any, Row, Transaction};
+use sqlx::{AnyConnection, Row};
 use uuid::Uuid;
 
 use super::{Store, StoreError, columns, off_reactor};
@@ -192,7 +192,7 @@ fn decode_history(bytes: &[u8]) -> Result<TimeHistory, StoreError> {
 }
 
 pub(super) async fn insert(
-    tx: &mut Transaction<'static, Any>,
+    connection: &mut AnyConnection,
     job: Uuid,
     result: &ResultParts,
 ) -> Result<(), StoreError> {
@@ -201,7 +201,7 @@ pub(super) async fn insert(
             .bind(job.to_string())
             .bind(part)
             .bind(body.as_slice())
-            .execute(&mut **tx)
+            .execute(&mut *connection)
             .await?;
     }
     Ok(())

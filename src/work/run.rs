@@ -114,9 +114,11 @@ async fn load(store: &Store, claim: &Claim) -> Result<Vec<Arc<Maneuver>>, Unansw
 
 /// Writes what the solver tells, all that has come in the meantime in one transaction.
 async fn record(store: &Store, claim: &Claim, mut events: mpsc::Receiver<EventBody>, stop: &Stop) {
-    let mut batch = Vec::new();
+    let (mut batch, mut before) = (Vec::new(), 0);
     while events.recv_many(&mut batch, LOG_CAPACITY).await > 0 {
-        if let Err(error) = persist("record", || store.record(claim, &batch)).await {
+        let recorded = persist("record", || store.record(claim, before, &batch)).await;
+        before += batch.len();
+        if let Err(error) = recorded {
             tracing::warn!(job = %claim.job, %error, "the job is given up: its events cannot be written");
             stop.ask(Reason::LeaseLost);
             return;

@@ -1,0 +1,105 @@
+//! The two databases that the store can live in, and all that they differ in.
+
+use std::time::Duration;
+
+use sqlx::any::AnyPoolOptions;
+use sqlx::{AnyConnection, Executor};
+
+/// A statement that waits longer than this for the database gives up.
+const ACQUIRE_TIMEOUT: Duration = Duration::from_secs(10);
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Engine {
+    /// A file. One process has it; others may look in.
+    Sqlite,
+    /// A server that many machines share.
+    Postgres,
+}
+
+impl Engine {
+    /// How a transaction begins that reads, and then writes what follows from it. SQLite locks the file from the beginning;
+    /// PostgreSQL locks the rows that are read, see [`Engine::locking`].
+    pub(super) fn begin(self) -> &'static str {
+        match self {
+            Self::Sqlite => "BEGIN IMMEDIATE",
+            Self::Postgres => "BEGIN",
+        }
+    }
+
+    /// Behind a `SELECT`: nobody else changes these rows until the transaction ends.
+    pub(super) fn locking(self) -> &'static str {
+        match self {
+            Self::Sqlite => "",
+            Self::Postgres => "FOR UPDATE",
+        }
+    }
+
+    /// As [`Engine::locking`], passing over rows that another has locked.
+    pub(super) fn locking_the_next(self) -> &'static str {
+        match self {
+            Self::Sqlite => "",
+            Self::Postgres => "FOR UPDATE SKIP LOCKED",
+        }
+    }
+
+    /// A schema step in this database's words. Steps are written for SQLite; text sorts by its bytes in either.
+    pub(super) fn schema(self, step: &str) -> String {
+        match self {
+            Self::Sqlite => step.to_string(),
+            Self::Postgres => step
+                .replace(" BLOB ", " BYTEA ")
+                .replace(" TEXT", " TEXT COLLATE \"C\"")
+                .replace(" WITHOUT ROWID", ""),
+        }
+    }
+
+    /// Locks the schema for the transaction: only one process at a time brings it up to date.
+    pub(super) fn lock_of_schema(self) -> Option<&'static str> {
+        match self {
+            Self::Sqlite => None,
+            Self::Postgres => Some("SELECT pg_advisory_xact_lock(20261121)"),
+        }
+    }
+
+    /// Connections of a pool, at most. SQLite has one writer at a time: queueing for the one connection is fair and cheap,
+    /// where several connections would poll for the lock.
+    pub(super) fn writers(self) -> u32 {
+        match self {
+            Self::Sqlite => 1,
+            Self::Postgres => 8,
+        }
+    }
+
+    pub(super) fn pool(self, connections: u32) -> AnyPoolOptions {
+        let pool = AnyPoolOptions::new()
+            .max_connections(connections)
+            .acquire_timeout(ACQUIRE_TIMEOUT)
+            .after_connect(move |connection, _| Box::pin(self.prepare(connection)));
+        match self {
+            Self::Sqlite => pool.idle_timeout(None).max_lifetime(None),
+            Self::Postgres => pool,
+        }
+    }
+
+    async fn prepare(self, connection: &mut AnyConnection) -> sqlx::Result<()> {
+        let settings: &[&'static str] = match self {
+            // WAL: readers do not block the writer. FULL: what was committed outlives a power cut.
+            Self::Sqlite => &[
+                "PRAGMA busy_timeout = 5000",
+                "PRAGMA journal_mode = WAL",
+                "PRAGMA synchronous = FULL",
+                "PRAGMA foreign_keys = ON",
+            ],
+            // a server that was told not to wait for the disk is told otherwise; one that hangs is given up
+            Self::Postgres => &[
+                "SET synchronous_commit = on",
+                "SET statement_timeout = '30s'",
+                "SET idle_in_transaction_session_timeout = '30s'",
+            ],
+        };
+        for setting in settings {
+            connection.execute(*setting).await?;
+        }
+        Ok(())
+    }
+}
