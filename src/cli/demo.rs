@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 use serde_json::json;
 
 use super::client::Client;
-use super::serve::Local;
+use super::local::Local;
 use super::watch::{conclude, follow};
 use super::{Failure, table};
 use crate::estimate::Role;

@@ -8,7 +8,9 @@ mod diagnose;
 mod failure;
 mod figures;
 mod fit;
+mod local;
 mod model;
+mod process;
 mod progress;
 mod request;
 mod serve;
@@ -18,6 +20,7 @@ mod study;
 mod submit;
 mod table;
 mod watch;
+mod work;
 
 use std::process::ExitCode;
 
@@ -40,8 +43,9 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Run the service: API, documentation and workers on one database file.
+    /// Run the service: API, documentation and workers on one database.
     Serve(serve::Serve),
+    Work(work::Work),
     Demo(demo::Demo),
     Fit(fit::Fit),
     Study(study::Study),
@@ -62,6 +66,7 @@ const DEFAULT_SERVER: &str = "http://127.0.0.1:8300";
 pub fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Serve(serve) => serve.run(),
+        Command::Work(work) => work.run(),
         Command::Demo(demo) => block_on(demo.run()),
         Command::Fit(fit) => fit.run(),
         Command::Study(study) => study.run(),

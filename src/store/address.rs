@@ -60,7 +60,8 @@ fn is_postgres(address: &str) -> bool {
 }
 
 /// An address as it may be shown and logged.
-pub(super) fn without_password(address: &str) -> String {
+#[must_use]
+pub fn without_password(address: &str) -> String {
     let Some((scheme, rest)) = address.split_once("://").filter(|_| is_postgres(address)) else {
         return address.to_string();
     };

@@ -30,6 +30,7 @@ use std::sync::Arc;
 use sqlx::AnyPool;
 use tokio_util::sync::DropGuard;
 
+pub use address::without_password;
 pub use clock::Clock;
 pub use jobs::{CancelReply, JobFilter, JobRecord, NewJob};
 pub use lease::{Claim, LEASE, MOST_LOST_WORKERS};
