@@ -37,7 +37,8 @@ impl Bench {
     }
 
     async fn submit(&self, name: &str) -> uuid::Uuid {
-        self.store.submit(&new_job(name)).await.unwrap().id
+        let id = self.clock.new_id();
+        self.store.submit(id, &new_job(name)).await.unwrap().id
     }
 
     async fn claim(&self, worker: &str) -> Claim {

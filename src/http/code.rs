@@ -76,6 +76,10 @@ codes! {
     NotFinished "not_finished" CONFLICT "The job is not finished";
     /// The job is over: there is nothing to cancel.
     AlreadyOver "already_over" CONFLICT "The job is already over";
+    /// A request with this `Idempotency-Key` is still in hand. Send it again after `Retry-After` seconds.
+    KeyInHand "idempotency_key_in_hand" CONFLICT "The request is in hand";
+    /// The `Idempotency-Key` was used for another request within the last 24 hours.
+    KeyReused "idempotency_key_reused" UNPROCESSABLE_ENTITY "The key was used for another request";
     /// The body is longer than the limit that `detail` names.
     BodyTooLarge "body_too_large" PAYLOAD_TOO_LARGE "The body is too large";
     /// The `Content-Type` is none of those that `detail` lists.

@@ -13,6 +13,7 @@ use uuid::Uuid;
 
 use super::code::Code;
 use super::format::{Format, cacheable, choose};
+use super::once::NewId;
 use super::problem::{Problem, ProblemDocument};
 use super::query::{Id, PageQuery, Parameters, bad_cursor, page_limit};
 use super::{Service, body, json};
@@ -116,6 +117,7 @@ pub struct ModelPage {
     ))]
 async fn add_model(
     State(service): State<Service>,
+    NewId(id): NewId,
     headers: HeaderMap,
     body: Body,
 ) -> Result<Response, Problem> {
@@ -140,7 +142,7 @@ async fn add_model(
         Ok::<_, Problem>(document)
     };
     let document = service.compute.run(check).await??;
-    let record = service.store.add_model(document).await?;
+    let record = service.store.add_model(id, document).await?;
     let model = ModelResource::stored(&record);
     let location = [(header::LOCATION, model.links.this.clone())];
     Ok((StatusCode::CREATED, location, Json(model)).into_response())

@@ -1,10 +1,11 @@
 //! The OpenAPI document, made from the handlers.
 
 use utoipa::OpenApi;
-use utoipa::openapi::path::Operation;
-use utoipa::openapi::{ContentBuilder, Ref, ResponseBuilder};
+use utoipa::openapi::path::{Operation, ParameterBuilder, ParameterIn};
+use utoipa::openapi::schema::Type;
+use utoipa::openapi::{ContentBuilder, ObjectBuilder, Ref, Required, ResponseBuilder};
 
-use super::{problem, routes};
+use super::{once, problem, routes};
 
 #[derive(OpenApi)]
 #[openapi(
@@ -34,6 +35,10 @@ pub fn document() -> utoipa::openapi::OpenApi {
     let mut document = Api::openapi();
     document.merge(routes::api().into_openapi());
     document.info.version = env!("CARGO_PKG_VERSION").to_string();
+    let posts = document.paths.paths.values_mut();
+    posts
+        .filter_map(|path| path.post.as_mut())
+        .for_each(takes_a_key);
     let operations = document.paths.paths.values_mut().flat_map(|path| {
         [
             &mut path.get,
@@ -45,6 +50,22 @@ pub fn document() -> utoipa::openapi::OpenApi {
     });
     operations.flatten().for_each(any_may_fail);
     document
+}
+
+/// Every POST can be sent again.
+fn takes_a_key(operation: &mut Operation) {
+    let text = ObjectBuilder::new().schema_type(Type::String).build();
+    let key = ParameterBuilder::new()
+        .name(once::KEY.as_str())
+        .parameter_in(ParameterIn::Header)
+        .required(Required::False)
+        .description(Some("Sent again with the same key within 24 hours, the request is not done again but answered as before, with the header `Idempotency-Replayed: true`; only what succeeded is kept. Another request under the key is refused (`idempotency_key_reused`), and so is a repetition while the first is in hand (`idempotency_key_in_hand`)."))
+        .schema(Some(text))
+        .build();
+    operation
+        .parameters
+        .get_or_insert_default()
+        .push(key.into());
 }
 
 /// What every operation may answer beside what its handler lists.

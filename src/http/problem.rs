@@ -118,15 +118,13 @@ impl From<IngestError> for Problem {
 impl From<StoreError> for Problem {
     fn from(error: StoreError) -> Self {
         tracing::error!(%error, "store");
-        match error {
-            // the text of the others may name files and tables: that is for the log
-            StoreError::Database(sqlx::Error::PoolTimedOut | sqlx::Error::PoolClosed) => {
-                let detail = "the database is busy; try again in a few seconds";
-                let seconds = HeaderValue::from_static("5");
-                Self::new(Code::StoreUnavailable, detail).with_header(header::RETRY_AFTER, seconds)
-            }
-            _ => Self::internal(),
+        // its text may name files and tables: that is for the log
+        if !error.is_passing() {
+            return Self::internal();
         }
+        let detail = "the database does not answer; try again in a few seconds";
+        let seconds = HeaderValue::from_static("5");
+        Self::new(Code::StoreUnavailable, detail).with_header(header::RETRY_AFTER, seconds)
     }
 }
 

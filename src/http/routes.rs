@@ -19,8 +19,8 @@ use utoipa_swagger_ui::SwaggerUi;
 use super::code::Code;
 use super::problem::{self, Problem};
 use super::{
-    Service, coefficients, diagnosis, events, health, histories, jobs, maneuvers, models, problems,
-    residual_analysis, results, study, submit,
+    Service, coefficients, diagnosis, events, health, histories, jobs, maneuvers, models, once,
+    problems, residual_analysis, results, study, submit,
 };
 
 /// Every resource.
@@ -50,6 +50,7 @@ pub(super) fn router(service: Service) -> Router {
     });
     let request_id = HeaderName::from_static("x-request-id");
     let nosniff = HeaderValue::from_static("nosniff");
+    let of_keys = service.clone();
     api.merge(super::pages::router())
         .with_state(service)
         .merge(docs)
@@ -57,6 +58,7 @@ pub(super) fn router(service: Service) -> Router {
         .fallback(async || problem::unknown_route())
         .method_not_allowed_fallback(async || problem::method_not_allowed())
         // from here on upwards: the last one added is the first to see a request
+        .layer(middleware::from_fn_with_state(of_keys, once::once))
         .layer(cross_origin)
         .layer(CatchPanicLayer::custom(Problem::of_panic))
         .layer(middleware::from_fn(problem::render))

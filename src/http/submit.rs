@@ -5,19 +5,20 @@ use std::sync::Arc;
 
 use axum::Json;
 use axum::extract::State;
-use axum::http::{StatusCode, header};
+use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use serde::Deserialize;
-use utoipa::IntoParams;
+use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::code::Code;
 use super::jobs::JobResource;
 use super::json::JsonBody;
+use super::once::NewId;
 use super::problem::{Problem, ProblemDocument};
 use super::query::Parameters;
-use super::{Service, models};
+use super::{Service, models, prefer};
 use crate::flight::Maneuver;
 use crate::job::{self, Fault, JobKind, JobSpec, MOST_MANEUVERS, ModelSource, Prepared};
 use crate::model::{Model, ModelDocument};
@@ -30,6 +31,14 @@ pub fn router() -> OpenApiRouter<Service> {
 const LONGEST_NAME: usize = 200;
 const MOST_TAGS: usize = 20;
 const LONGEST_TAG: usize = 64;
+
+/// What a request that is answered with 200 has led to.
+#[derive(Serialize, ToSchema)]
+#[serde(untagged)]
+enum Outcome {
+    Prepared(Prepared),
+    Job(Box<JobResource>),
+}
 
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
@@ -45,23 +54,25 @@ struct SubmitQuery {
 /// The model is compiled, channels and units are resolved: all faults are answered at once, with
 /// their places in the spec. When this answers 202 the job is stored and will be run.
 #[utoipa::path(post, path = "/v1/jobs", tag = "Jobs", operation_id = "submitJob",
-    params(SubmitQuery),
+    params(SubmitQuery, ("prefer" = Option<String>, Header, description = "`wait=N`: hold the answer until the job is over, for N seconds at most (60).", example = "wait=10")),
     request_body = JobSpec,
     responses(
         (status = 202, description = "It is accepted.", body = JobResource, headers(("Location" = String, description = "Its path."))),
-        (status = 200, description = "With `validate_only`: what the job would amount to.", body = Prepared),
+        (status = 200, description = "With `validate_only`: what the job would amount to. With `Prefer: wait=N`: the job, which is over.", body = inline(Outcome)),
         (status = 400, description = "`invalid_json`", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 422, description = "`wrong_shape`, `invalid_job`: `errors` lists the faults by JSON pointer.", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn submit_job(
     State(service): State<Service>,
+    NewId(id): NewId,
     Parameters(query): Parameters<SubmitQuery>,
+    headers: HeaderMap,
     JsonBody { value: spec, text }: JsonBody<JobSpec>,
 ) -> Result<Response, Problem> {
     let spec = Arc::new(spec);
     let (model, prepared) = check(&service, &spec).await?;
     if query.validate_only {
-        return Ok(Json(prepared).into_response());
+        return Ok(Json(Outcome::Prepared(prepared)).into_response());
     }
     let job = NewJob {
         kind: kind_name(spec.kind).to_string(),
@@ -70,9 +81,21 @@ async fn submit_job(
         spec: text,
         model: serde_json::to_string(&model)?,
     };
-    let job = JobResource::of(service.store.submit(&job).await?);
+    let mut job = service.store.submit(id, &job).await?;
+    let wait = prefer::wait(&headers);
+    if let Some(wait) = wait {
+        job = prefer::until_over(&service, job, wait).await?;
+    }
+    let status = if job.status.is_over() {
+        StatusCode::OK
+    } else {
+        StatusCode::ACCEPTED
+    };
+    let job = JobResource::of(job);
     let location = [(header::LOCATION, job.path())];
-    Ok((StatusCode::ACCEPTED, location, Json(job)).into_response())
+    let mut response = (status, location, Json(Outcome::Job(Box::new(job)))).into_response();
+    response.headers_mut().extend(wait.map(prefer::applied));
+    Ok(response)
 }
 
 pub fn kind_name(kind: JobKind) -> &'static str {

@@ -47,7 +47,7 @@ impl Engine {
         match self {
             Self::Sqlite => step.to_string(),
             Self::Postgres => step
-                .replace(" BLOB ", " BYTEA ")
+                .replace(" BLOB", " BYTEA")
                 .replace(" TEXT", " TEXT COLLATE \"C\"")
                 .replace(" WITHOUT ROWID", ""),
         }

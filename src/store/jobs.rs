@@ -85,17 +85,18 @@ pub(super) fn read_id(row: &AnyRow, column: &str) -> Result<Uuid, StoreError> {
 }
 
 impl Store {
-    /// Accepts a job: when this returns, it is on the disk and a worker will take it.
+    /// Accepts a job: when this returns, it is on the disk and a worker will take it. Accepted again under the same id, it
+    /// is what it was.
     ///
     /// # Errors
     /// The database cannot be written.
-    pub async fn submit(&self, job: &NewJob) -> Result<JobRecord, StoreError> {
-        let (id, now) = (self.clock.new_id(), self.clock.now_text());
+    pub async fn submit(&self, id: Uuid, job: &NewJob) -> Result<JobRecord, StoreError> {
+        let now = self.clock.now_text();
         let tags = serde_json::Value::from(job.tags.clone()).to_string();
         let mut writing = self.begin().await?;
-        sqlx::query(
+        let inserted = sqlx::query(
             "INSERT INTO jobs (id, kind, name, tags, status, created, last_seq, attempt, lost, spec, model) \
-             VALUES ($1, $2, $3, $4, $5, $6, 0, 0, 0, $7, $8)",
+             VALUES ($1, $2, $3, $4, $5, $6, 0, 0, 0, $7, $8) ON CONFLICT (id) DO NOTHING",
         )
         .bind(id.to_string())
         .bind(&job.kind)
@@ -107,6 +108,11 @@ impl Store {
         .bind(&job.model)
         .execute(writing.connection())
         .await?;
+        if inserted.rows_affected() == 0 {
+            drop(writing);
+            let known = self.job(id).await?;
+            return known.ok_or_else(|| StoreError::corrupt("a job", "it vanished"));
+        }
         for tag in &job.tags {
             sqlx::query("INSERT INTO job_tags (tag, job) VALUES ($1, $2) ON CONFLICT DO NOTHING")
                 .bind(tag)

@@ -1,4 +1,9 @@
 //! How a worker holds a job: claim, heartbeat, and the ways of giving it back.
+//!
+//! A queue library (apalis 1.0, which has both engines) was tried for this and not taken: it accepts the end of a job by the
+//! worker's name alone, so that a worker which was stopped beyond its lease and claimed the job again could end it twice, with two
+//! results (no fence); and it has no way to cancel a job that runs in another process. Checks of our own on its table would
+//! mend both, but then only claim and heartbeat would be left of it, which are two statements here.
 
 use std::time::Duration;
 

@@ -19,6 +19,10 @@ const STEPS: &[Step] = &[
         version: 2,
         sql: include_str!("migrations/0002_many_machines.sql"),
     },
+    Step {
+        version: 3,
+        sql: include_str!("migrations/0003_answers.sql"),
+    },
 ];
 
 /// Brings the schema up to date. Processes that start at once do not disturb each other: all steps are looked for and

@@ -10,6 +10,7 @@
 //! * Maneuvers, models, specs, events and results are never changed once written.
 
 mod address;
+mod answers;
 mod clock;
 mod columns;
 mod engine;
@@ -31,6 +32,7 @@ use sqlx::AnyPool;
 use tokio_util::sync::DropGuard;
 
 pub use address::without_password;
+pub use answers::{KeptAnswer, Once};
 pub use clock::Clock;
 pub use jobs::{CancelReply, JobFilter, JobRecord, NewJob};
 pub use lease::{Claim, LEASE, MOST_LOST_WORKERS};
@@ -62,6 +64,24 @@ pub enum StoreError {
 }
 
 impl StoreError {
+    /// Whether it is the database that does not answer, and the same may well go through in a while.
+    pub fn is_passing(&self) -> bool {
+        use sqlx::Error::{Io, PoolClosed, PoolTimedOut, Protocol, Tls, WorkerCrashed};
+        match self {
+            Self::Database(
+                Io(_) | PoolClosed | PoolTimedOut | Protocol(_) | Tls(_) | WorkerCrashed,
+            ) => true,
+            // PostgreSQL: connections, operator's intervention (shutting down, starting up), serialisation
+            Self::Database(sqlx::Error::Database(error)) => error.code().is_some_and(|code| {
+                ["08", "57", "40"]
+                    .iter()
+                    .any(|class| code.starts_with(class))
+                    && code.len() == 5
+            }),
+            _ => false,
+        }
+    }
+
     fn corrupt(what: impl Into<String>, why: impl ToString) -> Self {
         Self::Corrupt {
             what: what.into(),

@@ -28,18 +28,22 @@ fn read_model(row: &AnyRow) -> Result<ModelRecord, StoreError> {
 }
 
 impl Store {
-    /// Keeps a model that was checked.
+    /// Keeps a model that was checked. Kept again under the same id, it is what it was.
     ///
     /// # Errors
     /// The database cannot be written.
-    pub async fn add_model(&self, document: ModelDocument) -> Result<ModelRecord, StoreError> {
+    pub async fn add_model(
+        &self,
+        id: Uuid,
+        document: ModelDocument,
+    ) -> Result<ModelRecord, StoreError> {
         let json = serde_json::to_string(&document).map_err(|error| StoreError::Unwritable {
             what: "the model".into(),
             why: error.to_string(),
         })?;
-        let (id, created) = (self.clock.new_id(), self.clock.now_text());
-        let sql =
-            "INSERT INTO models (id, name, title, created, document) VALUES ($1, $2, $3, $4, $5)";
+        let created = self.clock.now_text();
+        let sql = "INSERT INTO models (id, name, title, created, document) VALUES ($1, $2, $3, $4, $5) \
+             ON CONFLICT (id) DO NOTHING";
         sqlx::query(sql)
             .bind(id.to_string())
             .bind(&document.name)

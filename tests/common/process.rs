@@ -5,40 +5,37 @@ use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-/// A running `trimtab serve`. It is killed with the test, if it was not ended before.
+/// A running `trimtab serve` or `trimtab work`. It is killed with the test, if it was not ended before.
 pub struct Process {
+    /// Of a server.
     pub url: String,
     child: Child,
 }
 
 impl Process {
-    /// On a free port, with the database in `directory`.
+    /// A server on a free port, with the database in `directory`.
     pub fn start(directory: &Path, workers: usize) -> Self {
         let database = super::server::database(directory);
-        let mut child = Command::new(env!("CARGO_BIN_EXE_trimtab"))
-            .args([
-                "serve",
-                "--listen",
-                "127.0.0.1:0",
-                "--log",
-                "warn",
-                "--database",
-            ])
-            .arg(database)
-            .args(["--workers", &workers.to_string()])
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut line = String::new();
-        BufReader::new(child.stdout.take().unwrap())
-            .read_line(&mut line)
-            .unwrap();
-        let url = line
-            .trim()
-            .strip_prefix("listening on ")
-            .expect("one line with the URL");
+        Self::serve(database.to_str().unwrap(), "127.0.0.1:0", workers)
+    }
+
+    pub fn serve(database: &str, listen: &str, workers: usize) -> Self {
+        let workers = workers.to_string();
+        let arguments = ["serve", "--listen", listen, "--workers", &workers];
+        let (child, line) = started(&arguments, database);
+        let url = line.strip_prefix("listening on ");
         Self {
-            url: url.to_string(),
+            url: url.expect("one line with the URL").to_string(),
+            child,
+        }
+    }
+
+    pub fn work(database: &str, workers: usize) -> Self {
+        let workers = workers.to_string();
+        let (child, line) = started(&["work", "--workers", &workers], database);
+        assert!(line.contains(" workers on "), "{line}");
+        Self {
+            url: String::new(),
             child,
         }
     }
@@ -70,4 +67,19 @@ impl Drop for Process {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
+}
+
+/// The program, and the line that it prints when it is ready.
+fn started(arguments: &[&str], database: &str) -> (Child, String) {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_trimtab"))
+        .args(arguments)
+        .args(["--log", "error", "--database", database])
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut line = String::new();
+    BufReader::new(child.stdout.take().unwrap())
+        .read_line(&mut line)
+        .unwrap();
+    (child, line.trim().to_string())
 }

@@ -24,7 +24,24 @@ impl Stream {
         if let Some(id) = last_event_id {
             request = request.header("last-event-id", id);
         }
-        let response = request.send().await.unwrap();
+        Self::of(request.send().await.unwrap())
+    }
+
+    /// As [`Stream::open`], of a server that may be away.
+    pub async fn try_open(url: &str, job: &str, last_event_id: u64) -> Option<Self> {
+        let request = super::server::client()
+            .get(format!("{url}/v1/jobs/{job}/events"))
+            .header("accept", "text/event-stream")
+            .header("last-event-id", last_event_id);
+        let response = request.send().await.ok()?;
+        if response.status().is_success() {
+            Self::of(response)
+        } else {
+            None
+        }
+    }
+
+    fn of(response: reqwest::Response) -> Option<Self> {
         if response.status() == 204 {
             return None;
         }
