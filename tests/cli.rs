@@ -109,6 +109,25 @@ fn what_cannot_be_done_is_said_with_the_remedy() {
 }
 
 #[test]
+fn health_is_that_of_the_server() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let server = Process::start(directory.path(), 0);
+    let url = server.url.clone();
+    assert_eq!(succeeds(&["health", "--server", &url]), "ready\n");
+    server.kill();
+    let words = fails(&["health", "--server", &url]);
+    assert!(words.contains("the server does not answer"), "{words}");
+}
+
+#[test]
+fn a_server_that_accepts_and_says_nothing_is_not_healthy() {
+    let silent = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let url = format!("http://{}", silent.local_addr().expect("an address"));
+    let words = fails(&["health", "--server", &url]);
+    assert!(words.contains("timed out"), "{words}");
+}
+
+#[test]
 fn submit_and_watch_go_to_a_server() {
     let directory = tempfile::tempdir().expect("a directory");
     let server = Process::start(directory.path(), 1);

@@ -32,6 +32,9 @@ pub struct Stored {
 const MOST_RECONNECTS: usize = 30;
 const RECONNECT_AFTER: Duration = Duration::from_secs(1);
 
+/// A server that takes longer to say that it is ready is not.
+const READY_WITHIN: Duration = Duration::from_secs(4);
+
 impl Client {
     pub fn new(server: &str) -> Result<Self, Failure> {
         let server: Url = server
@@ -54,6 +57,13 @@ impl Client {
         self.server
             .join(path)
             .map_err(|error| Failure::new(format!("{path}: {error}")))
+    }
+
+    /// Fails unless the server can serve requests, and says so in time.
+    pub async fn ready(&self) -> Result<(), Failure> {
+        let url = self.url("/health/ready")?;
+        self.send(self.http.get(url).timeout(READY_WITHIN)).await?;
+        Ok(())
     }
 
     /// Uploads a recording; the same one again is no harm.

@@ -8,6 +8,7 @@ mod diagnose;
 mod failure;
 mod figures;
 mod fit;
+mod health;
 mod local;
 mod model;
 mod process;
@@ -55,11 +56,12 @@ enum Command {
     Simulate(simulate::Simulate),
     Model(model::ShowModel),
     Derivatives(derivatives::Derivatives),
+    Health(health::Health),
     /// Print the OpenAPI document of the API.
     Openapi,
 }
 
-/// Where `submit` and `watch` look for a server: where `serve` listens.
+/// Where `submit`, `watch` and `health` look for a server: where `serve` listens.
 const DEFAULT_SERVER: &str = "http://127.0.0.1:8300";
 
 /// Runs what the command line says.
@@ -76,6 +78,7 @@ pub fn main() -> ExitCode {
         Command::Simulate(simulate) => simulate.run(),
         Command::Model(model) => model.run(),
         Command::Derivatives(derivatives) => derivatives.run(),
+        Command::Health(health) => block_on(health.run()),
         Command::Openapi => openapi(),
     };
     match done {
