@@ -72,6 +72,7 @@ pub mod code {
     pub const EMPTY_BODY: &str = "empty_body";
     pub const NOT_UTF8: &str = "not_utf8";
     pub const WRONG_DELIMITER: &str = "wrong_delimiter";
+    pub const AMBIGUOUS_NUMBER: &str = "ambiguous_number";
     pub const INVALID_JSON: &str = "invalid_json";
     pub const WRONG_SHAPE: &str = "wrong_shape";
     pub const TOO_MANY_COLUMNS: &str = "too_many_columns";
@@ -84,6 +85,7 @@ pub mod code {
     pub const NAME_TOO_LONG: &str = "name_too_long";
     pub const DUPLICATE_CHANNEL: &str = "duplicate_channel";
     pub const UNKNOWN_UNIT: &str = "unknown_unit";
+    pub const UNIT_CONFLICT: &str = "unit_conflict";
     pub const NO_TIME_COLUMN: &str = "no_time_column";
     pub const TIME_UNIT: &str = "time_unit";
     pub const TIME_MISSING: &str = "time_missing";
@@ -98,7 +100,11 @@ pub mod code {
         (NOT_UTF8, "The file is not UTF-8 text."),
         (
             WRONG_DELIMITER,
-            "The cells are not separated by commas but by something else.",
+            "It is not clear what separates the cells: commas, semicolons or tabs.",
+        ),
+        (
+            AMBIGUOUS_NUMBER,
+            "A comma or a point in a number can be read in two ways.",
         ),
         (INVALID_JSON, "The body is not JSON."),
         (
@@ -118,6 +124,10 @@ pub mod code {
         (NAME_TOO_LONG, "A channel's name is too long."),
         (DUPLICATE_CHANNEL, "Two channels have one name."),
         (UNKNOWN_UNIT, "A unit is unknown or cannot be read."),
+        (
+            UNIT_CONFLICT,
+            "The header and the row of units below it disagree.",
+        ),
         (NO_TIME_COLUMN, "No column is named t or time."),
         (TIME_UNIT, "The unit of time is not a time."),
         (TIME_MISSING, "A sample has no time."),
