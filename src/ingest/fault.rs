@@ -94,6 +94,15 @@ pub mod code {
     pub const ROW_LENGTH: &str = "row_length";
     pub const LENGTH_MISMATCH: &str = "length_mismatch";
 
+    pub const MAPPING_NEEDED: &str = "mapping_needed";
+    pub const MAPPING_NOT_USED: &str = "mapping_not_used";
+    pub const INVALID_MAPPING: &str = "invalid_mapping";
+    pub const UNKNOWN_SOURCE: &str = "unknown_source";
+    pub const UNREADABLE_SOURCE: &str = "unreadable_source";
+    pub const NOT_A_MAT_FILE: &str = "not_a_mat_file";
+    pub const MAT_VERSION: &str = "mat_version";
+    pub const DAMAGED_FILE: &str = "damaged_file";
+
     /// Every code with its meaning, for the documentation.
     pub const ALL: &[(&str, &str)] = &[
         (EMPTY_BODY, "There are no bytes, or only blanks."),
@@ -144,6 +153,29 @@ pub mod code {
             LENGTH_MISMATCH,
             "A channel has another number of values than the time axis.",
         ),
+        (
+            MAPPING_NEEDED,
+            "The file has no names and units; a mapping must say them.",
+        ),
+        (
+            MAPPING_NOT_USED,
+            "The file says names and units itself; a mapping could contradict it.",
+        ),
+        (INVALID_MAPPING, "The mapping is unknown, or no mapping."),
+        (
+            UNKNOWN_SOURCE,
+            "The file does not have what the mapping names.",
+        ),
+        (
+            UNREADABLE_SOURCE,
+            "What the mapping names is no matrix of real numbers.",
+        ),
+        (NOT_A_MAT_FILE, "The body is not a MAT file."),
+        (
+            MAT_VERSION,
+            "The MAT file is of a version that is not read.",
+        ),
+        (DAMAGED_FILE, "The file contradicts itself or is cut off."),
     ];
 }
 
