@@ -8,6 +8,7 @@ mod diagnose;
 mod failure;
 mod figures;
 mod fit;
+mod mapping;
 mod model;
 mod progress;
 mod request;
