@@ -5,7 +5,7 @@ mod common;
 use common::recordings::elevator;
 use common::server::{Answer, Server, send};
 use futures_util::stream;
-use reqwest::{Body, Method};
+use reqwest::{Body, Method, Url};
 use serde_json::json;
 use trimtab::http::Config;
 
@@ -185,6 +185,44 @@ async fn bad_recordings_are_refused_with_their_places() {
         json!([]),
         "nothing was kept"
     );
+}
+
+#[tokio::test]
+async fn files_without_names_are_read_with_a_mapping() {
+    let server = Server::start_with(Config::default(), 0).await;
+    let upload = async |mapping: Option<&str>, media_type: &str, body: &[u8]| {
+        let mut url = format!("{}/v1/maneuvers", server.url)
+            .parse::<Url>()
+            .unwrap();
+        if let Some(mapping) = mapping {
+            url.query_pairs_mut().append_pair("mapping", mapping);
+        }
+        let path = url.as_str().strip_prefix(&server.url).unwrap().to_string();
+        server.post(&path, media_type, body.to_vec()).await
+    };
+    let mat = include_bytes!("ingest/compressed.mat");
+    let mapping = r#"{"time": {"from": "data(:,1)", "unit": "s"}, "channels": {"alpha": {"from": "rec.alpha", "unit": "deg"}}}"#;
+    let first = upload(Some(mapping), "application/x-matlab-data", mat).await;
+    assert_eq!(first.status, 201, "{}", first.text());
+    assert_eq!(first.json()["summary"]["samples"], 5);
+
+    let text = b"0 1.5 10\n0.04 2 -20\n0.08 nan 30\n0.12 2.5 -40\n0.16 -1 50\n";
+    let mapping = mapping.replace("rec.alpha", "data(:,2)");
+    let same = upload(Some(&mapping), "text/plain", text).await;
+    assert_eq!(same.status, 200, "however it is written: {}", same.text());
+
+    let unmapped = upload(None, "application/x-matlab-data", mat).await;
+    let faults = unmapped.problem(422, "invalid_maneuver");
+    assert_eq!(faults, [(String::new(), "mapping_needed".to_string())]);
+    let missing = upload(Some("sidpac"), "application/x-matlab-data", mat).await;
+    let faults = missing.problem(422, "invalid_maneuver");
+    assert_eq!(
+        faults[0],
+        ("/time/from".to_string(), "unknown_source".to_string())
+    );
+    let unknown = upload(Some("sidpack"), "text/plain", text).await;
+    let faults = unknown.problem(400, "invalid_query");
+    assert_eq!(faults, [(String::new(), "invalid_mapping".to_string())]);
 }
 
 #[tokio::test]

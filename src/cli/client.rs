@@ -11,10 +11,9 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use super::Failure;
-use super::request::format_of;
+use super::mapping::format_of;
 use crate::diagnose::Diagnosis;
 use crate::estimate::Estimate;
-use crate::ingest::Format;
 use crate::job::{Event, JobSpec};
 
 pub struct Client {
@@ -66,18 +65,23 @@ impl Client {
         Ok(())
     }
 
-    /// Uploads a recording; the same one again is no harm.
-    pub async fn upload(&self, name: &str, file: &Path, bytes: Vec<u8>) -> Result<Stored, Failure> {
-        let content_type = match format_of(file) {
-            Format::Csv => "text/csv",
-            Format::Json => "application/json",
-        };
+    /// Uploads a recording, with the mapping that it may need; the same one again is no harm.
+    pub async fn upload(
+        &self,
+        name: &str,
+        file: &Path,
+        mapping: Option<&str>,
+        bytes: Vec<u8>,
+    ) -> Result<Stored, Failure> {
         let mut url = self.url("/v1/maneuvers")?;
         url.query_pairs_mut().append_pair("name", name);
+        if let Some(mapping) = mapping {
+            url.query_pairs_mut().append_pair("mapping", mapping);
+        }
         let request = self
             .http
             .post(url)
-            .header("content-type", content_type)
+            .header("content-type", format_of(file).content_type())
             .body(bytes);
         json(self.send(request).await?).await
     }

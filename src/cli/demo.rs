@@ -94,7 +94,7 @@ impl Bundled {
     /// Uploads it; its id.
     async fn upload(&self, client: &Client) -> Result<String, Failure> {
         let file = format!("{}.csv", self.name);
-        let stored = client.upload(self.name, Path::new(&file), self.csv.into());
+        let stored = client.upload(self.name, Path::new(&file), None, self.csv.into());
         Ok(stored.await?.id)
     }
 }

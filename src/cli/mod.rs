@@ -10,6 +10,7 @@ mod figures;
 mod fit;
 mod health;
 mod local;
+mod mapping;
 mod model;
 mod process;
 mod progress;

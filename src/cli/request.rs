@@ -6,16 +6,18 @@ use std::sync::Arc;
 use indexmap::{IndexMap, IndexSet};
 
 use super::Failure;
+use super::mapping::{MappingOption, format_of};
 use super::stretch::Stretch;
 use crate::estimate::{Derivatives, Estimator, Method, Options, Role};
 use crate::flight::Maneuver;
-use crate::ingest::{self, Format, Limits};
+use crate::ingest::{self, Limits};
 use crate::job::{Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride};
 use crate::model::{ModelDocument, Start, catalog};
 
 #[derive(clap::Args, Debug)]
 pub struct Request {
-    /// Recordings: CSV with `name[unit]` headers, or JSON; rows count from 1. Several are fitted together.
+    /// Recordings: CSV with `name[unit]` headers (.csv), JSON (.json), MAT files (.mat) or ASCII matrices (.asc), the last
+    /// two with --mapping; rows count from 1. Several are fitted together.
     #[arg(required = true, value_name = "FILE[:FIRST-LAST]")]
     pub files: Vec<Stretch>,
     /// A recording that the model is not fitted to but predicts, to see whether it holds.
@@ -24,6 +26,8 @@ pub struct Request {
     /// A recording that is predicted at the very end: a diagnosis makes no decision with it.
     #[arg(long = "final", value_name = "FILE[:FIRST-LAST]")]
     pub last: Vec<Stretch>,
+    #[command(flatten)]
+    pub mapping: MappingOption,
     /// A catalog model (short-period, lateral-directional-2, ...) or a model document (.toml, .json).
     #[arg(long, short)]
     pub model: String,
@@ -77,9 +81,15 @@ impl Request {
     /// The recording of each stretch.
     pub fn recordings(&self) -> Result<Vec<Arc<Maneuver>>, Failure> {
         let read = |file: &Path| {
-            ingest::read(&read_bytes(file)?, format_of(file), &Limits::default())
-                .map(Arc::new)
-                .map_err(|error| Failure::faults(&file.display().to_string(), error.faults()))
+            let (bytes, mapping) = (read_bytes(file)?, self.mapping.of(file)?);
+            ingest::read_mapped(
+                &bytes,
+                format_of(file),
+                mapping.as_ref(),
+                &Limits::default(),
+            )
+            .map(Arc::new)
+            .map_err(|error| Failure::faults(&file.display().to_string(), error.faults()))
         };
         let files = self.files().into_iter().map(|file| Ok((file, read(file)?)));
         let files: IndexMap<&Path, Arc<Maneuver>> = files.collect::<Result<_, Failure>>()?;
@@ -203,23 +213,11 @@ impl Request {
     }
 }
 
-/// The format of a recording, by the end of its name.
-pub fn format_of(file: &Path) -> Format {
-    if file
-        .extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
-    {
-        Format::Json
-    } else {
-        Format::Csv
-    }
-}
-
 pub fn read_bytes(file: &Path) -> Result<Vec<u8>, Failure> {
     std::fs::read(file).map_err(|error| Failure::new(format!("{}: {error}", file.display())))
 }
 
-fn read_text(file: &Path) -> Result<String, Failure> {
+pub fn read_text(file: &Path) -> Result<String, Failure> {
     std::fs::read_to_string(file)
         .map_err(|error| Failure::new(format!("{}: {error}", file.display())))
 }

@@ -31,8 +31,9 @@ impl Submit {
             let name = file
                 .file_stem()
                 .map_or("recording".into(), |stem| stem.to_string_lossy());
-            let id = client.upload(&name, file, read_bytes(file)?).await?.id;
-            uploaded.insert(file, id);
+            let mapping = self.request.mapping.text(file)?;
+            let stored = client.upload(&name, file, mapping.as_deref(), read_bytes(file)?);
+            uploaded.insert(file, stored.await?.id);
         }
         let stretches = self.request.stretches();
         let ids: Vec<String> = stretches

@@ -19,7 +19,7 @@ use super::problem::{Problem, ProblemDocument};
 use super::query::{Id, PageQuery, Parameters, bad_cursor, page_limit};
 use super::{Service, body, decimate};
 use crate::flight::{Channel, Maneuver};
-use crate::ingest::{self, Summary};
+use crate::ingest::{self, Mapping, Summary};
 use crate::job::Fault;
 use crate::store::{ManeuverRecord, Uploaded};
 
@@ -84,17 +84,35 @@ struct UploadQuery {
     /// For people; at most 200 characters.
     #[param(example = "ATTAS elevator 3-2-1-1")]
     name: Option<String>,
+    /// Where a MAT file or an ASCII matrix has time and channels, and in which units: the name of a bundled
+    /// mapping (`fvsysid-attas`, `fvsysid-hfb320`, `sidpac`) or a JSON document. Sources are variables
+    /// (`alpha`), fields of structs (`rec.alpha`), columns (`data(:,2)`) or rows (`data(2,:)`) of either, or
+    /// columns of the only matrix of a file (`(:,2)`).
+    #[param(
+        example = "{\"time\": {\"from\": \"data(:,1)\", \"unit\": \"s\"}, \"channels\": {\"alpha\": {\"from\": \"data(:,2)\", \"unit\": \"deg\"}}}"
+    )]
+    mapping: Option<String>,
 }
+
+/// The bytes of a MAT file of version 5 (`save -v7`, `save -v6`).
+#[derive(ToSchema)]
+#[schema(value_type = String, format = Binary)]
+#[expect(dead_code, reason = "it is there for the API's document")]
+struct MatFile(Vec<u8>);
 
 /// Upload a recording.
 ///
-/// CSV with a header of `name[unit]` cells, one of them `t[s]` or `time[s]`; or JSON. Values are
+/// CSV with a header of `name[unit]` cells, one of them `t[s]` or `time[s]`, or with a row of units below the header;
+/// separated by commas, semicolons or tabs, with decimal points or (between the latter two) commas; time in a unit or as
+/// time stamps. Or JSON. Or, with a `mapping`, a MAT file (`-v7` or older, not 7.3) or an ASCII matrix. Values are
 /// converted to SI. Content that is here already answers 200 with the maneuver it was first uploaded as.
 #[utoipa::path(post, path = "/v1/maneuvers", tag = "Maneuvers", operation_id = "uploadManeuver",
     params(UploadQuery),
     request_body(content(
         (String = "text/csv", example = "t[s],alpha[deg],q[deg/s],de[deg]\n0,1.2,0,0\n0.04,1.2,0.1,-1\n0.08,1.3,0.4,-1\n"),
         (ingest::Recording = "application/json"),
+        (MatFile = "application/x-matlab-data"),
+        (String = "text/plain", example = "0.00  1.2  0.0\n0.04  1.2  0.1\n0.08  1.3  0.4\n"),
     )),
     responses(
         (status = 201, description = "It is new.", body = ManeuverResource, headers(("Location" = String, description = "Its path."))),
@@ -121,11 +139,14 @@ async fn upload_maneuver(
         let detail = format!("name: longer than {LONGEST_NAME} characters");
         return Err(Problem::new(Code::InvalidQuery, detail));
     }
+    let mapping = query.mapping.as_deref();
+    let mapping = mapping.map(Mapping::named_or_json).transpose();
+    let mapping = mapping.map_err(|fault| Problem::of_faults(Code::InvalidQuery, vec![fault]))?;
     let limit = service.config.max_maneuver_body;
     let bytes = body::read(&headers, body, limit, "--max-maneuver-body").await?;
     let limits = service.config.recording;
     let read = move || {
-        let maneuver = ingest::read(&bytes, format, &limits)?;
+        let maneuver = ingest::read_mapped(&bytes, format, mapping.as_ref(), &limits)?;
         let summary = serde_json::to_string(&ingest::summary(&maneuver))?;
         Ok::<_, Problem>((maneuver, summary))
     };

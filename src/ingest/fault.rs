@@ -72,6 +72,7 @@ pub mod code {
     pub const EMPTY_BODY: &str = "empty_body";
     pub const NOT_UTF8: &str = "not_utf8";
     pub const WRONG_DELIMITER: &str = "wrong_delimiter";
+    pub const AMBIGUOUS_NUMBER: &str = "ambiguous_number";
     pub const INVALID_JSON: &str = "invalid_json";
     pub const WRONG_SHAPE: &str = "wrong_shape";
     pub const TOO_MANY_COLUMNS: &str = "too_many_columns";
@@ -84,6 +85,7 @@ pub mod code {
     pub const NAME_TOO_LONG: &str = "name_too_long";
     pub const DUPLICATE_CHANNEL: &str = "duplicate_channel";
     pub const UNKNOWN_UNIT: &str = "unknown_unit";
+    pub const UNIT_CONFLICT: &str = "unit_conflict";
     pub const NO_TIME_COLUMN: &str = "no_time_column";
     pub const TIME_UNIT: &str = "time_unit";
     pub const TIME_MISSING: &str = "time_missing";
@@ -92,13 +94,26 @@ pub mod code {
     pub const ROW_LENGTH: &str = "row_length";
     pub const LENGTH_MISMATCH: &str = "length_mismatch";
 
+    pub const MAPPING_NEEDED: &str = "mapping_needed";
+    pub const MAPPING_NOT_USED: &str = "mapping_not_used";
+    pub const INVALID_MAPPING: &str = "invalid_mapping";
+    pub const UNKNOWN_SOURCE: &str = "unknown_source";
+    pub const UNREADABLE_SOURCE: &str = "unreadable_source";
+    pub const NOT_A_MAT_FILE: &str = "not_a_mat_file";
+    pub const MAT_VERSION: &str = "mat_version";
+    pub const DAMAGED_FILE: &str = "damaged_file";
+
     /// Every code with its meaning, for the documentation.
     pub const ALL: &[(&str, &str)] = &[
         (EMPTY_BODY, "There are no bytes, or only blanks."),
         (NOT_UTF8, "The file is not UTF-8 text."),
         (
             WRONG_DELIMITER,
-            "The cells are not separated by commas but by something else.",
+            "It is not clear what separates the cells: commas, semicolons or tabs.",
+        ),
+        (
+            AMBIGUOUS_NUMBER,
+            "A comma or a point in a number can be read in two ways.",
         ),
         (INVALID_JSON, "The body is not JSON."),
         (
@@ -118,6 +133,10 @@ pub mod code {
         (NAME_TOO_LONG, "A channel's name is too long."),
         (DUPLICATE_CHANNEL, "Two channels have one name."),
         (UNKNOWN_UNIT, "A unit is unknown or cannot be read."),
+        (
+            UNIT_CONFLICT,
+            "The header and the row of units below it disagree.",
+        ),
         (NO_TIME_COLUMN, "No column is named t or time."),
         (TIME_UNIT, "The unit of time is not a time."),
         (TIME_MISSING, "A sample has no time."),
@@ -134,6 +153,29 @@ pub mod code {
             LENGTH_MISMATCH,
             "A channel has another number of values than the time axis.",
         ),
+        (
+            MAPPING_NEEDED,
+            "The file has no names and units; a mapping must say them.",
+        ),
+        (
+            MAPPING_NOT_USED,
+            "The file says names and units itself; a mapping could contradict it.",
+        ),
+        (INVALID_MAPPING, "The mapping is unknown, or no mapping."),
+        (
+            UNKNOWN_SOURCE,
+            "The file does not have what the mapping names.",
+        ),
+        (
+            UNREADABLE_SOURCE,
+            "What the mapping names is no matrix of real numbers.",
+        ),
+        (NOT_A_MAT_FILE, "The body is not a MAT file."),
+        (
+            MAT_VERSION,
+            "The MAT file is of a version that is not read.",
+        ),
+        (DAMAGED_FILE, "The file contradicts itself or is cut off."),
     ];
 }
 

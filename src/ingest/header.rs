@@ -1,15 +1,16 @@
-//! The header of a CSV file: which column is time, and name and unit of every other.
+//! The header of a table: which column is time, and name and unit of every other.
 
 use std::collections::HashSet;
 
-use crate::flight::{Fault, Unit};
+use crate::flight::Fault;
 
 use super::{
     IngestError, Limits, code,
     fault::of_file,
     fault::pointer,
+    label::Label,
     name::{Names, is_identifier},
-    text::quoted,
+    stamp::Stamp,
     units::RecordedUnit,
 };
 
@@ -17,6 +18,8 @@ use super::{
 pub(super) struct Header {
     /// Which of the columns is time, from 0.
     pub(super) time: usize,
+    /// Time is written as time stamps; the unit of its column is then the second.
+    pub(super) has_stamps: bool,
     /// All columns, time included.
     pub(super) columns: Vec<Column>,
 }
@@ -26,30 +29,64 @@ pub(super) struct Column {
     pub(super) unit: RecordedUnit,
 }
 
+/// What a table says of its columns.
+#[derive(Default)]
+pub(super) struct Titles<'a> {
+    /// Names, and units in brackets.
+    pub(super) names: Vec<&'a str>,
+    /// A row of units, if there is one; as many as names.
+    pub(super) units: Option<Vec<&'a str>>,
+    /// The cells of the first sample, by which time stamps are known; may be fewer.
+    pub(super) first: Vec<&'a str>,
+}
+
 impl Header {
-    /// Reads cells like `alpha[deg]`, `alpha [deg]`, or `mach` for a pure number.
+    /// Reads titles like `alpha[deg]`, `alpha (deg)`, or `mach` for a pure number.
     ///
     /// # Errors
     /// Every fault of the header.
-    pub(super) fn parse(cells: &[&str], limits: &Limits) -> Result<Self, IngestError> {
-        let labels: Vec<Label> = cells.iter().map(|cell| Label::split(cell)).collect();
-        let time = time_column(&labels);
-        let mut faults: Vec<Fault> = missing_columns(time, labels.len()).collect();
+    pub(super) fn parse(titles: &Titles, limits: &Limits) -> Result<Self, IngestError> {
+        let names = titles.names.iter().map(|name| Label::split(name));
+        let labels: Vec<Result<Label, _>> = match &titles.units {
+            Some(units) => names
+                .zip(units)
+                .map(|(label, unit)| label.with_unit(unit))
+                .collect(),
+            None => names.map(Ok).collect(),
+        };
+        let known: Vec<Label> = (labels.iter().zip(&titles.names))
+            .map(|(label, name)| {
+                label
+                    .as_ref()
+                    .map_or_else(|_| Label::split(name), |&label| label)
+            })
+            .collect();
+        let is_stamp = |at: usize| {
+            titles
+                .first
+                .get(at)
+                .is_some_and(|cell| Stamp::parse(cell).is_some())
+        };
+        let time = time_column(&known, is_stamp);
+        let has_stamps = time.is_some_and(is_stamp);
+        let mut faults: Vec<Fault> = missing_columns(time, known.len()).collect();
         let mut names = Names::new(limits);
         let mut pointed_at = HashSet::new();
-        let mut columns = Vec::with_capacity(labels.len());
+        let mut columns = Vec::with_capacity(known.len());
 
-        for (at, label) in labels.iter().enumerate() {
-            let (name_fault, unit) = if time == Some(at) {
-                (None, RecordedUnit::parse_time(label.unit))
+        for (at, label) in known.iter().enumerate() {
+            let name_fault = if time == Some(at) {
+                None
+            } else if time.is_some_and(|time| known[time].name == label.name) {
+                Some(second_time_column(label.name))
             } else {
-                let is_second_time = time.is_some_and(|time| labels[time].name == label.name);
-                let name_fault = if is_second_time {
-                    Some(second_time_column(label.name))
-                } else {
-                    label.check_name(&mut names).err()
-                };
-                (name_fault, RecordedUnit::parse(label.unit))
+                label.check_name(&mut names).err()
+            };
+            let unit = match &labels[at] {
+                Err(conflict) => Err(conflict.clone()),
+                Ok(_) if time != Some(at) => RecordedUnit::parse(label.unit),
+                Ok(_) if has_stamps => RecordedUnit::of_stamps(label.unit),
+                Ok(_) => RecordedUnit::parse_time(label.unit),
             };
             // A name that is no identifier, or stands twice, does not say which column is meant.
             let is_name_clear = is_identifier(label.name)
@@ -80,77 +117,28 @@ impl Header {
         Ok(Self {
             // Without a time column there was a fault.
             time: time.unwrap_or_default(),
+            has_stamps,
             columns,
         })
     }
 }
 
-/// A header cell in its two parts.
-struct Label<'a> {
-    name: &'a str,
-    unit: &'a str,
-}
-
-impl<'a> Label<'a> {
-    fn split(cell: &'a str) -> Self {
-        let (name, unit) = cell
-            .strip_suffix(']')
-            .and_then(|open| open.split_once('['))
-            .unwrap_or((cell, ""));
-        Self {
-            name: name.trim(),
-            unit: unit.trim(),
-        }
-    }
-
-    fn check_name(&self, names: &mut Names) -> Result<(), (&'static str, String)> {
-        let Some(instead) = self.unit_in_other_brackets() else {
-            return names.take(self.name);
-        };
-        let message = format!(
-            "{} does not have its unit in square brackets; write {}",
-            quoted(self.name),
-            quoted(&instead)
-        );
-        Err((code::INVALID_NAME, message))
-    }
-
-    /// `alpha (deg)` is usual elsewhere; what it would be here.
-    fn unit_in_other_brackets(&self) -> Option<String> {
-        let (name, unit) = [('(', ')'), ('{', '}')]
-            .into_iter()
-            .find_map(|(from, to)| {
-                let open = self.name.strip_suffix(to)?;
-                open.split_once(from)
-            })?;
-        let is_label = is_identifier(name.trim()) && Unit::parse(unit).is_ok();
-        is_label.then(|| format!("{}[{}]", name.trim(), unit.trim()))
-    }
-
-    fn is_called_time(&self) -> bool {
-        self.name.eq_ignore_ascii_case("t") || self.name.eq_ignore_ascii_case("time")
-    }
-
-    fn has_unit_of_time(&self) -> bool {
-        RecordedUnit::parse(self.unit).is_ok_and(|unit| unit.is_of_time())
-    }
-}
-
-/// The first column called t or time. `T[K]` before `t[s]` is a temperature: one with a unit of time
-/// goes first.
-fn time_column(labels: &[Label]) -> Option<usize> {
-    let mut candidates = (0..labels.len()).filter(|&at| labels[at].is_called_time());
-    candidates
-        .clone()
-        .find(|&at| labels[at].has_unit_of_time())
-        .or_else(|| candidates.next())
+/// The first column called t or time, or else timestamp. `T[K]` before `t[s]` is a temperature: one
+/// with a unit of time, or with time stamps, goes first.
+fn time_column(labels: &[Label], is_stamp: impl Fn(usize) -> bool) -> Option<usize> {
+    let of_all = |condition: &dyn Fn(usize) -> bool| (0..labels.len()).find(|&at| condition(at));
+    let is_time = |at: usize| labels[at].is_called_time();
+    of_all(&|at| is_time(at) && labels[at].has_unit_of_time())
+        .or_else(|| of_all(&|at| is_time(at) && is_stamp(at)))
+        .or_else(|| of_all(&is_time))
+        .or_else(|| of_all(&|at| labels[at].is_called_timestamp()))
 }
 
 fn missing_columns(time: Option<usize>, count: usize) -> impl Iterator<Item = Fault> {
     let no_time = time.is_none().then(|| {
         of_file(
             code::NO_TIME_COLUMN,
-            "no column is named t or time; every recording needs one, as t[s]",
+            "no column is named t or time (or timestamp); every recording needs one, as t[s]",
         )
     });
     let no_channels = (time.is_some() && count == 1).then(|| {
@@ -171,10 +159,14 @@ fn second_time_column(name: &str) -> (&'static str, String) {
 mod tests {
     use super::super::fault::places;
     use super::*;
+    use crate::flight::Unit;
 
     fn parse(line: &str) -> Result<Header, IngestError> {
-        let cells: Vec<&str> = line.split(',').map(str::trim).collect();
-        Header::parse(&cells, &Limits::default())
+        let titles = Titles {
+            names: line.split(',').map(str::trim).collect(),
+            ..Titles::default()
+        };
+        Header::parse(&titles, &Limits::default())
     }
 
     fn faults(line: &str) -> Vec<String> {
@@ -196,7 +188,7 @@ mod tests {
     #[test]
     fn all_faults_are_reported_at_once() {
         assert_eq!(
-            faults("T[K],alpha[furlong],alpha[deg],,angle of attack[deg],q(deg/s)"),
+            faults("T[K],alpha[furlong],alpha[deg],,angle of attack[deg],q{deg/s}"),
             [
                 "time_unit /columns/T",
                 "unknown_unit /columns/alpha",
@@ -224,8 +216,37 @@ mod tests {
     }
 
     #[test]
-    fn a_unit_in_round_brackets_gets_the_right_advice() {
-        let error = parse("t[s],alpha (deg)").err().unwrap();
+    fn a_unit_in_braces_gets_the_right_advice() {
+        let error = parse("t[s],alpha {deg}").err().unwrap();
         assert!(error.to_string().contains("write 'alpha[deg]'"), "{error}");
+    }
+
+    #[test]
+    fn units_may_stand_in_a_row_and_time_may_be_stamps() {
+        let titled = |names: &str, units: &str, first: &str| {
+            let cells = |line: &'static str| line.split(';').collect::<Vec<_>>();
+            let leak = |text: &str| cells(Box::leak(text.to_string().into_boxed_str()));
+            let titles = Titles {
+                names: leak(names),
+                units: (!units.is_empty()).then(|| leak(units)),
+                first: leak(first),
+            };
+            Header::parse(&titles, &Limits::default())
+        };
+        let header = titled("t;alpha;mach", "ms;deg;", "0;1;2").unwrap();
+        assert_eq!(header.columns[0].unit.unit().scale, 1e-3);
+        assert_eq!(header.columns[1].unit, RecordedUnit::parse("deg").unwrap());
+        assert!(!header.has_stamps);
+        let conflict = places(titled("t;alpha[rad]", "s;deg", "0;1"));
+        assert_eq!(conflict, ["unit_conflict /columns/alpha"]);
+
+        let header = titled("T[K];time;a", "", "300;12:00:00.5;1").unwrap();
+        assert_eq!((header.time, header.has_stamps), (1, true));
+        assert_eq!(header.columns[1].unit.unit(), Unit::parse("s").unwrap());
+        let header = titled("timestamp;a", "UTC;deg", "2026-11-21T12:00:00Z;1").unwrap();
+        assert!(header.has_stamps);
+        let kelvin = places(titled("t[K];a", "", "12:00:00;1"));
+        assert_eq!(kelvin, ["time_unit /columns/t"]);
+        assert_eq!(titled("t[s];timestamp[ms]", "", "0;1").unwrap().time, 0);
     }
 }

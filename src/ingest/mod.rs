@@ -2,12 +2,16 @@
 //!
 //! A recording comes from a stranger. Whatever its bytes are, [`read`] answers with a maneuver or with
 //! [`IngestError`], whose faults each name the place (a column, a row, a JSON pointer) and the remedy.
-//! Its memory is bounded by [`Limits`] *before* it is used: both formats are surveyed in one cheap pass
-//! before anything is built from them.
+//! Its memory is bounded by [`Limits`] *before* it is used: every format is surveyed in one cheap pass
+//! before anything is built from it.
+//!
+//! CSV and JSON say names and units themselves. MAT files and ASCII matrices do not: a [`Mapping`] says them.
 //!
 //! What is readable may still be poor: [`quality`] finds gaps, missing values, stuck sensors and spikes,
 //! and [`summary`] is what a user sees of a maneuver without downloading it.
 
+mod ascii;
+mod assemble;
 mod axis;
 mod cell;
 mod csv;
@@ -15,10 +19,16 @@ mod export;
 mod fault;
 mod header;
 mod json;
+mod label;
 mod limits;
+mod lines;
+mod mapping;
+mod mat;
+mod matrix;
 mod name;
 mod quality;
 mod recording;
+mod stamp;
 mod summary;
 mod text;
 mod units;
@@ -26,6 +36,7 @@ mod units;
 pub use export::{to_csv, to_csv_as_recorded, to_json};
 pub use fault::{IngestError, code};
 pub use limits::Limits;
+pub use mapping::Mapping;
 pub use quality::quality;
 pub use recording::Recording;
 pub use summary::{ChannelSummary, Summary, summary};
@@ -37,11 +48,41 @@ use crate::flight::Maneuver;
 pub enum Format {
     Csv,
     Json,
+    /// A MAT file of version 5.
+    Mat,
+    /// A matrix of numbers as text.
+    Ascii,
 }
 
 impl Format {
     /// The media types of [`Format::from_content_type`], for a message that says what is accepted.
-    pub const CONTENT_TYPES: [&str; 2] = ["text/csv", "application/json"];
+    pub const CONTENT_TYPES: [&str; 4] = [
+        "text/csv",
+        "application/json",
+        "application/x-matlab-data",
+        "text/plain",
+    ];
+
+    /// The media type of an upload.
+    pub fn content_type(self) -> &'static str {
+        match self {
+            Self::Csv => "text/csv",
+            Self::Json => "application/json",
+            Self::Mat => "application/x-matlab-data",
+            Self::Ascii => "text/plain",
+        }
+    }
+
+    /// By the end of a file's name, without the dot; `None` if it says nothing.
+    pub fn from_extension(extension: &str) -> Option<Self> {
+        match extension.to_ascii_lowercase().as_str() {
+            "csv" => Some(Self::Csv),
+            "json" => Some(Self::Json),
+            "mat" => Some(Self::Mat),
+            "asc" => Some(Self::Ascii),
+            _ => None,
+        }
+    }
 
     /// Reads a `Content-Type`; its parameters (`charset=...`) are ignored.
     pub fn from_content_type(content_type: &str) -> Option<Self> {
@@ -49,20 +90,41 @@ impl Format {
         match essence.to_ascii_lowercase().as_str() {
             "text/csv" | "application/csv" => Some(Self::Csv),
             "application/json" | "text/json" => Some(Self::Json),
+            "application/x-matlab-data" | "application/matlab-mat" => Some(Self::Mat),
+            "text/plain" => Some(Self::Ascii),
             _ => None,
         }
     }
 }
 
-/// Reads a recording.
+/// Reads a recording that says names and units itself.
 ///
 /// # Errors
-/// All faults that can be found at once: every fault of a header, the first 20 of
-/// the cells.
+/// As [`read_mapped`].
 pub fn read(bytes: &[u8], format: Format, limits: &Limits) -> Result<Maneuver, IngestError> {
-    match format {
-        Format::Csv => csv::read(bytes, limits),
-        Format::Json => json::read(bytes, limits),
+    read_mapped(bytes, format, None, limits)
+}
+
+/// Reads a recording, with a mapping where its format has no names and units.
+///
+/// # Errors
+/// All faults that can be found at once: every fault of a header or a mapping, the first 20 of
+/// the cells. A mapping that is missing, or that is there where the file says names and units itself.
+pub fn read_mapped(
+    bytes: &[u8],
+    format: Format,
+    mapping: Option<&Mapping>,
+    limits: &Limits,
+) -> Result<Maneuver, IngestError> {
+    match (format, mapping) {
+        (Format::Csv, None) => csv::read(bytes, limits),
+        (Format::Json, None) => json::read(bytes, limits),
+        (Format::Mat, _) => mat::read(bytes, mapping, limits),
+        (Format::Ascii, _) => ascii::read(bytes, mapping, limits),
+        (_, Some(_)) => {
+            let message = "this format says names and units itself; leave the mapping out";
+            Err(fault::of_file(code::MAPPING_NOT_USED, message).into())
+        }
     }
 }
 
@@ -75,11 +137,23 @@ mod tests {
         let format = Format::from_content_type;
         assert_eq!(format("text/csv; charset=utf-8"), Some(Format::Csv));
         assert_eq!(format("Application/JSON"), Some(Format::Json));
-        assert_eq!(format("application/x-matlab-data"), None);
+        assert_eq!(format("application/x-hdf5"), None);
         assert_eq!(format(""), None);
         for accepted in Format::CONTENT_TYPES {
-            assert!(format(accepted).is_some(), "{accepted}");
+            assert_eq!(format(accepted).map(Format::content_type), Some(accepted));
         }
+    }
+
+    #[test]
+    fn a_mapping_is_for_files_that_need_one() {
+        let mapping = Mapping::named_or_json("sidpac").unwrap();
+        let limits = Limits::default();
+        let unused = read_mapped(b"t[s],a\n0,1\n1,2\n", Format::Csv, Some(&mapping), &limits);
+        assert_eq!(fault::places(unused), ["mapping_not_used "]);
+        for extension in ["csv", "JSON", "mat", "asc"] {
+            assert!(Format::from_extension(extension).is_some());
+        }
+        assert_eq!(Format::from_extension("txt"), None);
     }
 
     /// Cuts and byte changes of a good file must be answered, never panic.

@@ -54,6 +54,21 @@ impl RecordedUnit {
         Err((code::TIME_UNIT, message))
     }
 
+    /// The unit of a column of time stamps, of which the file may say `UTC`, `hh:mm:ss` or `s`: seconds.
+    ///
+    /// # Errors
+    /// A code and a message: it is the unit of something else.
+    pub(super) fn of_stamps(text: &str) -> Result<Self, (&'static str, String)> {
+        let is_other =
+            Self::parse(text).is_ok_and(|unit| unit.text != PURE_NUMBER && !unit.is_of_time());
+        if is_other {
+            let message =
+                format!("this column has time stamps and the unit '{text}'; leave the unit out");
+            return Err((code::TIME_UNIT, message));
+        }
+        Self::parse("s")
+    }
+
     pub(super) fn unit(&self) -> Unit {
         self.unit
     }

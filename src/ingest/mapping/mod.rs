@@ -1,0 +1,208 @@
+//! Mapping documents: which values of a file without names and units are time and channels, and in which units.
+//!
+//! A mapping has the shape of a JSON recording, with `from` where that has `values`. In TOML:
+//!
+//! ```toml
+//! time = {from = "fdata(:,1)", unit = "s"}
+//! [channels]
+//! alpha = {from = "fdata(:,4)", unit = "deg"}
+//! ```
+
+mod apply;
+mod source;
+
+use indexmap::IndexMap;
+use serde::Deserialize;
+
+pub(super) use apply::Archive;
+use source::{Part, Source};
+
+use super::{
+    code,
+    fault::{of_file, pointer},
+    text::short_message,
+};
+use crate::flight::Fault;
+
+/// Says where time and channels are in a MAT file or an ASCII matrix.
+#[derive(Clone, PartialEq, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mapping {
+    /// For people: which recordings it is for.
+    #[serde(default)]
+    about: String,
+    pub(super) time: MappedTime,
+    /// By name, in the order of the document.
+    pub(super) channels: IndexMap<String, MappedChannel>,
+}
+
+/// Either `from`, or `step` (with `start`, else 0) for even sampling.
+#[derive(Clone, PartialEq, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MappedTime {
+    pub(super) unit: String,
+    pub(super) from: Option<String>,
+    pub(super) start: Option<f64>,
+    pub(super) step: Option<f64>,
+}
+
+#[derive(Clone, PartialEq, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MappedChannel {
+    pub(super) from: String,
+    /// `-` for a pure number; it must be said.
+    pub(super) unit: String,
+}
+
+/// The mappings that come with Trimtab.
+const BUNDLED: [(&str, &str); 3] = [
+    ("fvsysid-attas", include_str!("fvsysid-attas.toml")),
+    ("fvsysid-hfb320", include_str!("fvsysid-hfb320.toml")),
+    ("sidpac", include_str!("sidpac.toml")),
+];
+
+impl Mapping {
+    /// The names of the bundled mappings.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        BUNDLED.iter().map(|&(name, _)| name)
+    }
+
+    /// # Errors
+    /// What is wrong with the document, and where in it.
+    pub fn from_json(text: &str) -> Result<Self, Fault> {
+        let mapping: Self =
+            serde_json::from_str(text).map_err(|error| invalid(&error.to_string()))?;
+        mapping.checked()
+    }
+
+    /// # Errors
+    /// What is wrong with the document, and where in it.
+    pub fn from_toml(text: &str) -> Result<Self, Fault> {
+        let mapping: Self = toml::from_str(text).map_err(|error| invalid(&error.to_string()))?;
+        mapping.checked()
+    }
+
+    /// A JSON document, or the name of a bundled mapping.
+    ///
+    /// # Errors
+    /// There is no mapping of this name; or what is wrong with the document.
+    pub fn named_or_json(text: &str) -> Result<Self, Fault> {
+        if text.trim_start().starts_with('{') {
+            return Self::from_json(text);
+        }
+        match BUNDLED.iter().find(|(name, _)| *name == text.trim()) {
+            Some((_, document)) => Self::from_toml(document),
+            None => {
+                let name = short_message(text);
+                let known: Vec<&str> = Self::names().collect();
+                let message = format!(
+                    "there is no mapping '{name}'; known are {}, or give a document {{\"time\": {{\"from\", \"unit\"}}, \"channels\": {{name: {{\"from\", \"unit\"}}}}}}",
+                    known.join(", ")
+                );
+                Err(of_file(code::INVALID_MAPPING, message))
+            }
+        }
+    }
+
+    /// For people: which recordings it is for.
+    pub fn about(&self) -> &str {
+        &self.about
+    }
+
+    /// Every source of it can be read, and time has one.
+    fn checked(self) -> Result<Self, Fault> {
+        if self.time.from.is_some() == self.time.step.is_some() {
+            let message = "mapping: time has either \"from\", or \"step\" and perhaps \"start\"";
+            return Err(Fault::new("/time", code::INVALID_MAPPING, message));
+        }
+        let of_time = self
+            .time
+            .from
+            .as_deref()
+            .map(|from| (pointer(["time", "from"]), from));
+        let of_channels = self.channels.iter();
+        let of_channels = of_channels
+            .map(|(name, channel)| (pointer(["channels", name, "from"]), &*channel.from));
+        for (place, from) in of_time.into_iter().chain(of_channels) {
+            from.parse::<Source>().map_err(|why| {
+                let from = short_message(from);
+                let message = format!(
+                    "mapping: '{from}' is no source such as fdata(:,4), rec.alpha or (:,4): {why}"
+                );
+                Fault::new(place, code::INVALID_MAPPING, message)
+            })?;
+        }
+        Ok(self)
+    }
+}
+
+fn invalid(error: &str) -> Fault {
+    let error = short_message(error);
+    let message = format!(
+        "the mapping cannot be read: {error}; it is {{\"time\": {{\"from\", \"unit\"}}, \"channels\": {{name: {{\"from\", \"unit\"}}}}}}"
+    );
+    of_file(code::INVALID_MAPPING, message)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::units::RecordedUnit;
+    use super::*;
+
+    #[test]
+    fn bundled_mappings_have_sources_and_units_that_are_known() {
+        for name in Mapping::names() {
+            let mapping =
+                Mapping::named_or_json(name).unwrap_or_else(|fault| panic!("{name}: {fault}"));
+            assert!(!mapping.about().is_empty(), "{name}");
+            assert!(
+                RecordedUnit::parse_time(&mapping.time.unit).is_ok(),
+                "{name}"
+            );
+            let mut sources: Vec<&str> = vec![mapping.time.from.as_deref().unwrap()];
+            for (channel, mapped) in &mapping.channels {
+                assert!(
+                    RecordedUnit::parse(&mapped.unit).is_ok(),
+                    "{name} {channel}"
+                );
+                sources.push(&mapped.from);
+            }
+            let count = sources.len();
+            sources.sort_unstable();
+            sources.dedup();
+            assert_eq!(sources.len(), count, "{name}: no column is two channels");
+        }
+    }
+
+    #[test]
+    fn faults_name_the_place_and_the_shape() {
+        let refused = |text: &str, place: &str, expected: &str| {
+            let fault = Mapping::named_or_json(text).unwrap_err();
+            assert_eq!(
+                (fault.code.as_ref(), fault.pointer.as_str()),
+                (code::INVALID_MAPPING, place)
+            );
+            assert!(fault.message.contains(expected), "{fault}");
+        };
+        refused("sidpack", "", "known are fvsysid-attas");
+        refused("{", "", "EOF");
+        refused(r#"{"time": {"unit": "s"}}"#, "", "channels");
+        refused(
+            r#"{"time": {"unit": "s", "from": "t"}, "channels": {"a": {"from": "a"}}}"#,
+            "",
+            "unit",
+        );
+        let document = |time: &str, a: &str| {
+            format!(
+                r#"{{"time": {{"unit": "s", "from": "{time}"}}, "channels": {{"a": {{"unit": "-", "from": "{a}"}}}}}}"#
+            )
+        };
+        refused(&document("t(1)", "a"), "/time/from", "one column");
+        refused(&document("t", "a b"), "/channels/a/from", "letters");
+        assert!(Mapping::named_or_json(&document("t", "a(:,2)")).is_ok());
+        let toml =
+            "time = {step = 0.04, unit = \"s\"}\n[channels]\na = {from = \"a\", unit = \"deg\"}\n";
+        assert_eq!(Mapping::from_toml(toml).unwrap().time.step, Some(0.04));
+        assert!(Mapping::from_toml("x").is_err());
+    }
+}

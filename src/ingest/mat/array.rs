@@ -1,0 +1,219 @@
+//! Arrays of a MAT file: what each is, the numbers of a numeric one, the fields of a struct.
+
+use super::super::matrix::{Matrix, Stored};
+use super::element::{Damage, Element, Elements, Order, kind};
+
+/// What stands before the content of an array.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) struct Head {
+    class: u8,
+    is_complex: bool,
+    pub(super) dimensions: Vec<usize>,
+    pub(super) name: String,
+}
+
+const STRUCT: u8 = 2;
+const OPAQUE: u8 = 17;
+const COMPLEX: u32 = 1 << 11;
+
+/// MATLAB's classes by number, from 1.
+const CLASSES: [&str; 17] = [
+    "cell",
+    "struct",
+    "object",
+    "char",
+    "sparse",
+    "double",
+    "single",
+    "int8",
+    "uint8",
+    "int16",
+    "uint16",
+    "int32",
+    "uint32",
+    "int64",
+    "uint64",
+    "function_handle",
+    "object",
+];
+
+impl Head {
+    /// Reads the head of an array and leaves `elements` at its content.
+    pub(super) fn read(elements: &mut Elements) -> Result<Self, Damage> {
+        let flags = elements.expect()?;
+        let flags = elements
+            .order
+            .u32(flags.bytes)
+            .ok_or("an array has no flags")?;
+        let class = (flags & 0xff) as u8;
+        // an object has its name where others have dimensions
+        let dimensions = if class == OPAQUE {
+            Vec::new()
+        } else {
+            dimensions(elements)?
+        };
+        let name = elements.expect()?;
+        Ok(Self {
+            class,
+            is_complex: flags & COMPLEX != 0,
+            dimensions,
+            name: String::from_utf8_lossy(name.bytes).into_owned(),
+        })
+    }
+
+    pub(super) fn is_struct(&self) -> bool {
+        self.class == STRUCT
+    }
+
+    /// Whether it is an array of numbers, not a sparse one.
+    pub(super) fn is_numeric(&self) -> bool {
+        (6..=15).contains(&self.class)
+    }
+
+    /// How many values or structs it has; `None` beyond any number.
+    pub(super) fn count(&self) -> Option<usize> {
+        self.dimensions
+            .iter()
+            .try_fold(1usize, |product, &length| product.checked_mul(length))
+    }
+
+    /// For people: `626x45 double`.
+    pub(super) fn description(&self) -> String {
+        let sizes: Vec<String> = self.dimensions.iter().map(ToString::to_string).collect();
+        let class = CLASSES
+            .get(usize::from(self.class).wrapping_sub(1))
+            .unwrap_or(&"unknown");
+        let complex = if self.is_complex { "complex " } else { "" };
+        format!("{} {complex}{class}", sizes.join("x"))
+            .trim()
+            .to_string()
+    }
+
+    /// Rows and columns. Sides of length 1 of an array of more dimensions are left out, as `squeeze` does it.
+    fn shape(&self) -> Option<[usize; 2]> {
+        if let &[rows, columns] = self.dimensions.as_slice() {
+            return Some([rows, columns]);
+        }
+        let long: Vec<usize> = self
+            .dimensions
+            .iter()
+            .copied()
+            .filter(|&length| length != 1)
+            .collect();
+        match *long.as_slice() {
+            [] => Some([1, 1]),
+            [length] => Some([length, 1]),
+            [rows, columns] => Some([rows, columns]),
+            _ => None,
+        }
+    }
+
+    /// The numbers of the array whose content is next in `elements`.
+    ///
+    /// # Errors
+    /// Outside: the file is damaged. Inside: the array is no matrix of real numbers; what it is.
+    pub(super) fn matrix<'a>(
+        &self,
+        elements: &mut Elements<'a>,
+    ) -> Result<Result<Matrix<'a>, String>, Damage> {
+        let shape = self
+            .shape()
+            .filter(|_| self.is_numeric() && !self.is_complex);
+        let Some(shape) = shape else {
+            return Ok(Err(self.description()));
+        };
+        let numbers = elements.expect()?;
+        let number = number(numbers, elements.order).ok_or("numbers are of an unknown kind")?;
+        let matrix = Matrix::of_bytes(shape, numbers.bytes, number);
+        matrix
+            .map(Ok)
+            .ok_or("an array has another number of values than its dimensions say")
+    }
+}
+
+fn dimensions(elements: &mut Elements) -> Result<Vec<usize>, Damage> {
+    let order = elements.order;
+    let Element { bytes, .. } = elements.expect()?;
+    let length = |bytes| {
+        order
+            .u32(bytes)
+            .filter(|&length| length <= i32::MAX as u32)
+            .map(|length| length as usize)
+    };
+    let dimensions: Option<Vec<usize>> = bytes.chunks_exact(4).map(length).collect();
+    dimensions
+        .filter(|dimensions| dimensions.len() >= 2)
+        .ok_or("an array has no dimensions")
+}
+
+/// How the numbers of an element are stored.
+fn number(element: Element, order: Order) -> Option<Stored> {
+    macro_rules! reader {
+        ($type:ty) => {{
+            fn little(bytes: &[u8]) -> f64 {
+                bytes
+                    .try_into()
+                    .map_or(f64::NAN, |bytes| <$type>::from_le_bytes(bytes) as f64)
+            }
+            fn big(bytes: &[u8]) -> f64 {
+                bytes
+                    .try_into()
+                    .map_or(f64::NAN, |bytes| <$type>::from_be_bytes(bytes) as f64)
+            }
+            Stored {
+                width: size_of::<$type>(),
+                read: if order == Order::Little { little } else { big },
+            }
+        }};
+    }
+    Some(match element.kind {
+        kind::INT8 => reader!(i8),
+        kind::UINT8 => reader!(u8),
+        kind::INT16 => reader!(i16),
+        kind::UINT16 => reader!(u16),
+        kind::INT32 => reader!(i32),
+        kind::UINT32 => reader!(u32),
+        kind::SINGLE => reader!(f32),
+        kind::DOUBLE => reader!(f64),
+        kind::INT64 => reader!(i64),
+        kind::UINT64 => reader!(u64),
+        _ => return None,
+    })
+}
+
+/// The fields of the struct whose content is next in `elements`.
+pub(super) struct Fields<'a> {
+    pub(super) names: Vec<String>,
+    values: Elements<'a>,
+}
+
+impl<'a> Fields<'a> {
+    pub(super) fn read(elements: &mut Elements<'a>) -> Result<Self, Damage> {
+        let width = elements.expect()?;
+        let width = elements.order.u32(width.bytes).filter(|&width| width > 0);
+        let width = width.ok_or("the fields of a struct have no names")? as usize;
+        let names = elements.expect()?.bytes.chunks(width);
+        let name = |bytes: &[u8]| {
+            let end = bytes
+                .iter()
+                .position(|&byte| byte == 0)
+                .unwrap_or(bytes.len());
+            String::from_utf8_lossy(&bytes[..end]).into_owned()
+        };
+        Ok(Self {
+            names: names.map(name).collect(),
+            values: *elements,
+        })
+    }
+
+    /// The array in a field; `None` where there is no such field.
+    pub(super) fn value(mut self, name: &str) -> Result<Option<Element<'a>>, Damage> {
+        let Some(at) = self.names.iter().position(|field| field == name) else {
+            return Ok(None);
+        };
+        for _ in 0..at {
+            self.values.expect()?;
+        }
+        self.values.expect().map(Some)
+    }
+}

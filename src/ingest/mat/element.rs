@@ -1,0 +1,135 @@
+//! Data elements of a MAT file: a tag of kind and length, bytes, padding to eight.
+
+/// What is not as the format has it.
+pub(super) type Damage = &'static str;
+
+/// Which byte of a number comes first.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Order {
+    Little,
+    Big,
+}
+
+impl Order {
+    pub(super) fn u32(self, bytes: &[u8]) -> Option<u32> {
+        let bytes = bytes.get(..4)?.try_into().ok()?;
+        Some(match self {
+            Self::Little => u32::from_le_bytes(bytes),
+            Self::Big => u32::from_be_bytes(bytes),
+        })
+    }
+}
+
+/// Kinds of elements (`mi` in the format's description).
+pub(super) mod kind {
+    pub const INT8: u32 = 1;
+    pub const UINT8: u32 = 2;
+    pub const INT16: u32 = 3;
+    pub const UINT16: u32 = 4;
+    pub const INT32: u32 = 5;
+    pub const UINT32: u32 = 6;
+    pub const SINGLE: u32 = 7;
+    pub const DOUBLE: u32 = 9;
+    pub const INT64: u32 = 12;
+    pub const UINT64: u32 = 13;
+    pub const MATRIX: u32 = 14;
+    pub const COMPRESSED: u32 = 15;
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct Element<'a> {
+    pub(super) kind: u32,
+    pub(super) bytes: &'a [u8],
+}
+
+/// The elements that stand one behind another in some bytes.
+#[derive(Clone, Copy)]
+pub(super) struct Elements<'a> {
+    pub(super) rest: &'a [u8],
+    pub(super) order: Order,
+}
+
+impl<'a> Elements<'a> {
+    /// The next element; `None` at the end.
+    ///
+    /// # Errors
+    /// The element is longer than the bytes that are left.
+    pub(super) fn next(&mut self) -> Result<Option<Element<'a>>, Damage> {
+        if self.rest.is_empty() {
+            return Ok(None);
+        }
+        let (first, second) = self.tag().ok_or("it ends inside the tag of an element")?;
+        // an element of up to four bytes stands in its own tag
+        let short = (first >> 16) as usize;
+        let (kind, length, start) = if short > 0 {
+            (first & 0xffff, short, 4)
+        } else {
+            (first, second as usize, 8)
+        };
+        if short > 4 {
+            return Err("a short element is longer than four bytes");
+        }
+        let end = start + length;
+        let bytes = self
+            .rest
+            .get(start..end)
+            .ok_or("it ends inside an element")?;
+        // compressed elements are not padded, and the padding of the last one may be missing
+        let padded = if kind == kind::COMPRESSED {
+            end
+        } else {
+            end.next_multiple_of(8)
+        };
+        self.rest = self.rest.get(padded..).unwrap_or_default();
+        Ok(Some(Element { kind, bytes }))
+    }
+
+    /// The next element, which must be there.
+    pub(super) fn expect(&mut self) -> Result<Element<'a>, Damage> {
+        self.next()?.ok_or("an element is missing")
+    }
+
+    fn tag(&self) -> Option<(u32, u32)> {
+        Some((
+            self.order.u32(self.rest)?,
+            self.order.u32(self.rest.get(4..)?)?,
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn elements(rest: &[u8], order: Order) -> Elements<'_> {
+        Elements { rest, order }
+    }
+
+    #[test]
+    fn short_and_padded_elements_are_read_in_both_orders() {
+        let little = [
+            1, 0, 3, 0, b'a', b'b', b'c', 0, 2, 0, 0, 0, 1, 0, 0, 0, 7, 0, 0, 0, 0, 0, 0, 0,
+        ];
+        let big = [0, 3, 0, 1, b'a', b'b', b'c', 0, 0, 0, 0, 2, 0, 0, 0, 1, 7];
+        for (bytes, order) in [(&little[..], Order::Little), (&big[..], Order::Big)] {
+            let mut elements = elements(bytes, order);
+            let name = elements.expect().unwrap();
+            assert_eq!((name.kind, name.bytes), (kind::INT8, &b"abc"[..]));
+            let byte = elements.expect().unwrap();
+            assert_eq!((byte.kind, byte.bytes), (kind::UINT8, &[7][..]));
+            assert_eq!(elements.next(), Ok(None));
+        }
+    }
+
+    #[test]
+    fn lengths_beyond_the_end_are_damage() {
+        for bytes in [
+            &[1, 0, 9, 0, 0, 0, 0, 0][..],
+            &[2, 0, 0, 0, 255, 255, 255, 255],
+            &[1, 0, 0],
+            &[2, 0, 0, 0, 1, 0, 0, 0],
+        ] {
+            assert!(elements(bytes, Order::Little).next().is_err(), "{bytes:?}");
+        }
+    }
+}

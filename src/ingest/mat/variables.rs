@@ -1,0 +1,124 @@
+//! The variables of a MAT file, unpacked one at a time and within bounds.
+
+use std::borrow::Cow;
+use std::io::Read;
+
+use flate2::read::ZlibDecoder;
+
+use super::super::{Limits, code, fault::of_file};
+use super::array::Head;
+use super::damaged;
+use super::element::{Damage, Element, Elements, Order, kind};
+use crate::flight::Fault;
+
+/// Room for the head of an array: flags, dimensions, and a name of up to 63 characters.
+const HEAD_BYTES: u64 = 1024;
+
+/// Beside numbers a file may have this many bytes of names and tags.
+const OVERHEAD: usize = 1 << 20;
+
+pub(super) struct Variables<'a> {
+    order: Order,
+    list: Vec<Variable<'a>>,
+    /// Bytes that may still be unpacked.
+    budget: usize,
+    max_values: usize,
+}
+
+pub(super) struct Variable<'a> {
+    pub(super) head: Head,
+    element: Element<'a>,
+}
+
+impl<'a> Variables<'a> {
+    /// Looks at the head of every variable; `body` is what follows the file's header.
+    ///
+    /// # Errors
+    /// The file is damaged, or has more variables than the limit of columns.
+    pub(super) fn of(body: &'a [u8], order: Order, limits: &Limits) -> Result<Self, Fault> {
+        let mut elements = Elements { rest: body, order };
+        let mut list = Vec::new();
+        let mut count = 0;
+        while let Some(element) = elements.next().map_err(damaged)? {
+            count += 1;
+            limits.columns(count).map_or(Ok(()), Err)?;
+            let head = head(element, order).map_err(damaged)?;
+            // data of MATLAB's own have no name
+            if !head.name.is_empty() {
+                list.push(Variable { head, element });
+            }
+        }
+        Ok(Self {
+            order,
+            list,
+            budget: limits
+                .max_values
+                .saturating_mul(size_of::<f64>())
+                .saturating_add(OVERHEAD),
+            max_values: limits.max_values,
+        })
+    }
+
+    pub(super) fn list(&self) -> &[Variable<'a>] {
+        &self.list
+    }
+
+    /// The elements that the variable `at` consists of, its head first.
+    ///
+    /// # Errors
+    /// It is damaged, or has more values than the limit.
+    pub(super) fn unpack(&mut self, at: usize) -> Result<Cow<'a, [u8]>, Fault> {
+        let Variable { head, element } = &self.list[at];
+        if element.kind == kind::MATRIX {
+            return Ok(Cow::Borrowed(element.bytes));
+        }
+        let mut unpacked = Vec::new();
+        let room = self.budget as u64 + 1;
+        let read = ZlibDecoder::new(element.bytes)
+            .take(room)
+            .read_to_end(&mut unpacked);
+        if unpacked.len() > self.budget || head.count().is_none_or(|count| count > self.max_values)
+        {
+            let message = format!(
+                "with '{}' the file unpacks to more than max_values = {} values; leave out what the estimation does not need",
+                head.name, self.max_values
+            );
+            return Err(of_file(code::TOO_MANY_VALUES, message));
+        }
+        read.map_err(|_| damaged(NOT_UNPACKED))?;
+        self.budget -= unpacked.len();
+        let mut inside = Elements {
+            rest: &unpacked,
+            order: self.order,
+        };
+        let length = inside.expect().map_err(damaged)?.bytes.len();
+        unpacked.drain(..8);
+        unpacked.truncate(length);
+        Ok(Cow::Owned(unpacked))
+    }
+}
+
+const NOT_UNPACKED: Damage = "a compressed variable cannot be unpacked";
+
+/// The head of a variable, of which no more is unpacked.
+fn head(element: Element, order: Order) -> Result<Head, Damage> {
+    match element.kind {
+        kind::MATRIX => Head::read(&mut Elements {
+            rest: element.bytes,
+            order,
+        }),
+        kind::COMPRESSED => {
+            let mut start = Vec::new();
+            // what is damaged behind the head is found when it is needed
+            let _ = ZlibDecoder::new(element.bytes)
+                .take(HEAD_BYTES)
+                .read_to_end(&mut start);
+            if order.u32(&start) != Some(kind::MATRIX) {
+                return Err(NOT_UNPACKED);
+            }
+            let rest = start.get(8..).ok_or(NOT_UNPACKED)?;
+            Head::read(&mut Elements { rest, order })
+        }
+        _ => Err("there is something between its variables"),
+    }
+}
