@@ -1,5 +1,7 @@
 //! The lines of a text that say something, with their numbers.
 
+use memchr::memchr2;
+
 /// A line of a file and its number, from 1.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct Line<'a> {
@@ -26,9 +28,7 @@ impl<'a> Lines<'a> {
         if self.rest.is_empty() {
             return None;
         }
-        let is_end = |&byte: &u8| byte == b'\n' || byte == b'\r';
-        let end = self.rest.bytes().position(|byte| is_end(&byte));
-        let end = end.unwrap_or(self.rest.len());
+        let end = memchr2(b'\n', b'\r', self.rest.as_bytes()).unwrap_or(self.rest.len());
         let (text, behind) = self.rest.split_at(end);
         self.rest = behind
             .strip_prefix("\r\n")

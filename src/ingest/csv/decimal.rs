@@ -67,13 +67,17 @@ struct Found<'a> {
 
 impl<'a> Found<'a> {
     fn look_at(&mut self, cell: Cell<'a>) -> Result<(), Fault> {
-        let is_of_number =
-            |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',' | 'e' | 'E');
-        if !cell.text.chars().all(is_of_number) {
-            return Ok(());
+        let (mut points, mut commas) = (0, 0);
+        for byte in cell.text.bytes() {
+            match byte {
+                b'.' => points += 1,
+                b',' => commas += 1,
+                b'0'..=b'9' | b'+' | b'-' | b'e' | b'E' => {}
+                // a word or a time
+                _ => return Ok(()),
+            }
         }
-        let count = |mark: char| cell.text.matches(mark).count();
-        match (count('.'), count(',')) {
+        match (points, commas) {
             (0, 0) => return Ok(()),
             (1, 0) => {
                 self.point.get_or_insert(cell);
