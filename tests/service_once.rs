@@ -84,7 +84,7 @@ async fn twins_submit_one_job() {
 #[tokio::test]
 async fn models_and_maneuvers_are_kept_once_too() {
     let server = Server::start_with(Config::default(), 0).await;
-    let model = server.get("/v1/models/short-period").await.json()["document"].take();
+    let model = server.get("/v1/models/short-period").await.json();
     let [first, again] = [
         post_with(&server, "/v1/models", "m", &model).await,
         post_with(&server, "/v1/models", "m", &model).await,

@@ -17,7 +17,7 @@ use super::{once, problem, routes};
             Whatever goes wrong is answered with `application/problem+json` (RFC 9457): a stable `code`, \
             and in `errors` every place that is at fault. Lists are paged by cursor; \
             `next_cursor: null` is the only end. Results and maneuvers never change and carry an `ETag`.",
-        license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0"),
+        license(name = "MIT", identifier = "MIT"),
     ),
     tags(
         (name = "Maneuvers", description = "Recordings: immutable, identified by their content."),
