@@ -8,7 +8,7 @@ use common::chaos::{Chaos, Report};
 use common::database::Database;
 
 fn is_sound(report: &Report) {
-    println!("{report:?}");
+    println!("{report}");
     assert!(report.kills > 0 && report.reconnects > 0, "{report:?}");
     assert!(report.taken_over > 0, "{report:?}");
 }

@@ -86,7 +86,8 @@ async fn submit_job(
     if let Some(wait) = wait {
         job = prefer::until_over(&service, job, wait).await?;
     }
-    let status = if job.status.is_over() {
+    // a repetition may find its job over, and is answered as the first would have been
+    let status = if wait.is_some() && job.status.is_over() {
         StatusCode::OK
     } else {
         StatusCode::ACCEPTED

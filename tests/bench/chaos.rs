@@ -43,7 +43,7 @@ async fn main() {
         database_restarts: 0,
         control: None,
     };
-    println!("SQLite: {:#?}", on_a_file.run().await);
+    println!("SQLite, {kills} kills\n{}\n", on_a_file.run().await);
     let Some(server) = Database::postgres("chaos").await else {
         return;
     };
@@ -57,5 +57,8 @@ async fn main() {
         database_restarts: 2,
         control: std::env::var("TRIMTAB_TEST_POSTGRES_CONTROL").ok(),
     };
-    println!("PostgreSQL: {:#?}", on_a_server.run().await);
+    println!(
+        "PostgreSQL, a worker killed every 2 s\n{}",
+        on_a_server.run().await
+    );
 }

@@ -1,6 +1,7 @@
 //! Jobs while processes are killed and databases restarted: each accepted job ends once, with every event of it.
 
 use std::collections::{BTreeMap, HashSet};
+use std::fmt;
 use std::process::Command;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -46,6 +47,21 @@ pub struct Report {
     pub events: usize,
     /// Times at which somebody who followed a job had to ask again.
     pub reconnects: usize,
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (ending, jobs) in &self.ended {
+            writeln!(f, "{jobs:6} jobs ended: {ending}")?;
+        }
+        writeln!(f, "{:6} of them taken over", self.taken_over)?;
+        writeln!(f, "{:6} events, each seen once", self.events)?;
+        writeln!(f, "{:6} times a follower had to ask again", self.reconnects)?;
+        writeln!(f, "{:6} processes killed", self.kills)?;
+        writeln!(f, "{:6} restarts of the server", self.server_restarts)?;
+        writeln!(f, "{:6} restarts of the database", self.database_restarts)?;
+        write!(f, "{:6.0} s in all", self.took.as_secs_f64())
+    }
 }
 
 /// How long the whole may take before something is stuck.
