@@ -70,6 +70,14 @@ impl Engine {
         }
     }
 
+    /// How long a database is waited for that does not answer yet: a server may be starting, too.
+    pub(super) fn patience(self) -> Duration {
+        match self {
+            Self::Sqlite => Duration::ZERO,
+            Self::Postgres => Duration::from_secs(30),
+        }
+    }
+
     pub(super) fn pool(self, connections: u32) -> AnyPoolOptions {
         let pool = AnyPoolOptions::new()
             .max_connections(connections)

@@ -27,8 +27,10 @@ mod signal;
 mod writing;
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use sqlx::AnyPool;
+use tokio::time::{Instant, sleep};
 use tokio_util::sync::DropGuard;
 
 pub use address::without_password;
@@ -119,23 +121,37 @@ impl Store {
     pub async fn open_with_clock(address: &str, clock: Clock) -> Result<Self, StoreError> {
         sqlx::any::install_default_drivers();
         let (engine, url) = address::connection(address)?;
-        let cannot = |error: sqlx::Error| StoreError::Address {
-            address: address::without_password(address),
-            why: error.to_string(),
-        };
-        let writer = engine.pool(engine.writers()).connect(&url).await;
-        let writer = writer.map_err(cannot)?;
-        let readers = engine.pool(8).connect(&url).await.map_err(cannot)?;
+        let deadline = Instant::now() + engine.patience();
+        loop {
+            match Self::connect(engine, &url, &clock).await {
+                Err(error) if error.is_passing() && Instant::now() < deadline => {
+                    tracing::warn!(%error, "the database does not answer yet; trying again");
+                    sleep(Duration::from_secs(1)).await;
+                }
+                Err(StoreError::Database(error)) => {
+                    return Err(StoreError::Address {
+                        address: without_password(address),
+                        why: error.to_string(),
+                    });
+                }
+                opened => return opened,
+            }
+        }
+    }
+
+    async fn connect(engine: Engine, url: &str, clock: &Clock) -> Result<Self, StoreError> {
+        let writer = engine.pool(engine.writers()).connect(url).await?;
+        let readers = engine.pool(8).connect(url).await?;
         let signals = signal::Signals::new();
         let neighbours = match engine {
             Engine::Sqlite => None,
-            Engine::Postgres => Some(neighbours::listen(&url, &readers, &clock, &signals).await?),
+            Engine::Postgres => Some(neighbours::listen(url, &readers, clock, &signals).await?),
         };
         let store = Self {
             engine,
             readers,
             writer,
-            clock,
+            clock: clock.clone(),
             signals,
             _neighbours: neighbours,
         };

@@ -1,4 +1,4 @@
-//! The chaos in full: `tests/postgres cargo bench --bench chaos [jobs] [kills]`.
+//! The chaos in full: `tests/postgres cargo bench --bench chaos [jobs] [kills] [sqlite|postgres]`.
 //!
 //! On PostgreSQL: three worker processes, one of which is killed (SIGKILL) every two seconds, the server restarted twice
 //! and the database, too. On SQLite: one process that serves and works, killed 50 times. What is promised is checked by
@@ -32,8 +32,21 @@ async fn main() {
     let mut numbers = std::env::args().filter_map(|argument| argument.parse().ok());
     let jobs = numbers.next().unwrap_or(1000);
     let kills = numbers.next().unwrap_or(50);
+    let wanted = |engine: &str| {
+        let mut words = std::env::args().filter(|word| ["sqlite", "postgres"].contains(&&**word));
+        words.next().is_none_or(|word| word == engine)
+    };
+    if wanted("sqlite") {
+        on_a_file(jobs, kills).await;
+    }
+    if wanted("postgres") {
+        on_a_server(jobs).await;
+    }
+}
+
+async fn on_a_file(jobs: usize, kills: usize) {
     let file = Database::file();
-    let on_a_file = Chaos {
+    let chaos = Chaos {
         database: &file.address,
         jobs,
         workers: 0,
@@ -43,11 +56,14 @@ async fn main() {
         database_restarts: 0,
         control: None,
     };
-    println!("SQLite, {kills} kills\n{}\n", on_a_file.run().await);
+    println!("SQLite, {kills} kills\n{}\n", chaos.run().await);
+}
+
+async fn on_a_server(jobs: usize) {
     let Some(server) = Database::postgres("chaos").await else {
         return;
     };
-    let on_a_server = Chaos {
+    let chaos = Chaos {
         database: &server.address,
         jobs,
         workers: 3,
@@ -59,6 +75,6 @@ async fn main() {
     };
     println!(
         "PostgreSQL, a worker killed every 2 s\n{}",
-        on_a_server.run().await
+        chaos.run().await
     );
 }
