@@ -69,8 +69,12 @@ impl Store {
         );
         let row = sqlx::query(AssertSqlSafe(sql))
             .bind(key)
-            .fetch_one(writing.connection())
+            .fetch_optional(writing.connection())
             .await?;
+        // let go of a moment ago: the next try finds the key free
+        let Some(row) = row else {
+            return Ok(Once::InHand);
+        };
         if row.try_get::<&str, _>("request")? != request {
             return Ok(Once::Other);
         }

@@ -40,10 +40,10 @@ pub struct Claim {
 const CLAIMABLE: &str = "SELECT id, status, last_seq, attempt, lost, lease_owner, spec, model FROM jobs \
      WHERE status = 'queued' \
      OR (status IN ('running', 'cancelling') AND (lease_until IS NULL OR lease_until < $1 OR lease_owner = $2)) \
-     ORDER BY priority DESC, turn, id LIMIT 1";
+     ORDER BY id LIMIT 1";
 
 impl Store {
-    /// The first job that waits, or that a worker has left behind. A worker has one job at a time: one that is its own
+    /// The oldest job that waits, or that a worker has left behind. A worker has one job at a time: one that is its own
     /// already is what it was given when the answer was lost.
     ///
     /// # Errors
