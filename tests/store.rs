@@ -238,8 +238,9 @@ async fn heartbeats_keep_a_lease(bench: Bench) {
 
 async fn a_job_that_kills_its_workers_is_given_up(bench: Bench) {
     let job = bench.submit("killer").await;
+    let mut claims = Vec::new();
     for _ in 0..MOST_LOST_WORKERS {
-        bench.claim("victim").await;
+        claims.push(bench.claim("victim").await);
         bench.clock.advance(LEASE + Duration::from_secs(1));
     }
     let innocent = bench.submit("innocent").await;
@@ -250,6 +251,10 @@ async fn a_job_that_kills_its_workers_is_given_up(bench: Bench) {
         panic!("{:?}", job.ending)
     };
     assert_eq!(faults[0].code, "workers_lost");
+    assert_eq!(job.attempt, MOST_LOST_WORKERS, "giving up is no attempt");
+    // the last of them was only slow, and must not take the end for its own
+    let late = bench.store.finish(&claims[2], succeeded(), None).await;
+    assert!(matches!(late, Err(StoreError::LeaseLost)));
 }
 
 async fn giving_a_job_back_is_no_loss(bench: Bench) {

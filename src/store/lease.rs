@@ -73,7 +73,7 @@ impl Store {
             };
             let was_lost = row.try_get::<Option<&str>, _>("lease_owner")?.is_some();
             let lost = row.try_get::<i64, _>("lost")? + i64::from(was_lost);
-            let attempt = row.try_get::<i64, _>("attempt")? + 1;
+            let attempts = row.try_get::<i64, _>("attempt")?;
 
             let readable = read_task(&row);
             let refusal = match &readable {
@@ -81,6 +81,8 @@ impl Store {
                 Err(fault) => Some(fault.clone()),
                 Ok(_) => None,
             };
+            let claimed = refusal.is_none();
+            let attempt = attempts + i64::from(claimed);
             let event = match refusal {
                 Some(fault) => EventBody::Failed {
                     faults: vec![fault],
@@ -90,7 +92,6 @@ impl Store {
                     attempt: u32::try_from(attempt).unwrap_or(u32::MAX),
                 },
             };
-            let claimed = matches!(event, EventBody::Claimed { .. });
             append(writing.connection(), job, &mut head, &now, &[event]).await?;
             sqlx::query(
                 "UPDATE jobs SET attempt = $2, lost = $3, written = 0, lease_owner = $4, lease_until = $5 WHERE id = $1",
@@ -168,7 +169,7 @@ impl Store {
     ) -> Result<(), StoreError> {
         debug_assert!(ending.is_last());
         let (mut writing, mut held) = match self.begin_as(claim).await {
-            Err(StoreError::LeaseLost) if self.is_ended(claim).await? => return Ok(()),
+            Err(StoreError::LeaseLost) if self.is_ended(claim, &ending).await? => return Ok(()),
             begun => begun?,
         };
         if let Some(result) = result {
@@ -237,15 +238,16 @@ impl Store {
         Ok((writing, Held { head, written }))
     }
 
-    /// Whether this very claim has ended the job: only whoever holds the attempt can.
-    async fn is_ended(&self, claim: &Claim) -> Result<bool, StoreError> {
+    /// Whether the job has ended so under this very claim: beside who holds the attempt, only [`Store::claim`] can end it,
+    /// by giving it up.
+    async fn is_ended(&self, claim: &Claim, ending: &EventBody) -> Result<bool, StoreError> {
         let row = sqlx::query("SELECT status FROM jobs WHERE id = $1 AND attempt = $2")
             .bind(claim.job.to_string())
             .bind(i64::from(claim.attempt))
             .fetch_optional(&self.readers)
             .await?;
         match row {
-            Some(row) => Ok(read_status(row.try_get("status")?)?.is_over()),
+            Some(row) => Ok(read_status(row.try_get("status")?)? == Status::after(None, ending)),
             None => Ok(false),
         }
     }

@@ -3,13 +3,12 @@
 use std::collections::{BTreeMap, HashSet};
 use std::fmt;
 use std::process::Command;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use futures_util::StreamExt;
-use futures_util::stream::FuturesUnordered;
 use serde_json::{Value, json};
+use tokio::task::JoinSet;
 use tokio::time::sleep;
 
 use super::process::Process;
@@ -20,12 +19,14 @@ use super::sse::Stream;
 pub struct Chaos<'a> {
     /// As an operator would give it.
     pub database: &'a str,
+    /// At least; as many more as it takes until all kills were.
     pub jobs: usize,
     /// Processes that work; with none the server works itself, and is what is killed.
     pub workers: usize,
-    /// One of them is killed (SIGKILL), and another started, this often.
+    /// One of them is killed (SIGKILL), and another started, this often or less: only while all of them are seen
+    /// to work, or the chaos would be none.
     pub kill_every: Duration,
-    /// No more than so many are.
+    /// So many are.
     pub kills: usize,
     /// How often the server is restarted on the way.
     pub server_restarts: usize,
@@ -90,24 +91,28 @@ impl Chaos<'_> {
         let short = upload(&url, elevator()).await;
         let long = upload(&url, elevator_of(300.0, 5)).await;
         let over = AtomicBool::new(false);
-        let ended = AtomicUsize::new(0);
-        let reconnects = AtomicUsize::new(0);
+        let kills = AtomicUsize::new(0);
+        let seen = Arc::new(Seen::default());
 
         let submit_and_follow = async {
-            let mut followed = FuturesUnordered::new();
+            let mut followed = JoinSet::new();
             let mut jobs = Vec::new();
-            for number in 0..self.jobs {
+            let mut number = 0;
+            while number < self.jobs || kills.load(Ordering::Relaxed) < self.kills {
                 let maneuver = if number % 5 == 0 { &long } else { &short };
                 let id = submit(&url, number, &job(maneuver)).await;
-                let follow = follow(&url, id, &reconnects, &ended);
-                followed.push(follow);
+                followed.spawn(follow(url.clone(), id, seen.clone()));
+                number += 1;
                 if followed.len() >= FOLLOWED {
-                    jobs.extend(followed.next().await);
+                    jobs.extend(followed.join_next().await);
                 }
             }
-            while let Some(job) = followed.next().await {
+            while let Some(job) = followed.join_next().await {
                 jobs.push(job);
             }
+            let jobs: Vec<Followed> = (jobs.into_iter())
+                .map(|job| job.expect("somebody who followed"))
+                .collect();
             over.store(true, Ordering::Relaxed);
             jobs
         };
@@ -115,21 +120,23 @@ impl Chaos<'_> {
             let mut workers: Vec<Process> = (0..self.workers)
                 .map(|_| Process::work(self.database, 1))
                 .collect();
-            let mut kills = 0;
-            while !over.load(Ordering::Relaxed) && began.elapsed() < STUCK {
+            for number in 0..self.kills {
                 sleep(self.kill_every).await;
-                if kills == self.kills {
-                    continue;
+                seen.at_work.lock().unwrap().clear();
+                while seen.at_work.lock().unwrap().len() < self.workers.max(1) {
+                    sleep(Duration::from_millis(2)).await;
                 }
-                kills += 1;
                 if workers.is_empty() {
                     restart();
                 } else {
-                    workers.remove(kills % self.workers).kill();
+                    workers.remove(number % self.workers).kill();
                     workers.push(Process::work(self.database, 1));
                 }
+                kills.fetch_add(1, Ordering::Relaxed);
             }
-            kills
+            while !over.load(Ordering::Relaxed) {
+                sleep(Duration::from_millis(50)).await;
+            }
         };
         let restarts = async {
             let (mut of_server, mut of_database) = (0, 0);
@@ -137,7 +144,7 @@ impl Chaos<'_> {
             for number in 0..all {
                 // spread over the whole
                 let share = self.jobs * (number + 1) / (all + 1);
-                while ended.load(Ordering::Relaxed) < share && began.elapsed() < STUCK {
+                while seen.ended.load(Ordering::Relaxed) < share && began.elapsed() < STUCK {
                     sleep(Duration::from_millis(50)).await;
                 }
                 if (number % 2 == 0 && of_database < self.database_restarts)
@@ -158,18 +165,18 @@ impl Chaos<'_> {
             (of_server, of_database)
         };
         let all = async { tokio::join!(submit_and_follow, kill, restarts) };
-        let (jobs, kills, (server_restarts, database_restarts)) = tokio::time::timeout(STUCK, all)
+        let (jobs, (), (server_restarts, database_restarts)) = tokio::time::timeout(STUCK, all)
             .await
             .expect("nothing is stuck");
         let mut report = Report {
-            kills,
+            kills: kills.into_inner(),
             server_restarts,
             database_restarts,
             took: began.elapsed(),
-            reconnects: reconnects.into_inner(),
+            reconnects: seen.reconnects.load(Ordering::Relaxed),
             ..Report::default()
         };
-        check(&url, &jobs, self.jobs, &mut report).await;
+        check(&url, &jobs, &mut report).await;
         report
     }
 }
@@ -235,30 +242,44 @@ struct Followed {
     events: Vec<(u64, String)>,
 }
 
-async fn follow(url: &str, id: String, reconnects: &AtomicUsize, ended: &AtomicUsize) -> Followed {
+/// What those who follow jobs have seen, all together.
+#[derive(Default)]
+struct Seen {
+    /// Jobs of which a sign of work was seen, and no end.
+    at_work: Mutex<HashSet<String>>,
+    ended: AtomicUsize,
+    reconnects: AtomicUsize,
+}
+
+async fn follow(url: String, id: String, seen: Arc<Seen>) -> Followed {
     let mut events: Vec<(u64, String)> = Vec::new();
     let is_last = |name: &str| ["succeeded", "failed", "cancelled"].contains(&name);
     while !events.last().is_some_and(|(_, name)| is_last(name)) {
         let after = events.last().map_or(0, |(number, _)| *number);
-        if let Some(mut stream) = Stream::try_open(url, &id, after).await {
+        if let Some(mut stream) = Stream::try_open(&url, &id, after).await {
             while let Some(event) = stream.next().await {
+                let mut at_work = seen.at_work.lock().unwrap();
+                if is_last(&event.event) {
+                    at_work.remove(&id);
+                } else if event.event != "queued" {
+                    at_work.insert(id.clone());
+                }
                 events.push((event.id, event.event));
             }
         }
         if !events.last().is_some_and(|(_, name)| is_last(name)) {
-            reconnects.fetch_add(1, Ordering::Relaxed);
+            seen.reconnects.fetch_add(1, Ordering::Relaxed);
             sleep(Duration::from_millis(100)).await;
         }
     }
-    ended.fetch_add(1, Ordering::Relaxed);
+    seen.ended.fetch_add(1, Ordering::Relaxed);
     Followed { id, events }
 }
 
 /// What was promised, by what the server has now.
-async fn check(url: &str, jobs: &[Followed], accepted: usize, report: &mut Report) {
-    assert_eq!(jobs.len(), accepted);
+async fn check(url: &str, jobs: &[Followed], report: &mut Report) {
     let distinct: HashSet<&str> = jobs.iter().map(|job| job.id.as_str()).collect();
-    assert_eq!(distinct.len(), accepted, "each was accepted once");
+    assert_eq!(distinct.len(), jobs.len(), "each was accepted once");
     let (mut listed, mut cursor) = (0, String::new());
     loop {
         let page = get(format!("{url}/v1/jobs?limit=200{cursor}")).await;
@@ -268,7 +289,7 @@ async fn check(url: &str, jobs: &[Followed], accepted: usize, report: &mut Repor
         };
         cursor = format!("&cursor={next}");
     }
-    assert_eq!(listed, accepted, "nothing was submitted twice");
+    assert_eq!(listed, jobs.len(), "nothing was submitted twice");
     for Followed { id, events } in jobs {
         let numbers: Vec<u64> = events.iter().map(|(number, _)| *number).collect();
         let all: Vec<u64> = (1..=events.len() as u64).collect();
