@@ -10,13 +10,14 @@ use serde_json::Value;
 use trimtab::model::ModelDocument;
 
 fn trimtab(arguments: &[&str]) -> Output {
-    let program = env!("CARGO_BIN_EXE_trimtab");
+    command(arguments).output().expect("the program runs")
+}
+
+fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_trimtab"));
     let directory = Path::new(env!("CARGO_MANIFEST_DIR"));
-    Command::new(program)
-        .args(arguments)
-        .current_dir(directory)
-        .output()
-        .expect("the program runs")
+    command.args(arguments).current_dir(directory);
+    command
 }
 
 fn said(bytes: &[u8]) -> String {
@@ -246,6 +247,61 @@ fn a_server_is_not_put_where_others_can_reach_it() {
     let words = fails(&["serve", "--listen", "0.0.0.0:0", "--database", database]);
     assert!(words.contains("refusing to listen on 0.0.0.0:0"), "{words}");
     assert!(!Path::new(database).exists());
+}
+
+#[test]
+fn with_a_key_it_is_and_who_has_the_key_comes_in() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let database = directory.path().join("keys.db");
+    let database = database.to_str().expect("a path");
+    let key =
+        |arguments: &[&str]| succeeds(&[&["key"], arguments, &["--database", database]].concat());
+    let secret = key(&["new", "--project", "icing", "--name", "pipeline"]);
+    let server = Process::serve(database, "0.0.0.0:0", 1);
+    let url = server.url.replace("0.0.0.0", "127.0.0.1");
+    let watch = |secret: &str| {
+        let job = [
+            "submit",
+            "data/elevator.csv",
+            "-m",
+            "short-period",
+            "--watch",
+        ];
+        command(&[&job[..], &["--server", &url]].concat())
+            .env("TRIMTAB_KEY", secret)
+            .output()
+            .expect("the program")
+    };
+    let done = watch(secret.trim());
+    assert!(
+        done.status.success(),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
+    assert!(String::from_utf8_lossy(&done.stdout).contains("Mde"));
+    let listed = key(&["list"]);
+    assert!(
+        listed.contains("pipeline") && listed.contains("icing") && !listed.contains(secret.trim())
+    );
+    let id = listed
+        .lines()
+        .find(|line| line.contains("pipeline"))
+        .and_then(|line| line.split_whitespace().next());
+    let next = key(&["rotate", id.expect("an id"), "--overlap", "0"]);
+    key(&["list", "--project", "icing"]);
+    let words = watch(secret.trim());
+    let words = String::from_utf8_lossy(&words.stderr).to_string();
+    assert!(words.contains("the key has expired"), "{words}");
+    assert!(watch(next.trim()).status.success());
+    let words = fails(&[
+        "key",
+        "new",
+        "--project",
+        "two words",
+        "--database",
+        database,
+    ]);
+    assert!(words.contains("is no name of a project"), "{words}");
 }
 
 #[test]

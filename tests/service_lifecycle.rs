@@ -11,7 +11,7 @@ use common::sse::{Received, Stream};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 use trimtab::http::Config;
-use trimtab::store::LEASE;
+use trimtab::store::{DEFAULT_PROJECT, LEASE};
 
 /// A job that is certain to run while the test acts on it.
 async fn running(server: &Server) -> String {
@@ -81,7 +81,7 @@ async fn a_running_job_is_cancelled_and_keeps_its_best_iterate() {
 async fn stopping_gives_a_running_job_back_to_the_queue() {
     let server = Server::start().await;
     let id = running(&server).await;
-    let store = server.store.clone();
+    let store = server.store.project(DEFAULT_PROJECT, "");
     let started = Instant::now();
     server.stop().await;
     let took = started.elapsed();
@@ -119,6 +119,7 @@ async fn a_worker_that_is_overtaken_writes_nothing_more() {
     server.store.heartbeat(&successor).await.unwrap();
     let events = server
         .store
+        .project(DEFAULT_PROJECT, "")
         .events(successor.job, 0, 1000)
         .await
         .unwrap()

@@ -5,13 +5,14 @@ mod common;
 use std::time::Duration;
 
 use common::database::Database;
+use common::recordings::{elevator, maneuver};
 use trimtab::estimate::Options;
 use trimtab::estimate::Outcome;
 use trimtab::job::{EventBody, Fault, JobSpec, ModelSource, Status};
 use trimtab::model::ModelDocument;
 use trimtab::store::{
-    CancelReply, Claim, Clock, JobFilter, LEASE, MOST_LOST_WORKERS, NewJob, Signal, Store,
-    StoreError,
+    CancelReply, Claim, Clock, DEFAULT_PROJECT, JobFilter, Key, LEASE, MOST_LOST_WORKERS, NewJob,
+    NewKey, Once, Project, Scope, Shown, Signal, Store, StoreError, Uploaded,
 };
 
 struct Bench {
@@ -36,9 +37,13 @@ impl Bench {
         open(&self.database, &self.clock).await
     }
 
+    fn project(&self) -> Project {
+        self.store.project(DEFAULT_PROJECT, "")
+    }
+
     async fn submit(&self, name: &str) -> uuid::Uuid {
         let id = self.clock.new_id();
-        self.store.submit(id, &new_job(name)).await.unwrap().id
+        self.project().submit(id, &new_job(name)).await.unwrap().id
     }
 
     async fn claim(&self, worker: &str) -> Claim {
@@ -50,7 +55,7 @@ impl Bench {
     }
 
     async fn event_names(&self, job: uuid::Uuid) -> Vec<String> {
-        let events = self.store.events(job, 0, 1000).await.unwrap().entries;
+        let events = self.project().events(job, 0, 1000).await.unwrap().entries;
         let numbers: Vec<u64> = events.iter().map(|event| event.seq).collect();
         let expected: Vec<u64> = (1..=events.len() as u64).collect();
         assert_eq!(numbers, expected, "numbers without holes");
@@ -58,7 +63,7 @@ impl Bench {
     }
 
     async fn status(&self, job: uuid::Uuid) -> Status {
-        self.store.job(job).await.unwrap().unwrap().status
+        self.project().job(job).await.unwrap().unwrap().status
     }
 }
 
@@ -73,6 +78,7 @@ fn new_job(name: &str) -> NewJob {
         kind: Default::default(),
         name: name.into(),
         tags: vec!["tag".into()],
+        priority: 0,
         model: ModelSource::Reference("short-period".into()),
         edits: Vec::new(),
         maneuvers: Vec::new(),
@@ -86,6 +92,7 @@ fn new_job(name: &str) -> NewJob {
         kind: "estimate".into(),
         name: name.into(),
         tags: spec.tags.clone(),
+        priority: 0,
         spec: serde_json::to_string(&spec).unwrap(),
         model: serde_json::to_string(&ModelDocument::default()).unwrap(),
     }
@@ -130,6 +137,10 @@ macro_rules! on_both {
 }
 
 on_both! {
+    projects_see_nothing_of_each_other,
+    a_key_opens_until_it_is_revoked_or_expires,
+    each_key_is_served_in_turn,
+    a_higher_priority_goes_first,
     jobs_are_claimed_once_and_oldest_first,
     many_workers_on_two_processes_never_share_a_job,
     a_worker_that_lost_its_lease_cannot_write_any_more,
@@ -245,7 +256,7 @@ async fn a_job_that_kills_its_workers_is_given_up(bench: Bench) {
     }
     let innocent = bench.submit("innocent").await;
     assert_eq!(bench.claim("w").await.job, innocent);
-    let job = bench.store.job(job).await.unwrap().unwrap();
+    let job = bench.project().job(job).await.unwrap().unwrap();
     assert_eq!(job.status, Status::Failed);
     let Some(EventBody::Failed { faults }) = job.ending else {
         panic!("{:?}", job.ending)
@@ -269,13 +280,13 @@ async fn giving_a_job_back_is_no_loss(bench: Bench) {
 
 async fn cancelling_a_queued_job_ends_it_at_once(bench: Bench) {
     let job = bench.submit("job").await;
-    let CancelReply::Asked(record) = bench.store.cancel(job).await.unwrap() else {
+    let CancelReply::Asked(record) = bench.project().cancel(job).await.unwrap() else {
         panic!()
     };
     assert_eq!(record.status, Status::Cancelled);
     assert!(record.finished.is_some());
     assert!(matches!(
-        bench.store.cancel(job).await.unwrap(),
+        bench.project().cancel(job).await.unwrap(),
         CancelReply::AlreadyOver(_)
     ));
     assert!(bench.store.claim("w").await.unwrap().is_none());
@@ -283,15 +294,15 @@ async fn cancelling_a_queued_job_ends_it_at_once(bench: Bench) {
         bench.event_names(job).await,
         ["queued", "cancel_requested", "cancelled"]
     );
-    let unknown = bench.store.cancel(uuid::Uuid::nil()).await.unwrap();
+    let unknown = bench.project().cancel(uuid::Uuid::nil()).await.unwrap();
     assert_eq!(unknown, CancelReply::Unknown);
 }
 
 async fn the_wish_to_cancel_outlives_the_worker(bench: Bench) {
     let job = bench.submit("job").await;
     let claim = bench.claim("w1").await;
-    bench.store.cancel(job).await.unwrap();
-    bench.store.cancel(job).await.unwrap();
+    bench.project().cancel(job).await.unwrap();
+    bench.project().cancel(job).await.unwrap();
     assert_eq!(
         bench.store.heartbeat(&claim).await.unwrap(),
         Status::Cancelling
@@ -326,12 +337,20 @@ async fn what_was_accepted_is_there_after_reopening(bench: Bench) {
         .finish(&claim, EventBody::Failed { faults }, None)
         .await
         .unwrap();
-    let before = bench.store.job(job).await.unwrap();
+    let before = bench.project().job(job).await.unwrap();
     bench.store.close().await;
     let reopened = bench.other().await;
-    assert_eq!(reopened.job(job).await.unwrap(), before);
+    assert_eq!(
+        reopened
+            .project(DEFAULT_PROJECT, "")
+            .job(job)
+            .await
+            .unwrap(),
+        before
+    );
     assert!(
         reopened
+            .project(DEFAULT_PROJECT, "")
             .job_spec(job)
             .await
             .unwrap()
@@ -353,7 +372,7 @@ async fn lists_page_through_everything_once(bench: Bench) {
     let (mut seen, mut cursor) = (Vec::new(), None);
     loop {
         let page = bench
-            .store
+            .project()
             .jobs(&filter, cursor.as_deref(), 3)
             .await
             .unwrap()
@@ -369,7 +388,7 @@ async fn lists_page_through_everything_once(bench: Bench) {
     assert_eq!(seen, submitted);
     assert!(
         bench
-            .store
+            .project()
             .jobs(&filter, Some("no cursor"), 3)
             .await
             .unwrap()
@@ -381,7 +400,7 @@ async fn lists_page_through_everything_once(bench: Bench) {
     };
     assert!(
         bench
-            .store
+            .project()
             .jobs(&none, None, 3)
             .await
             .unwrap()
@@ -474,9 +493,163 @@ async fn a_signal_reaches_other_processes() {
     tokio::time::timeout(within, heard)
         .await
         .expect("of its log");
-    bench.store.cancel(job).await.unwrap();
+    bench.project().cancel(job).await.unwrap();
     let heard = listener.wait_for(Signal::Cancel(job), forever);
     tokio::time::timeout(within, heard)
         .await
         .expect("of the wish");
+}
+
+async fn projects_see_nothing_of_each_other(bench: Bench) {
+    let job = bench.submit("job").await;
+    let claim = bench.claim("w").await;
+    assert_eq!(claim.project, DEFAULT_PROJECT);
+    bench.store.finish(&claim, succeeded(), None).await.unwrap();
+    let other = bench.store.project("other", "");
+    assert_eq!(other.job(job).await.unwrap(), None);
+    assert_eq!(other.job_spec(job).await.unwrap(), None);
+    assert_eq!(other.events(job, 0, 10).await.unwrap().entries, []);
+    assert_eq!(other.iterations(job).await.unwrap(), []);
+    assert_eq!(other.cancel(job).await.unwrap(), CancelReply::Unknown);
+    let all = other.jobs(&JobFilter::default(), None, 10).await.unwrap();
+    assert_eq!(all.unwrap().entries, []);
+    // the id of another's job is no way in, either
+    let again = other.submit(job, &new_job("mine")).await;
+    assert!(again.is_err());
+    let ours = bench.project();
+    let ids = [ours.clone(), other].map(|project| async move {
+        let same = maneuver(elevator().as_bytes());
+        let kept = project.add_maneuver("same", same, "{}".into()).await;
+        match kept.unwrap() {
+            Uploaded::New(record) => record.id,
+            Uploaded::Known(_) => panic!("another has it"),
+        }
+    });
+    let [ours_has, theirs_has] = ids;
+    assert_eq!(ours_has.await, theirs_has.await, "it is the same content");
+    let third = bench.store.project("third", "");
+    assert_eq!(
+        third.maneuvers(None, 10).await.unwrap().unwrap().entries,
+        []
+    );
+    let mine = ours.take_in_hand("key", "request").await.unwrap();
+    assert!(matches!(mine, Once::Do(_)));
+    let another_key = bench.store.project(DEFAULT_PROJECT, "another key");
+    let theirs = another_key.take_in_hand("key", "other").await.unwrap();
+    assert!(matches!(theirs, Once::Do(_)), "{theirs:?}");
+}
+
+fn new_key(project: &str) -> NewKey {
+    NewKey {
+        project: project.into(),
+        name: "a key".into(),
+        scopes: [Scope::Read].into(),
+        max_priority: 0,
+        lifetime: None,
+    }
+}
+
+async fn a_key_opens_until_it_is_revoked_or_expires(bench: Bench) {
+    let store = &bench.store;
+    assert!(!store.has_keys().await.unwrap());
+    let short = NewKey {
+        lifetime: Some(Duration::from_secs(60)),
+        ..new_key("p")
+    };
+    let (short, of_short) = store.add_key(&short).await.unwrap();
+    let (long, of_long) = store.add_key(&new_key("p")).await.unwrap();
+    let shown = async |key: &Key| store.look_up_key(key.reveal()).await.unwrap();
+    let good = |shown: Shown| match shown {
+        Shown::Good(key) => key.id,
+        bad => panic!("{bad:?}"),
+    };
+    assert_eq!(good(shown(&of_short).await), short.id);
+    assert_eq!(good(shown(&of_long).await), long.id);
+    let nobody = format!("{}0", of_long.reveal());
+    assert_eq!(store.look_up_key(&nobody).await.unwrap(), Shown::Unknown);
+    // what is listed is not what opens
+    let listed = store.keys(Some("p")).await.unwrap();
+    assert_eq!(listed.len(), 2);
+    assert!(listed.iter().all(|key| key.used.is_some()));
+    assert!(!format!("{listed:?} {of_long:?}").contains(of_long.reveal()));
+    assert_eq!(store.keys(Some("other")).await.unwrap(), []);
+
+    bench.clock.advance(Duration::from_secs(61));
+    assert_eq!(shown(&of_short).await, Shown::Expired);
+    let none = store.rotate_key(None, short.id, Duration::ZERO).await;
+    assert!(none.unwrap().is_none(), "what is expired is not prolonged");
+    let foreign = store.rotate_key(Some("other"), long.id, Duration::ZERO);
+    assert!(foreign.await.unwrap().is_none());
+    let hour = Duration::from_secs(3600);
+    let (next, of_next) = store
+        .rotate_key(Some("p"), long.id, hour)
+        .await
+        .unwrap()
+        .unwrap();
+    assert_eq!(
+        (good(shown(&of_long).await), good(shown(&of_next).await)),
+        (long.id, next.id)
+    );
+    bench.clock.advance(hour);
+    assert_eq!(shown(&of_long).await, Shown::Expired);
+
+    assert_eq!(
+        store.revoke_key(Some("other"), next.id).await.unwrap(),
+        None
+    );
+    assert_eq!(good(shown(&of_next).await), next.id);
+    let revoked = store.revoke_key(Some("p"), next.id).await.unwrap().unwrap();
+    assert_eq!(shown(&of_next).await, Shown::Revoked);
+    let again = store.revoke_key(Some("p"), next.id).await.unwrap().unwrap();
+    assert_eq!(again.revoked, revoked.revoked);
+    assert!(
+        store.has_keys().await.unwrap(),
+        "revoking all opens nothing"
+    );
+}
+
+/// Who is served, by the letters of the keys.
+async fn served(bench: &Bench, jobs: usize) -> String {
+    let mut order = String::new();
+    for _ in 0..jobs {
+        let claim = bench.claim("w").await;
+        bench.store.finish(&claim, succeeded(), None).await.unwrap();
+        order += &claim.spec.name;
+    }
+    order
+}
+
+async fn each_key_is_served_in_turn(bench: Bench) {
+    let submit = async |key: &str| {
+        let project = bench.store.project(DEFAULT_PROJECT, key);
+        let id = bench.clock.new_id();
+        project.submit(id, &new_job(key)).await.unwrap();
+    };
+    for _ in 0..6 {
+        submit("a").await;
+    }
+    for key in ["b", "b", "c"] {
+        submit(key).await;
+    }
+    assert_eq!(served(&bench, 3).await, "abc");
+    // having been away earns nothing
+    for key in ["d", "d", "d"] {
+        submit(key).await;
+    }
+    assert_eq!(served(&bench, 9).await, "abdadadaa");
+    submit("a").await;
+    submit("b").await;
+    assert_eq!(served(&bench, 2).await, "ab");
+}
+
+async fn a_higher_priority_goes_first(bench: Bench) {
+    for (name, priority) in [("a", 0), ("b", -3), ("c", 0), ("d", 5)] {
+        let job = NewJob {
+            priority,
+            ..new_job(name)
+        };
+        let id = bench.clock.new_id();
+        bench.project().submit(id, &job).await.unwrap();
+    }
+    assert_eq!(served(&bench, 4).await, "dacb");
 }

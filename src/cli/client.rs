@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use eventsource_stream::Eventsource;
 use futures_util::StreamExt;
+use reqwest::header::{AUTHORIZATION, HeaderMap, HeaderValue};
 use reqwest::{RequestBuilder, Response, Url};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -12,6 +13,7 @@ use serde_json::Value;
 
 use super::Failure;
 use super::mapping::format_of;
+use super::server::Server;
 use crate::diagnose::Diagnosis;
 use crate::estimate::Estimate;
 use crate::job::{Event, JobSpec};
@@ -35,7 +37,11 @@ const RECONNECT_AFTER: Duration = Duration::from_secs(1);
 const READY_WITHIN: Duration = Duration::from_secs(4);
 
 impl Client {
-    pub fn new(server: &str) -> Result<Self, Failure> {
+    pub fn of(server: &Server) -> Result<Self, Failure> {
+        Self::new(&server.url, server.key.as_deref())
+    }
+
+    pub fn new(server: &str, key: Option<&str>) -> Result<Self, Failure> {
         let server: Url = server
             .parse()
             .map_err(|error| Failure::new(format!("'{server}' is no URL: {error}")))?;
@@ -46,7 +52,15 @@ impl Client {
         } else {
             builder
         };
+        let mut headers = HeaderMap::new();
+        if let Some(key) = key {
+            let mut value = HeaderValue::try_from(format!("Bearer {key}"))
+                .map_err(|_| Failure::new("the key has characters that no key has"))?;
+            value.set_sensitive(true);
+            headers.insert(AUTHORIZATION, value);
+        }
         let http = builder
+            .default_headers(headers)
             .build()
             .map_err(|error| Failure::new(format!("no HTTP client: {error}")))?;
         Ok(Self { http, server })

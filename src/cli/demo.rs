@@ -105,7 +105,7 @@ impl Demo {
         eprintln!("server on {}", server.url);
         // nobody looks where nobody is: a script is not kept waiting, unless it asks for that
         let stays = self.stay || std::io::stdin().is_terminal();
-        let client = Client::new(&server.url)?;
+        let client = Client::new(&server.url, None)?;
         for (model, maneuvers) in JOBS {
             let job = fit(&client, model, maneuvers).await?;
             if stays {

@@ -21,8 +21,6 @@ pub struct Local {
 impl Local {
     /// On `listen`, with `database` or with one that goes away again.
     pub async fn start(listen: &str, database: Option<&str>) -> Result<Self, Failure> {
-        let listener = http::bind(listen).await?;
-        let url = format!("http://{}", listener.local_addr()?);
         let (database, directory) = match database {
             Some(database) => (database.to_string(), None),
             None => {
@@ -36,6 +34,8 @@ impl Local {
             }
         };
         let store = Store::open(&database).await?;
+        let listener = http::bind(listen, &store).await?;
+        let url = format!("http://{}", listener.local_addr()?);
         let shutdown = CancellationToken::new();
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let (served, token) = (store.clone(), shutdown.clone());

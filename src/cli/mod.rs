@@ -9,6 +9,7 @@ mod failure;
 mod figures;
 mod fit;
 mod health;
+mod key;
 mod local;
 mod mapping;
 mod model;
@@ -16,6 +17,7 @@ mod process;
 mod progress;
 mod request;
 mod serve;
+mod server;
 mod simulate;
 mod stretch;
 mod study;
@@ -58,12 +60,11 @@ enum Command {
     Model(model::ShowModel),
     Derivatives(derivatives::Derivatives),
     Health(health::Health),
+    #[command(name = "key")]
+    Keys(key::Keys),
     /// Print the OpenAPI document of the API.
     Openapi,
 }
-
-/// Where `submit`, `watch` and `health` look for a server: where `serve` listens.
-const DEFAULT_SERVER: &str = "http://127.0.0.1:8300";
 
 /// Runs what the command line says.
 pub fn main() -> ExitCode {
@@ -80,6 +81,7 @@ pub fn main() -> ExitCode {
         Command::Model(model) => model.run(),
         Command::Derivatives(derivatives) => derivatives.run(),
         Command::Health(health) => block_on(health.run()),
+        Command::Keys(keys) => block_on(keys.run()),
         Command::Openapi => openapi(),
     };
     match done {

@@ -19,7 +19,7 @@ const LONGEST_END: Duration = Duration::from_millis(4200);
 const THREADS_GRACE: Duration = Duration::from_millis(300);
 
 #[derive(Args)]
-pub struct Process {
+pub struct Database {
     /// The database: a file, made if it is not there (a path, or sqlite:PATH), or a PostgreSQL that many machines share
     /// (postgres://USER:PASSWORD@HOST/DATABASE; its password is safer in the environment).
     #[arg(
@@ -30,6 +30,28 @@ pub struct Process {
         default_value = "./trimtab.db"
     )]
     database: String,
+}
+
+impl Database {
+    /// Its address, without its password.
+    pub fn shown(&self) -> String {
+        store::without_password(&self.database)
+    }
+
+    /// Whether it is a file that is not there yet.
+    pub fn is_missing(&self) -> bool {
+        store::is_missing(&self.database)
+    }
+
+    pub async fn open(&self) -> Result<Store, Failure> {
+        Ok(Store::open(&self.database).await?)
+    }
+}
+
+#[derive(Args)]
+pub struct Process {
+    #[command(flatten)]
+    pub database: Database,
 
     /// Jobs that run at a time [default: one for each core]; with 0 this process only accepts them.
     #[arg(long, env = "TRIMTAB_WORKERS", value_name = "N")]
@@ -59,15 +81,6 @@ impl Process {
     pub fn workers(&self) -> usize {
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         self.workers.unwrap_or_else(cores)
-    }
-
-    /// The address of the database, without its password.
-    pub fn database(&self) -> String {
-        store::without_password(&self.database)
-    }
-
-    pub async fn open(&self) -> Result<Store, Failure> {
-        Ok(Store::open(&self.database).await?)
     }
 
     /// Runs `command`, whose token says when it has to end, and does not wait for it much longer.

@@ -182,6 +182,7 @@ impl Request {
             kind: JobKind::Estimate,
             name: String::new(),
             tags: Vec::new(),
+            priority: 0,
             model: self.model()?,
             edits: Vec::new(),
             maneuvers: ids

@@ -9,7 +9,8 @@ use crate::{http, ingest, work};
 
 #[derive(Args)]
 pub struct Serve {
-    /// Address to listen on; port 0 takes a free one. Other than loopback addresses are refused.
+    /// Address to listen on; port 0 takes a free one. One that other machines can reach is refused as long as there are no
+    /// keys (`trimtab key new`).
     #[arg(
         long,
         env = "TRIMTAB_LISTEN",
@@ -48,6 +49,15 @@ pub struct Serve {
     /// Connections at a time; those beyond wait.
     #[arg(long, env = "TRIMTAB_MAX_CONNECTIONS", value_name = "N", default_value_t = http::Config::default().max_connections)]
     max_connections: usize,
+
+    /// Another site whose pages may use the service from a browser (CORS), as https://HOST:PORT; may be given several times.
+    #[arg(
+        long = "allow-origin",
+        env = "TRIMTAB_ALLOW_ORIGIN",
+        value_name = "ORIGIN",
+        value_delimiter = ','
+    )]
+    origins: Vec<http::Origin>,
 }
 
 impl Serve {
@@ -57,12 +67,20 @@ impl Serve {
 
     async fn serve(&self, shutdown: CancellationToken) -> Result<(), Failure> {
         // first: an address that is refused should leave no file behind
-        let listener = http::bind(&self.listen).await?;
-        let store = self.process.open().await?;
+        if self.process.database.is_missing() && !http::is_loopback(&self.listen).await? {
+            return Err(http::BindError::Open(self.listen.clone()).into());
+        }
+        let store = self.process.database.open().await?;
+        let listener = http::bind(&self.listen, &store).await?;
         let workers = self.process.workers();
         let url = format!("http://{}", listener.local_addr()?);
         println!("listening on {url}");
-        tracing::info!(url, database = self.process.database(), workers, "ready");
+        tracing::info!(
+            url,
+            database = self.process.database.shown(),
+            workers,
+            "ready"
+        );
         tokio::join!(
             http::run(self.config(), listener, store.clone(), shutdown.clone()),
             work::run(store.clone(), workers, shutdown),
@@ -83,6 +101,7 @@ impl Serve {
             },
             max_job_values: self.max_job_values,
             max_connections: self.max_connections,
+            origins: self.origins.clone(),
         }
     }
 }

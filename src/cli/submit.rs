@@ -4,6 +4,7 @@ use indexmap::IndexMap;
 
 use super::client::Client;
 use super::request::{Request, read_bytes};
+use super::server::Server;
 use super::watch::{conclude, follow};
 use super::{Failure, table};
 use crate::job::JobKind;
@@ -13,8 +14,8 @@ use crate::job::JobKind;
 pub struct Submit {
     #[command(flatten)]
     request: Request,
-    #[arg(long, env = "TRIMTAB_SERVER", default_value = super::DEFAULT_SERVER)]
-    server: String,
+    #[command(flatten)]
+    server: Server,
     /// Find what the model lacks: a job of the kind `diagnose`.
     #[arg(long)]
     diagnose: bool,
@@ -25,7 +26,7 @@ pub struct Submit {
 
 impl Submit {
     pub async fn run(&self) -> Result<(), Failure> {
-        let client = Client::new(&self.server)?;
+        let client = Client::of(&self.server)?;
         let mut uploaded = IndexMap::new();
         for file in self.request.files() {
             let name = file

@@ -2,6 +2,7 @@
 
 use super::client::Client;
 use super::progress::Progress;
+use super::server::Server;
 use super::{Failure, diagnose, table};
 use crate::estimate::{Estimate, Outcome};
 use crate::job::{EventBody, JobKind};
@@ -11,13 +12,13 @@ use crate::job::{EventBody, JobKind};
 pub struct Watch {
     /// The job's id.
     job: String,
-    #[arg(long, env = "TRIMTAB_SERVER", default_value = super::DEFAULT_SERVER)]
-    server: String,
+    #[command(flatten)]
+    server: Server,
 }
 
 impl Watch {
     pub async fn run(&self) -> Result<(), Failure> {
-        let client = Client::new(&self.server)?;
+        let client = Client::of(&self.server)?;
         let estimate = follow(&client, &self.job).await?;
         println!("{}", table::result(&estimate, None));
         conclude(&client, &self.job, &estimate).await

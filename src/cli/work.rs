@@ -26,8 +26,8 @@ impl Work {
                 "with --workers 0 there is nothing to do; leave it out for one worker on each core",
             ));
         }
-        let store = self.process.open().await?;
-        let database = self.process.database();
+        let store = self.process.database.open().await?;
+        let database = self.process.database.shown();
         println!("{workers} workers on {database}");
         tracing::info!(database, workers, "ready");
         work::run(store.clone(), workers, shutdown).await;

@@ -88,7 +88,7 @@ fn state(view: &JobView<'_>) -> Markup {
     html! {
         @match view.estimate {
             Some(estimate) => { p role="status" { strong { (view.status.name()) } ": " (estimate.reason) } }
-            None => { p role="status" id="state" { strong { (view.status.name()) } } }
+            None => { p role="status" id="state" data-job=(view.id) { strong { (view.status.name()) } } }
         }
         @if !view.faults.is_empty() {
             ul { @for fault in view.faults { li { code { (fault.pointer) } " " (fault.message) } } }
@@ -101,17 +101,7 @@ fn state(view: &JobView<'_>) -> Markup {
         }
         @if !view.status.is_over() {
             // the log says when there is something new to show
-            script { (PreEscaped(format!(
-                "const log = new EventSource('/v1/jobs/{}/events');\
-                 const show = event => {{ const i = JSON.parse(event.data);\
-                   document.getElementById('state').textContent = 'iteration ' + i.number + ', -ln L ' + i.cost; }};\
-                 const search = event => {{ document.getElementById('state').textContent = JSON.parse(event.data).text; }};\
-                 log.addEventListener('start', search);\
-                 log.addEventListener('iteration', show);\
-                 log.addEventListener('finding', event => {{ document.getElementById('state').textContent = JSON.parse(event.data).finding; }});\
-                 for (const end of ['succeeded', 'failed', 'cancelled']) log.addEventListener(end, () => {{ log.close(); location.reload(); }});",
-                view.id
-            ))) }
+            script src="/assets/follow.js" {}
         }
     }
 }

@@ -146,10 +146,7 @@ impl Maneuver {
             let channel = &self.channels[name];
             vector(name, &channel.recorded_unit, &channel.values);
         }
-        hash.finalize()
-            .iter()
-            .map(|byte| format!("{byte:02x}"))
-            .collect()
+        hex::encode(hash.finalize())
     }
 }
 

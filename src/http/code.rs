@@ -54,6 +54,12 @@ codes! {
     IncompleteBody "incomplete_body" BAD_REQUEST "The body is incomplete";
     /// A browser sent the request on behalf of a page of another origin.
     CrossOrigin "cross_origin" FORBIDDEN "Not for pages of other origins";
+    /// The request needs a key: send it as `Authorization: Bearer KEY`, or as the password of basic authentication.
+    KeyNeeded "key_needed" UNAUTHORIZED "A key is needed";
+    /// The key is good, but not for this: `detail` names the scope that is missing.
+    ScopeMissing "scope_missing" FORBIDDEN "The key is not for this";
+    /// While there are no keys, the service answers only to requests that name this machine in `Host`.
+    UnknownHost "unknown_host" FORBIDDEN "Not under this name";
     /// There is nothing at this path.
     UnknownRoute "unknown_route" NOT_FOUND "There is no such route";
     /// There is no maneuver of this id.
@@ -62,6 +68,8 @@ codes! {
     UnknownModel "unknown_model" NOT_FOUND "There is no such model";
     /// There is no job of this id.
     UnknownJob "unknown_job" NOT_FOUND "There is no such job";
+    /// The project has no key of this id that is good.
+    UnknownKey "unknown_key" NOT_FOUND "There is no such key";
     /// There is no problem of this code.
     UnknownCode "unknown_code" NOT_FOUND "There is no such code";
     /// The job ended without a result: `detail` says how it ended.
@@ -90,6 +98,8 @@ codes! {
     InvalidModel "invalid_model" UNPROCESSABLE_ENTITY "The model has faults";
     /// The job cannot be started. `errors` lists all faults, each with its place in the spec.
     InvalidJob "invalid_job" UNPROCESSABLE_ENTITY "The job has faults";
+    /// The key cannot be made so. `errors` lists all faults, each with its place.
+    InvalidKey "invalid_key" UNPROCESSABLE_ENTITY "The key cannot be made so";
     /// The aircraft's constants have faults. `errors` lists all of them.
     InvalidAircraft "invalid_aircraft" UNPROCESSABLE_ENTITY "The aircraft's constants have faults";
     /// The service failed: a defect of ours. Report it with the `request_id`.

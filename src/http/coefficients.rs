@@ -1,21 +1,20 @@
 //! `POST /v1/jobs/{id}/coefficients`: an estimate's derivatives made nondimensional.
 
 use axum::Json;
-use axum::extract::State;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::Service;
 use super::code::Code;
 use super::json::JsonBody;
 use super::problem::{Problem, ProblemDocument};
 use super::query::JobId;
 use super::results;
+use super::{Server, Service};
 use crate::estimate::{Coefficient, Estimate, coefficients};
 use crate::flight::Aircraft;
 use crate::store::Part;
 
-pub fn router() -> OpenApiRouter<Service> {
+pub fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(get_coefficients))
 }
 
@@ -33,7 +32,7 @@ pub fn router() -> OpenApiRouter<Service> {
         (status = 422, description = "`wrong_shape`, `invalid_aircraft`: `errors` lists the faults by JSON pointer.", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn get_coefficients(
-    State(service): State<Service>,
+    service: Service,
     JobId(id): JobId,
     JsonBody {
         value: aircraft, ..

@@ -1,6 +1,5 @@
 //! `/v1/jobs/{id}/diagnosis`: what the model of a job lacks, and what its residuals tell.
 
-use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
 use utoipa_axum::router::OpenApiRouter;
@@ -11,12 +10,12 @@ use super::format::{Format, cacheable};
 use super::problem::{Problem, ProblemDocument};
 use super::query::JobId;
 use super::results::without_result;
-use super::{Service, jobs};
+use super::{Server, Service, jobs};
 use crate::diagnose::Diagnosis;
 use crate::job::Status;
 use crate::store::Part;
 
-pub fn router() -> OpenApiRouter<Service> {
+pub fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(get_diagnosis))
 }
 
@@ -30,7 +29,7 @@ pub fn router() -> OpenApiRouter<Service> {
         (status = 409, description = "`not_finished`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn get_diagnosis(
-    State(service): State<Service>,
+    service: Service,
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {

@@ -3,7 +3,6 @@
 use std::convert::Infallible;
 use std::time::Duration;
 
-use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::sse::{self, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
@@ -19,12 +18,12 @@ use super::code::Code;
 use super::format::{Format, choose};
 use super::problem::{Problem, ProblemDocument};
 use super::query::{JobId, Parameters};
-use super::{Service, jobs};
+use super::{Server, Service, jobs};
 use crate::estimate::Iteration;
 use crate::job::Event;
 use crate::store::{Signal, StoredEvent};
 
-pub fn router() -> OpenApiRouter<Service> {
+pub fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(list_events))
         .routes(routes!(list_iterations))
@@ -85,7 +84,7 @@ struct EventsQuery {
         (status = 404, description = "`unknown_job`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn list_events(
-    State(service): State<Service>,
+    service: Service,
     JobId(id): JobId,
     Parameters(query): Parameters<EventsQuery>,
     headers: HeaderMap,
@@ -202,10 +201,7 @@ pub struct Iterations {
         (status = 200, description = "Those of the latest attempt.", body = Iterations),
         (status = 404, description = "`unknown_job`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
-async fn list_iterations(
-    State(service): State<Service>,
-    JobId(id): JobId,
-) -> Result<Response, Problem> {
+async fn list_iterations(service: Service, JobId(id): JobId) -> Result<Response, Problem> {
     jobs::find(&service, id).await?;
     let mut iterations = Vec::new();
     for event in service.store.iterations(id).await? {

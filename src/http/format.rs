@@ -114,12 +114,17 @@ fn quality(accept: &str, media_type: &str) -> f32 {
 
 /// An answer that never changes: with an `ETag`, or without a body if the client has it already.
 pub fn cacheable(request: &HeaderMap, format: Format, body: impl Into<Vec<u8>>) -> Response {
+    cacheable_as(request, format.content_type(), body)
+}
+
+/// As [`cacheable`], of any media type.
+pub fn cacheable_as(
+    request: &HeaderMap,
+    media_type: HeaderValue,
+    body: impl Into<Vec<u8>>,
+) -> Response {
     let body = body.into();
-    let digest = Sha256::digest(&body);
-    let digest: String = digest[..16]
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect();
+    let digest = hex::encode(&Sha256::digest(&body)[..16]);
     // weak: the same content goes out compressed or not
     let etag = format!("W/\"{digest}\"");
     let known = request
@@ -134,7 +139,7 @@ pub fn cacheable(request: &HeaderMap, format: Format, body: impl Into<Vec<u8>>) 
         let mut response = body.into_response();
         response
             .headers_mut()
-            .insert(header::CONTENT_TYPE, format.content_type());
+            .insert(header::CONTENT_TYPE, media_type);
         response
     };
     let headers = response.headers_mut();

@@ -7,10 +7,10 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::Service;
+use super::Server;
 use super::problem::{Problem, ProblemDocument};
 
-pub fn router() -> OpenApiRouter<Service> {
+pub fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(live))
         .routes(routes!(ready))
@@ -43,7 +43,7 @@ async fn live() -> Json<Health> {
         (status = 200, description = "They can.", body = Health),
         (status = 503, description = "`store_unavailable`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
-async fn ready(State(service): State<Service>) -> Result<Json<Health>, Problem> {
-    service.store.ping().await?;
+async fn ready(State(server): State<Server>) -> Result<Json<Health>, Problem> {
+    server.store.ping().await?;
     Ok(Json(OK))
 }

@@ -1,6 +1,5 @@
 //! Residuals and time histories of a finished job.
 
-use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
 use serde::{Deserialize, Serialize};
@@ -14,10 +13,10 @@ use super::decimate::{pick, rows};
 use super::format::{Format, cacheable, choose};
 use super::problem::{Problem, ProblemDocument};
 use super::query::{JobId, Parameters};
-use super::{Service, jobs, results};
+use super::{Server, Service, jobs, results};
 use crate::estimate::{OutputSeries, Role, Series, TimeHistory};
 
-pub fn router() -> OpenApiRouter<Service> {
+pub fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(get_residuals))
         .routes(routes!(get_time_histories))
@@ -82,7 +81,7 @@ struct SegmentHistory {
         (status = 409, description = "`not_finished`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn get_residuals(
-    State(service): State<Service>,
+    service: Service,
     JobId(id): JobId,
     Parameters(query): Parameters<HistoryQuery>,
     headers: HeaderMap,
@@ -108,7 +107,7 @@ async fn get_residuals(
         (status = 409, description = "`not_finished`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn get_time_histories(
-    State(service): State<Service>,
+    service: Service,
     JobId(id): JobId,
     Parameters(query): Parameters<HistoryQuery>,
     headers: HeaderMap,

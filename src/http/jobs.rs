@@ -1,7 +1,6 @@
 //! `/v1/jobs`: what became of them. Submitting is in `submit`, following in `events`.
 
 use axum::Json;
-use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
@@ -10,17 +9,17 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
 
-use super::Service;
 use super::code::Code;
 use super::format::{Format, cacheable};
 use super::problem::{Problem, ProblemDocument};
 use super::query::{JobId, Parameters, bad_cursor, page_limit, unknown_job};
 use super::submit::kind_name;
+use super::{Server, Service};
 use crate::estimate::Outcome;
 use crate::job::{EventBody, Fault, JobKind, JobSpec, Status};
-use crate::store::{CancelReply, JobFilter, JobRecord};
+use crate::store::{CancelReply, Clock, JobFilter, JobRecord};
 
-pub fn router() -> OpenApiRouter<Service> {
+pub fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(list_jobs))
         .routes(routes!(get_job))
@@ -40,6 +39,9 @@ pub struct JobResource {
     name: String,
     #[schema(example = json!(["flight 12"]))]
     tags: Vec<String>,
+    /// Of two that wait, the higher is taken first.
+    #[schema(example = 0)]
+    priority: i32,
     status: Status,
     #[schema(example = "2026-11-21T12:00:00.123Z")]
     created: String,
@@ -126,6 +128,7 @@ impl JobResource {
             kind: job.kind,
             name: job.name,
             tags: job.tags,
+            priority: job.priority,
             status: job.status,
             created: job.created,
             started: job.started,
@@ -166,6 +169,9 @@ struct ListQuery {
     kind: Option<JobKind>,
     /// Only those that have this tag.
     tag: Option<String>,
+    /// Only those submitted after this moment (RFC 3339).
+    #[param(example = "2026-11-21T12:00:00Z")]
+    created_after: Option<String>,
 }
 
 /// List jobs, newest first.
@@ -173,14 +179,22 @@ struct ListQuery {
     params(ListQuery),
     responses((status = 200, description = "A page.", body = JobPage)))]
 async fn list_jobs(
-    State(service): State<Service>,
+    service: Service,
     Parameters(query): Parameters<ListQuery>,
 ) -> Result<Json<JobPage>, Problem> {
     let limit = page_limit(query.limit)?;
+    let moment = |text: String| {
+        Clock::read(&text).ok_or_else(|| {
+            let detail =
+                format!("created_after: '{text}' is no moment; give it as 2026-11-21T12:00:00Z");
+            Problem::new(Code::InvalidQuery, detail)
+        })
+    };
     let filter = JobFilter {
         status: query.status,
         kind: query.kind.map(|kind| kind_name(kind).to_string()),
         tag: query.tag,
+        created_after: query.created_after.map(moment).transpose()?,
     };
     let page = service
         .store
@@ -201,10 +215,7 @@ async fn list_jobs(
         (status = 200, description = "The job.", body = JobResource),
         (status = 404, description = "`unknown_job`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
-async fn get_job(
-    State(service): State<Service>,
-    JobId(id): JobId,
-) -> Result<Json<JobResource>, Problem> {
+async fn get_job(service: Service, JobId(id): JobId) -> Result<Json<JobResource>, Problem> {
     Ok(Json(JobResource::of(find(&service, id).await?)))
 }
 
@@ -221,7 +232,7 @@ pub async fn find(service: &Service, id: Uuid) -> Result<JobRecord, Problem> {
         (status = 404, description = "`unknown_job`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn get_job_spec(
-    State(service): State<Service>,
+    service: Service,
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
@@ -244,7 +255,7 @@ async fn get_job_spec(
         (status = 404, description = "`unknown_job`", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 409, description = "`already_over`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
-async fn cancel_job(State(service): State<Service>, JobId(id): JobId) -> Result<Response, Problem> {
+async fn cancel_job(service: Service, JobId(id): JobId) -> Result<Response, Problem> {
     match service.store.cancel(id).await? {
         CancelReply::Asked(job) => {
             Ok((StatusCode::ACCEPTED, Json(JobResource::of(job))).into_response())

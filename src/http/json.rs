@@ -6,7 +6,7 @@ use serde_path_to_error::{Path, Segment};
 
 use super::code::Code;
 use super::problem::Problem;
-use super::{Service, body};
+use super::{Server, body};
 
 /// A JSON body, within [`super::Config::max_json_body`].
 pub struct JsonBody<T> {
@@ -15,16 +15,16 @@ pub struct JsonBody<T> {
     pub text: String,
 }
 
-impl<T: DeserializeOwned> FromRequest<Service> for JsonBody<T> {
+impl<T: DeserializeOwned> FromRequest<Server> for JsonBody<T> {
     type Rejection = Problem;
 
-    async fn from_request(request: Request, service: &Service) -> Result<Self, Problem> {
+    async fn from_request(request: Request, server: &Server) -> Result<Self, Problem> {
         let (parts, body) = request.into_parts();
         let media_type = body::media_type(&parts.headers);
         if media_type != "application/json" {
             return Err(body::unsupported(&media_type, &["application/json"]));
         }
-        let limit = service.config.max_json_body;
+        let limit = server.config.max_json_body;
         let bytes = body::read(&parts.headers, body, limit, "--max-json-body").await?;
         let text = text(bytes)?;
         Ok(Self {

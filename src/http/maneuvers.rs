@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use axum::Json;
 use axum::body::Body;
-use axum::extract::State;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
@@ -17,13 +16,13 @@ use super::code::Code;
 use super::format::{Format, cacheable, choose};
 use super::problem::{Problem, ProblemDocument};
 use super::query::{Id, PageQuery, Parameters, bad_cursor, page_limit};
-use super::{Service, body, decimate};
+use super::{Server, Service, body, decimate};
 use crate::flight::{Channel, Maneuver};
 use crate::ingest::{self, Mapping, Summary};
 use crate::job::Fault;
 use crate::store::{ManeuverRecord, Uploaded};
 
-pub fn router() -> OpenApiRouter<Service> {
+pub fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(upload_maneuver, list_maneuvers))
         .routes(routes!(get_maneuver))
@@ -122,7 +121,7 @@ struct MatFile(Vec<u8>);
         (status = 422, description = "`invalid_maneuver`: `errors` lists all faults, by column and row or JSON pointer.", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn upload_maneuver(
-    State(service): State<Service>,
+    service: Service,
     Parameters(query): Parameters<UploadQuery>,
     headers: HeaderMap,
     body: Body,
@@ -169,7 +168,7 @@ async fn upload_maneuver(
     params(PageQuery),
     responses((status = 200, description = "A page.", body = ManeuverPage)))]
 async fn list_maneuvers(
-    State(service): State<Service>,
+    service: Service,
     Parameters(query): Parameters<PageQuery>,
 ) -> Result<Json<ManeuverPage>, Problem> {
     let limit = page_limit(query.limit)?;
@@ -202,7 +201,7 @@ pub fn unknown_maneuver(id: &str) -> Problem {
         (status = 404, description = "`unknown_maneuver`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn get_maneuver(
-    State(service): State<Service>,
+    service: Service,
     Id(id): Id,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
@@ -242,7 +241,7 @@ struct DataQuery {
         (status = 404, description = "`unknown_maneuver`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn get_maneuver_data(
-    State(service): State<Service>,
+    service: Service,
     Id(id): Id,
     Parameters(query): Parameters<DataQuery>,
     headers: HeaderMap,

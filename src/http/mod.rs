@@ -5,6 +5,7 @@
 //! many at a time as there are cores. What goes wrong is a [`problem::Problem`] with a [`code::Code`].
 
 mod body;
+mod caller;
 pub mod code;
 mod coefficients;
 mod compute;
@@ -13,10 +14,12 @@ mod decimate;
 mod diagnosis;
 mod events;
 mod format;
+mod headers;
 mod health;
 mod histories;
 mod jobs;
 mod json;
+mod keys;
 mod maneuvers;
 mod models;
 mod once;
@@ -38,10 +41,13 @@ use std::sync::Arc;
 use tokio_util::sync::CancellationToken;
 
 use crate::ingest;
-use crate::store::Store;
+use crate::store::{Project, Store};
 
+pub use caller::Caller;
+pub use headers::Origin;
+pub use keys::{a_day, days, usual_scopes};
 pub use openapi::document;
-pub use serve::{BindError, bind, run};
+pub use serve::{BindError, bind, is_loopback, run};
 
 /// The bounds of the API.
 #[derive(Clone, PartialEq, Debug)]
@@ -56,6 +62,8 @@ pub struct Config {
     pub max_job_values: usize,
     /// Connections at a time; those beyond wait.
     pub max_connections: usize,
+    /// Other sites whose pages may use the service from a browser.
+    pub origins: Vec<Origin>,
 }
 
 impl Default for Config {
@@ -66,16 +74,27 @@ impl Default for Config {
             recording: ingest::Limits::default(),
             max_job_values: 100_000_000,
             max_connections: 1024,
+            origins: Vec::new(),
         }
     }
 }
 
-/// What every handler has.
+/// What all requests share.
 #[derive(Clone)]
-pub struct Service {
+pub struct Server {
     store: Store,
     config: Arc<Config>,
     compute: compute::Compute,
     /// Ends what would not end by itself.
+    shutdown: CancellationToken,
+}
+
+/// What a handler has: the server as the caller sees it, with the caller's own project for a store.
+#[derive(Clone)]
+pub struct Service {
+    store: Project,
+    caller: caller::Caller,
+    config: Arc<Config>,
+    compute: compute::Compute,
     shutdown: CancellationToken,
 }

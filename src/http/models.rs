@@ -2,7 +2,6 @@
 
 use axum::Json;
 use axum::body::Body;
-use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
@@ -16,14 +15,14 @@ use super::format::{Format, cacheable, choose};
 use super::once::NewId;
 use super::problem::{Problem, ProblemDocument};
 use super::query::{Id, PageQuery, Parameters, bad_cursor, page_limit};
-use super::{Service, body, json};
+use super::{Server, Service, body, json};
 use crate::model::{ModelDocument, catalog};
 use crate::store::{BadCursor, ModelRecord, Page, StoreError};
 
 /// Of what a TOML reader says, in characters.
 const LONGEST_DETAIL: usize = 500;
 
-pub fn router() -> OpenApiRouter<Service> {
+pub fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(add_model, list_models))
         .routes(routes!(get_model))
@@ -116,7 +115,7 @@ pub struct ModelPage {
         (status = 422, description = "`wrong_shape`, `invalid_model`: `errors` lists the faults by JSON pointer.", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn add_model(
-    State(service): State<Service>,
+    service: Service,
     NewId(id): NewId,
     headers: HeaderMap,
     body: Body,
@@ -162,7 +161,7 @@ fn parse_toml(text: &str) -> Result<ModelDocument, Problem> {
     params(PageQuery),
     responses((status = 200, description = "A page.", body = ModelPage)))]
 async fn list_models(
-    State(service): State<Service>,
+    service: Service,
     Parameters(query): Parameters<PageQuery>,
 ) -> Result<Json<ModelPage>, Problem> {
     let limit = page_limit(query.limit)?;
@@ -229,7 +228,7 @@ struct DocumentQuery {
         (status = 404, description = "`unknown_model`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn get_model(
-    State(service): State<Service>,
+    service: Service,
     Id(id): Id,
     Parameters(query): Parameters<DocumentQuery>,
     headers: HeaderMap,

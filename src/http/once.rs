@@ -12,11 +12,11 @@ use uuid::Uuid;
 
 use super::code::Code;
 use super::problem::Problem;
-use super::{Service, body};
+use super::{Server, Service, body};
 use crate::store::{KeptAnswer, Once};
 
 pub const KEY: HeaderName = HeaderName::from_static("idempotency-key");
-const REPLAYED: HeaderName = HeaderName::from_static("idempotency-replayed");
+pub const REPLAYED: HeaderName = HeaderName::from_static("idempotency-replayed");
 const LONGEST_KEY: usize = 255;
 
 /// Headers that an answer has when it is given again.
@@ -28,23 +28,31 @@ pub struct NewId(pub Uuid);
 #[derive(Clone, Copy)]
 struct Reserved(Uuid);
 
-impl FromRequestParts<Service> for NewId {
+impl FromRequestParts<Server> for NewId {
     type Rejection = Problem;
 
-    async fn from_request_parts(parts: &mut Parts, service: &Service) -> Result<Self, Problem> {
+    async fn from_request_parts(parts: &mut Parts, server: &Server) -> Result<Self, Problem> {
         let reserved = parts.extensions.get::<Reserved>();
         Ok(Self(reserved.map_or_else(
-            || service.store.clock().new_id(),
+            || server.store.clock().new_id(),
             |Reserved(id)| *id,
         )))
     }
 }
 
-/// Answers a POST with a key from what is kept, or does it and keeps the answer. What fails is not kept.
-pub async fn once(State(service): State<Service>, request: Request, next: Next) -> Response {
+/// Answers a POST with a key from what is kept, or does it and keeps the answer. What fails is not kept, and neither is an
+/// answer that is to be stored nowhere: it holds a secret.
+pub async fn once(State(server): State<Server>, request: Request, next: Next) -> Response {
     if request.method() != Method::POST || !request.headers().contains_key(KEY) {
         return next.run(request).await;
     }
+    let (mut parts, body) = request.into_parts();
+    let service = Service::from_request_parts(&mut parts, &server).await;
+    let request = Request::from_parts(parts, body);
+    // where there is no caller there is nothing that a POST could do
+    let Ok(service) = service else {
+        return next.run(request).await;
+    };
     match of_key(&service, request, next).await {
         Ok(response) => response,
         Err(problem) => problem.into_response(),
@@ -106,15 +114,15 @@ fn digest(parts: &Parts, body: &[u8]) -> String {
     digest.update(body::media_type(&parts.headers));
     digest.update([0]);
     digest.update(body);
-    digest
-        .finalize()
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+    hex::encode(digest.finalize())
 }
 
 async fn keep(service: &Service, key: &str, response: Response) -> Result<Response, Problem> {
-    if !response.status().is_success() {
+    let is_secret = response
+        .headers()
+        .get(header::CACHE_CONTROL)
+        .is_some_and(|value| value == "no-store");
+    if !response.status().is_success() || is_secret {
         service.store.let_go(key).await?;
         return Ok(response);
     }

@@ -1,11 +1,13 @@
 //! The OpenAPI document, made from the handlers.
 
+use axum::http::Method;
 use utoipa::OpenApi;
 use utoipa::openapi::path::{Operation, ParameterBuilder, ParameterIn};
 use utoipa::openapi::schema::Type;
-use utoipa::openapi::{ContentBuilder, ObjectBuilder, Ref, Required, ResponseBuilder};
+use utoipa::openapi::security::{Http, HttpAuthScheme, SecurityRequirement, SecurityScheme};
+use utoipa::openapi::{ContentBuilder, ObjectBuilder, Ref, Required, Response, ResponseBuilder};
 
-use super::{once, problem, routes};
+use super::{caller, once, problem, routes};
 
 #[derive(OpenApi)]
 #[openapi(
@@ -24,6 +26,7 @@ use super::{once, problem, routes};
         (name = "Models", description = "Model documents: those that come with Trimtab, and your own."),
         (name = "Jobs", description = "Estimations: submitted, followed, cancelled."),
         (name = "Results", description = "What a finished job answers."),
+        (name = "Keys", description = "Who may do what in a project."),
         (name = "Problems", description = "What can go wrong."),
         (name = "Operations", description = "For those that run the service."),
     ),
@@ -39,17 +42,69 @@ pub fn document() -> utoipa::openapi::OpenApi {
     posts
         .filter_map(|path| path.post.as_mut())
         .for_each(takes_a_key);
-    let operations = document.paths.paths.values_mut().flat_map(|path| {
-        [
-            &mut path.get,
-            &mut path.post,
-            &mut path.put,
-            &mut path.delete,
-            &mut path.patch,
-        ]
-    });
-    operations.flatten().for_each(any_may_fail);
+    for (name, path) in &mut document.paths.paths {
+        for (method, operation) in [
+            (Method::GET, &mut path.get),
+            (Method::POST, &mut path.post),
+            (Method::DELETE, &mut path.delete),
+        ] {
+            if let Some(operation) = operation {
+                any_may_fail(operation);
+                needs_a_key(operation, &method, name);
+            }
+        }
+    }
+    let schemes = &mut document.components.get_or_insert_default().security_schemes;
+    for (name, scheme) in [
+        (BEARER, HttpAuthScheme::Bearer),
+        (BASIC, HttpAuthScheme::Basic),
+    ] {
+        let scheme = SecurityScheme::Http(Http::new(scheme));
+        schemes.insert(name.to_string(), scheme.into());
+    }
     document
+}
+
+const BEARER: &str = "key";
+const BASIC: &str = "key_as_password";
+
+/// With which scope an operation is open to whom.
+fn needs_a_key(operation: &mut Operation, method: &Method, path: &str) {
+    let Some(scope) = caller::needed(method, path) else {
+        return;
+    };
+    let either = [BEARER, BASIC].map(|name| SecurityRequirement::new::<_, _, &str>(name, []));
+    operation.security = Some(either.into());
+    let text = operation.description.get_or_insert_default();
+    if !text.is_empty() {
+        text.push_str("\n\n");
+    }
+    *text += &format!(
+        "Needs a key with the scope `{}`, as soon as there are keys.",
+        scope.name()
+    );
+    for (status, description) in [
+        (
+            "401",
+            "`key_needed`: there is no key in the request, or it is good no more.",
+        ),
+        ("403", "`scope_missing`: the key is not for this."),
+    ] {
+        let response = problem_response(description);
+        let responses = &mut operation.responses.responses;
+        responses
+            .entry(status.to_string())
+            .or_insert(response.into());
+    }
+}
+
+fn problem_response(description: &str) -> Response {
+    let schema = Ref::from_schema_name("Problem");
+    let content = ContentBuilder::new().schema(Some(schema)).build();
+    ResponseBuilder::new()
+        .description(description)
+        .content(problem::MEDIA_TYPE, content)
+        .build()
 }
 
 /// Every POST can be sent again.
@@ -70,12 +125,9 @@ fn takes_a_key(operation: &mut Operation) {
 
 /// What every operation may answer beside what its handler lists.
 fn any_may_fail(operation: &mut Operation) {
-    let schema = Ref::from_schema_name("Problem");
-    let content = ContentBuilder::new().schema(Some(schema)).build();
-    let response = ResponseBuilder::new()
-        .description("Any other problem: a query, header or body that cannot be read, or the service itself.")
-        .content(problem::MEDIA_TYPE, content)
-        .build();
+    let response = problem_response(
+        "Any other problem: a query, header or body that cannot be read, or the service itself.",
+    );
     operation
         .responses
         .responses

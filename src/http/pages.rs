@@ -1,27 +1,33 @@
-//! `/jobs/{id}`: the page of a job, for people.
+//! `/jobs/{id}`: the page of a job, for people; `/assets/{name}`: what pages load.
 
 use axum::Router;
-use axum::extract::State;
-use axum::response::Html;
+use axum::http::{HeaderMap, HeaderValue};
+use axum::response::{Html, Response};
 use axum::routing::get;
 
-use super::Service;
+use super::format::cacheable_as;
 use super::jobs;
-use super::problem::Problem;
-use super::query::JobId;
-use crate::dashboard::{JobView, job_page};
+use super::problem::{Problem, unknown_route};
+use super::query::{Id, JobId};
+use super::{Server, Service};
+use crate::dashboard::{JobView, asset, job_page};
 use crate::flight::Finding;
 use crate::job::{EventBody, JobSpec};
 use crate::store::Part;
 
-pub fn router() -> Router<Service> {
-    Router::new().route("/jobs/{id}", get(get_job_page))
+pub fn router() -> Router<Server> {
+    Router::new()
+        .route("/jobs/{id}", get(get_job_page))
+        .route("/assets/{name}", get(get_asset))
 }
 
-async fn get_job_page(
-    State(service): State<Service>,
-    JobId(id): JobId,
-) -> Result<Html<String>, Problem> {
+async fn get_asset(Id(name): Id, headers: HeaderMap) -> Result<Response, Problem> {
+    let asset = asset(&name).ok_or_else(unknown_route)?;
+    let media_type = HeaderValue::from_static(asset.media_type);
+    Ok(cacheable_as(&headers, media_type, asset.content))
+}
+
+async fn get_job_page(service: Service, JobId(id): JobId) -> Result<Html<String>, Problem> {
     let job = jobs::find(&service, id).await?;
     let estimate = match service.store.result_part(id, Part::Estimate).await? {
         Some(json) => Some(serde_json::from_str(&json)?),

@@ -6,13 +6,13 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::Service;
+use super::Server;
 use super::code::Code;
 use super::problem::{Problem, ProblemDocument};
 use super::query::Id;
 use crate::ingest;
 
-pub fn router() -> OpenApiRouter<Service> {
+pub fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(list_problems))
         .routes(routes!(get_problem))

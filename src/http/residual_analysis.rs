@@ -1,6 +1,5 @@
 //! `/v1/jobs/{id}/residual-analysis`: what the residuals of a finished job tell.
 
-use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
 use serde::Serialize;
@@ -12,11 +11,11 @@ use super::format::{Format, cacheable};
 use super::problem::{Problem, ProblemDocument};
 use super::query::JobId;
 use super::results::without_result;
-use super::{Service, jobs};
+use super::{Server, Service, jobs};
 use crate::diagnose::{ResidualAnalysis, analyse};
 use crate::estimate::Role;
 
-pub fn router() -> OpenApiRouter<Service> {
+pub fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(get_residual_analysis))
 }
 
@@ -37,7 +36,7 @@ struct ResidualAnalyses {
         (status = 409, description = "`not_finished`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn get_residual_analysis(
-    State(service): State<Service>,
+    service: Service,
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {

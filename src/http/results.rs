@@ -1,7 +1,6 @@
 //! What a finished job answers: the estimate, its parameter table, the model as estimated. Time
 //! histories are in `histories`.
 
-use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
 use serde::{Deserialize, Serialize};
@@ -15,7 +14,7 @@ use super::csv::Csv;
 use super::format::{Format, cacheable, choose};
 use super::problem::{Problem, ProblemDocument};
 use super::query::{JobId, Parameters};
-use super::{Service, jobs, models};
+use super::{Server, Service, jobs, models};
 use crate::estimate::{
     Bound, CollinearSet, ErrorBoundsKind, Estimate, FilterEstimate, Outcome, ParameterEstimate,
 };
@@ -23,7 +22,7 @@ use crate::job::EventBody;
 use crate::model::ModelDocument;
 use crate::store::{JobRecord, Part};
 
-pub fn router() -> OpenApiRouter<Service> {
+pub fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(get_estimate))
         .routes(routes!(get_parameters))
@@ -67,7 +66,7 @@ pub async fn part(service: &Service, id: Uuid, part: Part) -> Result<String, Pro
         (status = 409, description = "`not_finished`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn get_estimate(
-    State(service): State<Service>,
+    service: Service,
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
@@ -113,7 +112,7 @@ struct FormatQuery {
         (status = 409, description = "`not_finished`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn get_parameters(
-    State(service): State<Service>,
+    service: Service,
     JobId(id): JobId,
     Parameters(query): Parameters<FormatQuery>,
     headers: HeaderMap,
@@ -170,7 +169,7 @@ fn parameters_as_csv(parameters: &[ParameterEstimate]) -> csv::Result<Vec<u8>> {
         (status = 409, description = "`not_finished`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn get_estimated_model(
-    State(service): State<Service>,
+    service: Service,
     JobId(id): JobId,
     Parameters(query): Parameters<FormatQuery>,
     headers: HeaderMap,

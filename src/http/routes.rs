@@ -11,20 +11,20 @@ use tower_http::csrf::{CsrfLayer, ProtectionError};
 use tower_http::request_id::{
     MakeRequestId, PropagateRequestIdLayer, RequestId, SetRequestIdLayer,
 };
-use tower_http::set_header::SetResponseHeaderLayer;
 use tower_http::trace::TraceLayer;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_swagger_ui::SwaggerUi;
 
 use super::code::Code;
+use super::headers::Origin;
 use super::problem::{self, Problem};
 use super::{
-    Service, coefficients, diagnosis, events, health, histories, jobs, maneuvers, models, once,
-    problems, residual_analysis, results, study, submit,
+    Server, caller, coefficients, diagnosis, events, headers, health, histories, jobs, keys,
+    maneuvers, models, once, problems, residual_analysis, results, study, submit,
 };
 
 /// Every resource.
-pub(super) fn api() -> OpenApiRouter<Service> {
+pub(super) fn api() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .merge(maneuvers::router())
         .merge(models::router())
@@ -38,39 +38,51 @@ pub(super) fn api() -> OpenApiRouter<Service> {
         .merge(histories::router())
         .merge(residual_analysis::router())
         .merge(problems::router())
+        .merge(keys::router())
         .merge(health::router())
 }
 
-pub(super) fn router(service: Service) -> Router {
+pub(super) fn router(server: Server) -> Router {
     let (api, _) = api().split_for_parts();
     let docs = SwaggerUi::new("/docs").url("/openapi.json", super::document());
-    let cross_origin = CsrfLayer::new().with_rejection_response(|_: ProtectionError| {
+    let origins = server.config.origins.clone();
+    let cross_origin = forgery_guard(&origins).with_rejection_response(|_: ProtectionError| {
         let detail = "a browser sent this for a page of another origin; use the service's own pages, or no browser";
         Problem::new(Code::CrossOrigin, detail).into_response()
     });
     let request_id = HeaderName::from_static("x-request-id");
-    let nosniff = HeaderValue::from_static("nosniff");
-    let of_keys = service.clone();
+    let [of_once, of_callers] = [server.clone(), server.clone()];
     api.merge(super::pages::router())
-        .with_state(service)
+        .with_state(server)
         .merge(docs)
         .route("/", get(|| async { Redirect::temporary("/docs/") }))
         .fallback(async || problem::unknown_route())
         .method_not_allowed_fallback(async || problem::method_not_allowed())
         // from here on upwards: the last one added is the first to see a request
-        .layer(middleware::from_fn_with_state(of_keys, once::once))
+        .layer(middleware::from_fn_with_state(of_once, once::once))
+        .layer(middleware::from_fn_with_state(of_callers, caller::admit))
         .layer(cross_origin)
         .layer(CatchPanicLayer::custom(Problem::of_panic))
         .layer(middleware::from_fn(problem::render))
         .layer(CompressionLayer::new())
-        .layer(SetResponseHeaderLayer::overriding(
-            HeaderName::from_static("x-content-type-options"),
-            nosniff,
-        ))
+        .layer(headers::cross_origin(&origins))
+        .layer(middleware::from_fn(headers::guard))
         .layer(TraceLayer::new_for_http().make_span_with(span))
         .layer(PropagateRequestIdLayer::new(request_id.clone()))
         .layer(SetRequestIdLayer::new(request_id, OwnRequestId))
         .layer(middleware::map_request(drop_unfit_request_id))
+}
+
+/// Refuses what a page of another site has a browser send, other than of these.
+fn forgery_guard(origins: &[Origin]) -> CsrfLayer {
+    let mut guard = CsrfLayer::new();
+    for origin in origins {
+        match guard.clone().add_trusted_origin(origin.as_str()) {
+            Ok(trusting) => guard = trusting,
+            Err(error) => tracing::warn!(%error, origin = origin.as_str(), "not trusted"),
+        }
+    }
+    guard
 }
 
 /// Requests are told apart in the log by their id.
@@ -79,7 +91,10 @@ fn span<B>(request: &Request<B>) -> tracing::Span {
     let id = id
         .and_then(|id| id.header_value().to_str().ok())
         .unwrap_or_default();
-    tracing::info_span!("request", id, method = %request.method(), path = request.uri().path())
+    let (method, path) = (request.method(), request.uri().path());
+    // who asks is not known yet
+    let (project, key) = (tracing::field::Empty, tracing::field::Empty);
+    tracing::info_span!("request", id, %method, path, project, key)
 }
 
 /// UUID v7: the log can be searched by time.

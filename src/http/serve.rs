@@ -1,6 +1,5 @@
 //! Listening, and ending in good order.
 
-use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -14,8 +13,8 @@ use tokio::sync::Semaphore;
 use tokio_util::sync::CancellationToken;
 
 use super::compute::Compute;
-use super::{Config, Service, routes};
-use crate::store::Store;
+use super::{Config, Server, routes};
+use crate::store::{Store, StoreError};
 
 /// A client that sends the head of a request more slowly than this is hung up on, and so is one that
 /// keeps a connection open this long without a request.
@@ -32,38 +31,53 @@ pub enum BindError {
         source: std::io::Error,
     },
     #[error(
-        "refusing to listen on {0}: other machines could reach it, and there is no authentication yet; listen on 127.0.0.1 or [::1], and let a proxy that authenticates stand before it"
+        "refusing to listen on {0}: other machines could reach it, and the database has no keys, so that anybody there could do everything; make a key first (trimtab key new --scope admin, with the same --database), or listen on 127.0.0.1 or [::1]"
     )]
-    NotLoopback(SocketAddr),
+    Open(String),
+    #[error(transparent)]
+    Store(#[from] StoreError),
 }
 
-/// Listens on `address`, `host:port`, if it can be reached from this machine only.
+/// Whether `address`, `host:port`, can be reached from this machine only.
 ///
 /// # Errors
-/// The address is none, is in use, or is not a loopback address.
-pub async fn bind(address: &str) -> Result<TcpListener, BindError> {
-    let fault = |source| BindError::Listen {
+/// The address is none.
+pub async fn is_loopback(address: &str) -> Result<bool, BindError> {
+    let addresses = lookup_host(address).await.map_err(fault(address))?;
+    Ok(addresses
+        .into_iter()
+        .all(|address| address.ip().is_loopback()))
+}
+
+/// Listens on `address`, `host:port`: one that others can reach only if `store` has keys.
+///
+/// # Errors
+/// The address is none, is in use, or would be open to everybody.
+pub async fn bind(address: &str, store: &Store) -> Result<TcpListener, BindError> {
+    if !is_loopback(address).await? && !store.has_keys().await? {
+        return Err(BindError::Open(address.to_string()));
+    }
+    TcpListener::bind(address).await.map_err(fault(address))
+}
+
+fn fault(address: &str) -> impl Fn(std::io::Error) -> BindError {
+    move |source| BindError::Listen {
         address: address.to_string(),
         source,
-    };
-    let addresses: Vec<SocketAddr> = lookup_host(address).await.map_err(fault)?.collect();
-    if let Some(open) = addresses.iter().find(|address| !address.ip().is_loopback()) {
-        return Err(BindError::NotLoopback(*open));
     }
-    TcpListener::bind(addresses.as_slice()).await.map_err(fault)
 }
 
 /// Serves the API on `listener` until `shutdown`, and then at most a few seconds longer. Tests and
 /// production run this same function.
 pub async fn run(config: Config, listener: TcpListener, store: Store, shutdown: CancellationToken) {
     let connections = Arc::new(Semaphore::new(config.max_connections));
-    let service = Service {
+    let server = Server {
         store,
         config: Arc::new(config),
         compute: Compute::new(),
         shutdown: shutdown.clone(),
     };
-    let router = routes::router(service);
+    let router = routes::router(server);
     let open = GracefulShutdown::new();
     let accept = async {
         loop {

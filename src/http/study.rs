@@ -1,6 +1,5 @@
 //! `/v1/jobs/{id}/derivative-study`: what a derivative study found.
 
-use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
 use utoipa_axum::router::OpenApiRouter;
@@ -11,12 +10,12 @@ use super::format::{Format, cacheable};
 use super::problem::{Problem, ProblemDocument};
 use super::query::JobId;
 use super::results::without_result;
-use super::{Service, jobs};
+use super::{Server, Service, jobs};
 use crate::estimate::study::DerivativeStudy;
 use crate::job::Status;
 use crate::store::Part;
 
-pub fn router() -> OpenApiRouter<Service> {
+pub fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(get_derivative_study))
 }
 
@@ -30,7 +29,7 @@ pub fn router() -> OpenApiRouter<Service> {
         (status = 409, description = "`not_finished`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn get_derivative_study(
-    State(service): State<Service>,
+    service: Service,
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {

@@ -4,7 +4,6 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use axum::Json;
-use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
@@ -18,13 +17,15 @@ use super::json::JsonBody;
 use super::once::NewId;
 use super::problem::{Problem, ProblemDocument};
 use super::query::Parameters;
-use super::{Service, models, prefer};
+use super::{Server, Service, models, prefer};
 use crate::flight::Maneuver;
-use crate::job::{self, Fault, JobKind, JobSpec, MOST_MANEUVERS, ModelSource, Prepared};
+use crate::job::{
+    self, Fault, HIGHEST_PRIORITY, JobKind, JobSpec, MOST_MANEUVERS, ModelSource, Prepared,
+};
 use crate::model::{Model, ModelDocument};
 use crate::store::NewJob;
 
-pub fn router() -> OpenApiRouter<Service> {
+pub fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(submit_job))
 }
 
@@ -63,7 +64,7 @@ struct SubmitQuery {
         (status = 422, description = "`wrong_shape`, `invalid_job`: `errors` lists the faults by JSON pointer.", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn submit_job(
-    State(service): State<Service>,
+    service: Service,
     NewId(id): NewId,
     Parameters(query): Parameters<SubmitQuery>,
     headers: HeaderMap,
@@ -78,6 +79,7 @@ async fn submit_job(
         kind: kind_name(spec.kind).to_string(),
         name: spec.name.clone(),
         tags: spec.tags.clone(),
+        priority: spec.priority,
         spec: text,
         model: serde_json::to_string(&model)?,
     };
@@ -112,7 +114,7 @@ async fn check(
     service: &Service,
     spec: &Arc<JobSpec>,
 ) -> Result<(ModelDocument, Prepared), Problem> {
-    let mut faults = bounds(spec);
+    let mut faults = bounds(spec, service.caller.max_priority);
     let model = resolve_model(service, spec).await?;
     let maneuvers = load(service, spec).await?;
     let (model, maneuvers) = match (model, maneuvers) {
@@ -150,8 +152,15 @@ pub fn check_model(document: &ModelDocument) -> Result<(), Vec<Fault>> {
     Model::compile(document).map(drop)
 }
 
-fn bounds(spec: &JobSpec) -> Vec<Fault> {
+fn bounds(spec: &JobSpec, most: i32) -> Vec<Fault> {
     let mut faults = Vec::new();
+    if !(-HIGHEST_PRIORITY..=most).contains(&spec.priority) {
+        let message = format!(
+            "{} is not between {} and {most}, which is as much as your key allows",
+            spec.priority, -HIGHEST_PRIORITY
+        );
+        faults.push(Fault::new("/priority", "out_of_range", message));
+    }
     if spec.name.chars().count() > LONGEST_NAME {
         let message = format!("longer than {LONGEST_NAME} characters");
         faults.push(Fault::new("/name", "too_long", message));

@@ -22,6 +22,9 @@ pub use diagnosis::run_diagnosis;
 pub use event::{Event, EventBody, Prepared};
 pub use prepare::{Plan, prepare};
 pub use run::{JobResult, run};
-pub use spec::{Candidate, Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride};
+pub use spec::{
+    Candidate, Gaps, HIGHEST_PRIORITY, JobKind, JobSpec, ManeuverUse, ModelSource,
+    ParameterOverride,
+};
 pub use status::Status;
 pub use study::{Progress, run_study};

@@ -24,6 +24,11 @@ pub struct JobSpec {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(example = json!(["flight 12"]))]
     pub tags: Vec<String>,
+    /// Jobs of a higher priority are taken first: -10 to 10, and not above what the key allows. Among equals each key is
+    /// served in turn.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schema(minimum = -10, maximum = 10)]
+    pub priority: i32,
     pub model: ModelSource,
     /// Edits of the model, applied in order: an effect is an edit.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -59,6 +64,14 @@ pub struct JobSpec {
     pub candidates: Vec<Candidate>,
     #[serde(default)]
     pub options: Options,
+}
+
+/// The highest priority that there is; the lowest is its negative.
+pub const HIGHEST_PRIORITY: i32 = 10;
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
+fn is_zero(priority: &i32) -> bool {
+    *priority == 0
 }
 
 /// An effect that a model may lack, as edits of it.

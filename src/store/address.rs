@@ -25,10 +25,7 @@ pub(super) fn connection(address: &str) -> Result<(Engine, String), StoreError> 
             )),
         };
     }
-    let path = match address.strip_prefix("sqlite:") {
-        Some(rest) => rest.strip_prefix("//").unwrap_or(rest),
-        None => address,
-    };
+    let path = path(address);
     if path.contains("://") {
         return refuse(
             "only files (a path, or sqlite:PATH) and PostgreSQL (postgres://...) are supported",
@@ -53,6 +50,17 @@ pub(super) fn connection(address: &str) -> Result<(Engine, String), StoreError> 
     // what would end the path or be decoded in a URL
     let escaped = absolute.replace('%', "%25").replace('#', "%23");
     Ok((Engine::Sqlite, format!("sqlite://{escaped}?mode=rwc")))
+}
+
+/// Whether the address is that of a file that is not there yet.
+#[must_use]
+pub fn is_missing(address: &str) -> bool {
+    !is_postgres(address) && !Path::new(path(address)).exists()
+}
+
+fn path(address: &str) -> &str {
+    let path = address.strip_prefix("sqlite:");
+    path.map_or(address, |rest| rest.strip_prefix("//").unwrap_or(rest))
 }
 
 fn is_postgres(address: &str) -> bool {

@@ -7,7 +7,7 @@ use sqlx::{AssertSqlSafe, Row};
 use uuid::Uuid;
 
 use super::jobs::read_id;
-use super::{Store, StoreError};
+use super::{Project, StoreError};
 
 /// How long a request stays with whoever took it in hand; then it is thought to have died with its process.
 const IN_HAND: Duration = Duration::from_secs(30);
@@ -38,25 +38,26 @@ pub enum Once {
     Other,
 }
 
-impl Store {
+impl Project {
     /// Takes a request in hand. `request` is a digest of what is asked for.
     ///
     /// # Errors
     /// The database cannot be written.
     pub async fn take_in_hand(&self, key: &str, request: &str) -> Result<Once, StoreError> {
-        let (now, id) = (self.clock.now_text(), self.clock.new_id());
-        let mut writing = self.begin().await?;
+        let (now, id) = (self.store.clock.now_text(), self.store.clock.new_id());
+        let mut writing = self.store.begin().await?;
         sqlx::query("DELETE FROM answers WHERE until < $1 AND answer IS NOT NULL")
             .bind(&now)
             .execute(writing.connection())
             .await?;
-        let sql = "INSERT INTO answers (key, request, resource, until) VALUES ($1, $2, $3, $4) \
-                   ON CONFLICT (key) DO NOTHING";
+        let sql = "INSERT INTO answers (submitter, key, request, resource, until) VALUES ($1, $2, $3, $4, $5) \
+                   ON CONFLICT (submitter, key) DO NOTHING";
         let inserted = sqlx::query(sql)
+            .bind(&*self.submitter)
             .bind(key)
             .bind(request)
             .bind(id.to_string())
-            .bind(self.clock.text_after(IN_HAND))
+            .bind(self.store.clock.text_after(IN_HAND))
             .execute(writing.connection())
             .await?;
         if inserted.rows_affected() > 0 {
@@ -64,10 +65,11 @@ impl Store {
             return Ok(Once::Do(id));
         }
         let sql = format!(
-            "SELECT request, resource, until, answer, body FROM answers WHERE key = $1 {}",
-            self.engine.locking()
+            "SELECT request, resource, until, answer, body FROM answers WHERE submitter = $1 AND key = $2 {}",
+            self.store.engine.locking()
         );
         let row = sqlx::query(AssertSqlSafe(sql))
+            .bind(&*self.submitter)
             .bind(key)
             .fetch_optional(writing.connection())
             .await?;
@@ -87,9 +89,10 @@ impl Store {
         if row.try_get::<&str, _>("until")? > now.as_str() {
             return Ok(Once::InHand);
         }
-        sqlx::query("UPDATE answers SET until = $2 WHERE key = $1")
+        sqlx::query("UPDATE answers SET until = $3 WHERE submitter = $1 AND key = $2")
+            .bind(&*self.submitter)
             .bind(key)
-            .bind(self.clock.text_after(IN_HAND))
+            .bind(self.store.clock.text_after(IN_HAND))
             .execute(writing.connection())
             .await?;
         writing.commit().await?;
@@ -105,12 +108,13 @@ impl Store {
             what: "an answer".into(),
             why: error.to_string(),
         })?;
-        sqlx::query("UPDATE answers SET answer = $2, body = $3, until = $4 WHERE key = $1")
+        sqlx::query("UPDATE answers SET answer = $3, body = $4, until = $5 WHERE submitter = $1 AND key = $2")
+            .bind(&*self.submitter)
             .bind(key)
             .bind(json)
             .bind(answer.body.as_slice())
-            .bind(self.clock.text_after(KEPT))
-            .execute(&self.writer)
+            .bind(self.store.clock.text_after(KEPT))
+            .execute(&self.store.writer)
             .await?;
         Ok(())
     }
@@ -120,9 +124,10 @@ impl Store {
     /// # Errors
     /// The database cannot be written.
     pub async fn let_go(&self, key: &str) -> Result<(), StoreError> {
-        sqlx::query("DELETE FROM answers WHERE key = $1 AND answer IS NULL")
+        sqlx::query("DELETE FROM answers WHERE submitter = $1 AND key = $2 AND answer IS NULL")
+            .bind(&*self.submitter)
             .bind(key)
-            .execute(&self.writer)
+            .execute(&self.store.writer)
             .await?;
         Ok(())
     }

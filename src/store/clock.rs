@@ -40,6 +40,21 @@ impl Clock {
         )
     }
 
+    /// The moment `duration` before now, as it is written in the tables.
+    pub fn text_before(&self, duration: Duration) -> String {
+        let duration = SignedDuration::try_from(duration).unwrap_or(SignedDuration::MAX);
+        text(
+            self.now()
+                .saturating_sub(duration)
+                .unwrap_or(Timestamp::MIN),
+        )
+    }
+
+    /// A moment that a user wrote (RFC 3339), as it is written in the tables.
+    pub fn read(moment: &str) -> Option<String> {
+        moment.parse().ok().map(text)
+    }
+
     /// Goes by another clock from now on, which shows `now`, ms since 1970.
     pub(super) fn follow(&self, now: i64) {
         let offset = now.saturating_sub(Timestamp::now().as_millisecond());

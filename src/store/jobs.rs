@@ -6,7 +6,7 @@ use uuid::Uuid;
 
 use super::log::{Head, append, read_status};
 use super::page::one_more;
-use super::{BadCursor, Page, Signal, Store, StoreError};
+use super::{BadCursor, Page, Project, Signal, StoreError, queue};
 use crate::job::{EventBody, Status};
 
 /// What is kept of a job that was checked.
@@ -15,6 +15,7 @@ pub struct NewJob {
     pub kind: String,
     pub name: String,
     pub tags: Vec<String>,
+    pub priority: i32,
     /// JSON of the spec, as submitted.
     pub spec: String,
     /// JSON of the model document that the spec names or holds: what it means today it means forever.
@@ -28,6 +29,7 @@ pub struct JobRecord {
     pub kind: String,
     pub name: String,
     pub tags: Vec<String>,
+    pub priority: i32,
     pub status: Status,
     pub created: String,
     pub started: Option<String>,
@@ -43,6 +45,8 @@ pub struct JobFilter {
     pub status: Option<Status>,
     pub kind: Option<String>,
     pub tag: Option<String>,
+    /// RFC 3339 UTC with milliseconds.
+    pub created_after: Option<String>,
 }
 
 /// What became of the wish to stop a job.
@@ -54,7 +58,7 @@ pub enum CancelReply {
     Unknown,
 }
 
-const COLUMNS: &str = "j.id, j.kind, j.name, j.tags, j.status, j.created, j.started, j.finished, j.attempt, e.body AS ending \
+const COLUMNS: &str = "j.id, j.kind, j.name, j.tags, j.priority, j.status, j.created, j.started, j.finished, j.attempt, e.body AS ending \
      FROM jobs j LEFT JOIN events e ON e.job = j.id AND e.seq = j.last_seq";
 
 fn read_job(row: &AnyRow) -> Result<JobRecord, StoreError> {
@@ -70,6 +74,7 @@ fn read_job(row: &AnyRow) -> Result<JobRecord, StoreError> {
         kind: row.try_get("kind")?,
         name: row.try_get("name")?,
         tags: serde_json::from_str(row.try_get("tags")?).map_err(corrupt)?,
+        priority: i32::try_from(row.try_get::<i64, _>("priority")?).unwrap_or(0),
         status,
         created: row.try_get("created")?,
         started: row.try_get("started")?,
@@ -84,19 +89,21 @@ pub(super) fn read_id(row: &AnyRow, column: &str) -> Result<Uuid, StoreError> {
     Uuid::parse_str(text).map_err(|error| StoreError::corrupt(format!("id '{text}'"), error))
 }
 
-impl Store {
+impl Project {
     /// Accepts a job: when this returns, it is on the disk and a worker will take it. Accepted again under the same id, it
     /// is what it was.
     ///
     /// # Errors
     /// The database cannot be written.
     pub async fn submit(&self, id: Uuid, job: &NewJob) -> Result<JobRecord, StoreError> {
-        let now = self.clock.now_text();
+        let now = self.store.clock.now_text();
         let tags = serde_json::Value::from(job.tags.clone()).to_string();
-        let mut writing = self.begin().await?;
+        let mut writing = self.store.begin().await?;
+        let turn = queue::next_turn(writing.connection(), &self.submitter).await?;
         let inserted = sqlx::query(
-            "INSERT INTO jobs (id, kind, name, tags, status, created, last_seq, attempt, lost, spec, model) \
-             VALUES ($1, $2, $3, $4, $5, $6, 0, 0, 0, $7, $8) ON CONFLICT (id) DO NOTHING",
+            "INSERT INTO jobs (id, kind, name, tags, status, created, last_seq, attempt, lost, spec, model, \
+             project, submitter, priority, turn) \
+             VALUES ($1, $2, $3, $4, $5, $6, 0, 0, 0, $7, $8, $9, $10, $11, $12) ON CONFLICT (id) DO NOTHING",
         )
         .bind(id.to_string())
         .bind(&job.kind)
@@ -106,6 +113,10 @@ impl Store {
         .bind(&now)
         .bind(&job.spec)
         .bind(&job.model)
+        .bind(&*self.name)
+        .bind(&*self.submitter)
+        .bind(i64::from(job.priority))
+        .bind(turn)
         .execute(writing.connection())
         .await?;
         if inserted.rows_affected() == 0 {
@@ -133,6 +144,7 @@ impl Store {
             kind: job.kind.clone(),
             name: job.name.clone(),
             tags: job.tags.clone(),
+            priority: job.priority,
             status: Status::Queued,
             created: now,
             started: None,
@@ -145,10 +157,13 @@ impl Store {
     /// # Errors
     /// The database does not answer.
     pub async fn job(&self, id: Uuid) -> Result<Option<JobRecord>, StoreError> {
-        let row = sqlx::query(AssertSqlSafe(format!("SELECT {COLUMNS} WHERE j.id = $1")))
-            .bind(id.to_string())
-            .fetch_optional(&self.readers)
-            .await?;
+        let row = sqlx::query(AssertSqlSafe(format!(
+            "SELECT {COLUMNS} WHERE j.id = $1 AND j.project = $2"
+        )))
+        .bind(id.to_string())
+        .bind(&*self.name)
+        .fetch_optional(&self.store.readers)
+        .await?;
         row.as_ref().map(read_job).transpose()
     }
 
@@ -157,9 +172,10 @@ impl Store {
     /// # Errors
     /// The database does not answer.
     pub async fn job_spec(&self, id: Uuid) -> Result<Option<String>, StoreError> {
-        let row = sqlx::query("SELECT spec FROM jobs WHERE id = $1")
+        let row = sqlx::query("SELECT spec FROM jobs WHERE id = $1 AND project = $2")
             .bind(id.to_string())
-            .fetch_optional(&self.readers)
+            .bind(&*self.name)
+            .fetch_optional(&self.store.readers)
             .await?;
         Ok(row.map(|row| row.try_get("spec")).transpose()?)
     }
@@ -187,6 +203,7 @@ impl Store {
                 conditions.push(condition.replace('?', &format!("${}", values.len())));
             }
         };
+        wanted("j.project = ?", Some(self.name.to_string()));
         wanted("j.id < ?", before);
         wanted(
             "j.status = ?",
@@ -197,18 +214,20 @@ impl Store {
             "j.id IN (SELECT job FROM job_tags WHERE tag = ?)",
             filter.tag.clone(),
         );
-        let conditions = match conditions.len() {
-            0 => String::new(),
-            _ => format!("WHERE {}", conditions.join(" AND ")),
-        };
+        wanted("j.created > ?", filter.created_after.clone());
+        let conditions = conditions.join(" AND ");
         let limit_at = values.len() + 1;
-        let sql = format!("SELECT {COLUMNS} {conditions} ORDER BY j.id DESC LIMIT ${limit_at}");
+        let sql =
+            format!("SELECT {COLUMNS} WHERE {conditions} ORDER BY j.id DESC LIMIT ${limit_at}");
         // safe: put together from the constants above; what users wrote is bound
         let mut query = sqlx::query(AssertSqlSafe(sql));
         for value in values {
             query = query.bind(value);
         }
-        let rows = query.bind(one_more(limit)).fetch_all(&self.readers).await?;
+        let rows = query
+            .bind(one_more(limit))
+            .fetch_all(&self.store.readers)
+            .await?;
         let jobs = rows.iter().map(read_job).collect::<Result<_, _>>()?;
         Ok(Ok(Page::new(jobs, limit, |job| job.id.to_string())))
     }
@@ -218,13 +237,14 @@ impl Store {
     /// # Errors
     /// The database cannot be written.
     pub async fn cancel(&self, id: Uuid) -> Result<CancelReply, StoreError> {
-        let mut writing = self.begin().await?;
+        let mut writing = self.store.begin().await?;
         let sql = format!(
-            "SELECT status, last_seq FROM jobs WHERE id = $1 {}",
-            self.engine.locking()
+            "SELECT status, last_seq FROM jobs WHERE id = $1 AND project = $2 {}",
+            self.store.engine.locking()
         );
         let row = sqlx::query(AssertSqlSafe(sql))
             .bind(id.to_string())
+            .bind(&*self.name)
             .fetch_optional(writing.connection())
             .await?;
         let Some(row) = row else {
@@ -244,7 +264,7 @@ impl Store {
             Status::Cancelling | Status::Succeeded | Status::Failed | Status::Cancelled => &[],
         };
         if !events.is_empty() {
-            let now = self.clock.now_text();
+            let now = self.store.clock.now_text();
             append(writing.connection(), id, &mut head, &now, events).await?;
             writing.tell(Signal::Log(id));
             writing.tell(Signal::Cancel(id));

@@ -7,13 +7,14 @@
 
 use std::time::Duration;
 
-use sqlx::{AssertSqlSafe, Row};
+use sqlx::any::AnyRow;
+use sqlx::{AnyConnection, AssertSqlSafe, Row};
 use uuid::Uuid;
 
 use super::jobs::read_id;
 use super::log::{Head, append, read_status};
 use super::writing::Writing;
-use super::{ResultParts, Signal, Store, StoreError, results};
+use super::{ResultParts, Signal, Store, StoreError, queue, results};
 use crate::job::{EventBody, Fault, JobSpec, Status};
 use crate::model::ModelDocument;
 
@@ -30,40 +31,36 @@ pub struct Claim {
     /// Counts from 1; a claim with an earlier number is void.
     pub attempt: u32,
     pub worker: String,
+    /// Whose job it is.
+    pub project: String,
     pub spec: JobSpec,
     pub model: ModelDocument,
     /// The job was asked to stop before this worker got it.
     pub cancelling: bool,
 }
 
-/// Waiting jobs, those that a worker has left behind, and one that this worker was given without hearing of it.
-const CLAIMABLE: &str = "SELECT id, status, last_seq, attempt, lost, lease_owner, spec, model FROM jobs \
-     WHERE status = 'queued' \
-     OR (status IN ('running', 'cancelling') AND (lease_until IS NULL OR lease_until < $1 OR lease_owner = $2)) \
-     ORDER BY id LIMIT 1";
+const COLUMNS: &str =
+    "id, status, last_seq, attempt, lost, lease_owner, project, spec, model FROM jobs";
 
 impl Store {
-    /// The oldest job that waits, or that a worker has left behind. A worker has one job at a time: one that is its own
+    /// A job that a worker has left behind, or the first in line. A worker has one job at a time: one that is its own
     /// already is what it was given when the answer was lost.
     ///
     /// # Errors
     /// The database cannot be written.
     pub async fn claim(&self, worker: &str) -> Result<Option<Claim>, StoreError> {
         // an idle worker should not take a lock each time it looks
-        let look = sqlx::query(CLAIMABLE).bind(self.clock.now_text());
-        let seen = look.bind(worker).fetch_optional(&self.readers).await?;
-        if seen.is_none() {
+        let mut reader = self.readers.acquire().await?;
+        let now = self.clock.now_text();
+        if claimable(&mut reader, worker, &now, "").await?.is_none() {
             return Ok(None);
         }
-        let claimable = format!("{CLAIMABLE} {}", self.engine.locking_the_next());
+        drop(reader);
+        let locking = self.engine.locking_the_next();
         loop {
             let now = self.clock.now_text();
             let mut writing = self.begin().await?;
-            let row = sqlx::query(AssertSqlSafe(claimable.as_str()))
-                .bind(&now)
-                .bind(worker)
-                .fetch_optional(writing.connection())
-                .await?;
+            let row = claimable(writing.connection(), worker, &now, locking).await?;
             let Some(row) = row else { return Ok(None) };
             let job = read_id(&row, "id")?;
             let status = read_status(row.try_get("status")?)?;
@@ -110,6 +107,7 @@ impl Store {
                     job,
                     attempt: u32::try_from(attempt).unwrap_or(u32::MAX),
                     worker: worker.to_string(),
+                    project: row.try_get("project")?,
                     spec,
                     model,
                     cancelling: status == Status::Cancelling,
@@ -268,6 +266,33 @@ impl Store {
     }
 }
 
+/// A job that a worker has left behind or was given without hearing of it; otherwise the first in line.
+async fn claimable(
+    connection: &mut AnyConnection,
+    worker: &str,
+    now: &str,
+    locking: &str,
+) -> Result<Option<AnyRow>, StoreError> {
+    let left_behind = format!(
+        "SELECT {COLUMNS} WHERE status IN ('running', 'cancelling') \
+         AND (lease_until IS NULL OR lease_until < $1 OR lease_owner = $2) ORDER BY id LIMIT 1 {locking}"
+    );
+    let left_behind = sqlx::query(AssertSqlSafe(left_behind))
+        .bind(now)
+        .bind(worker)
+        .fetch_optional(&mut *connection)
+        .await?;
+    if left_behind.is_some() {
+        return Ok(left_behind);
+    }
+    let in_line = queue::IN_LINE;
+    let waiting =
+        format!("SELECT {COLUMNS} WHERE status = 'queued' ORDER BY {in_line} LIMIT 1 {locking}");
+    Ok(sqlx::query(AssertSqlSafe(waiting))
+        .fetch_optional(connection)
+        .await?)
+}
+
 /// What a claim that stands finds.
 struct Held {
     head: Head,
@@ -286,7 +311,7 @@ async fn give_up_lease(writing: &mut Writing, claim: &Claim) -> Result<(), Store
 }
 
 /// What there is to do. A job that cannot be read any more must not stop those behind it.
-fn read_task(row: &sqlx::any::AnyRow) -> Result<(JobSpec, ModelDocument), Fault> {
+fn read_task(row: &AnyRow) -> Result<(JobSpec, ModelDocument), Fault> {
     let unreadable = |why: String| {
         Fault::new(
             "",

@@ -4,7 +4,7 @@ use sqlx::{AnyConnection, Row};
 use uuid::Uuid;
 
 use super::page::one_more;
-use super::{Page, Store, StoreError};
+use super::{Page, Project, StoreError};
 use crate::job::{EventBody, Status};
 
 /// An event as it is kept. The body stays JSON: most readers hand it on as it is.
@@ -102,7 +102,7 @@ fn read_event(row: &sqlx::any::AnyRow) -> Result<StoredEvent, StoreError> {
     })
 }
 
-impl Store {
+impl Project {
     /// Events behind number `after`, in order, at most `limit`. A job that does not exist has none.
     ///
     /// # Errors
@@ -113,12 +113,14 @@ impl Store {
         after: u64,
         limit: usize,
     ) -> Result<Page<StoredEvent>, StoreError> {
-        let sql = "SELECT seq, at, type, body FROM events WHERE job = $1 AND seq > $2 ORDER BY seq LIMIT $3";
+        let sql = "SELECT seq, at, type, body FROM events \
+                   WHERE job = (SELECT id FROM jobs WHERE id = $1 AND project = $2) AND seq > $3 ORDER BY seq LIMIT $4";
         let rows = sqlx::query(sql)
             .bind(job.to_string())
+            .bind(&*self.name)
             .bind(i64::try_from(after).unwrap_or(i64::MAX))
             .bind(one_more(limit))
-            .fetch_all(&self.readers)
+            .fetch_all(&self.store.readers)
             .await?;
         let events = rows.iter().map(read_event).collect::<Result<_, _>>()?;
         Ok(Page::new(events, limit, |event| event.seq.to_string()))
@@ -129,11 +131,13 @@ impl Store {
     /// # Errors
     /// The database does not answer.
     pub async fn iterations(&self, job: Uuid) -> Result<Vec<StoredEvent>, StoreError> {
-        let sql = "SELECT seq, at, type, body FROM events WHERE job = $1 AND type = 'iteration' \
+        let sql = "SELECT seq, at, type, body FROM events \
+                   WHERE job = (SELECT id FROM jobs WHERE id = $1 AND project = $2) AND type = 'iteration' \
                    AND seq > (SELECT MAX(seq) FROM events WHERE job = $1 AND type = 'claimed') ORDER BY seq";
         let rows = sqlx::query(sql)
             .bind(job.to_string())
-            .fetch_all(&self.readers)
+            .bind(&*self.name)
+            .fetch_all(&self.store.readers)
             .await?;
         rows.iter().map(read_event).collect()
     }

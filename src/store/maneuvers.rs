@@ -7,7 +7,7 @@ use sqlx::Row;
 use sqlx::any::AnyRow;
 
 use super::page::one_more;
-use super::{BadCursor, Page, Store, StoreError, columns, off_reactor};
+use super::{BadCursor, Page, Project, StoreError, columns, off_reactor};
 use crate::flight::{Channel, Maneuver, Unit};
 
 /// A maneuver without its data.
@@ -100,7 +100,7 @@ fn read_record(row: &AnyRow) -> Result<ManeuverRecord, StoreError> {
     })
 }
 
-impl Store {
+impl Project {
     /// Keeps a maneuver, if it is not here already. `summary` is JSON for lists.
     ///
     /// # Errors
@@ -122,18 +122,21 @@ impl Store {
         let record = ManeuverRecord {
             id,
             name: name.to_string(),
-            created: self.clock.now_text(),
+            created: self.store.clock.now_text(),
             summary,
         };
-        let sql = "INSERT INTO maneuvers (id, name, created, summary, content) VALUES ($1, $2, $3, $4, $5) \
-                   ON CONFLICT (id) DO NOTHING";
+        let sql = "INSERT INTO maneuvers (project, id, name, created, summary, content, bytes) \
+                   VALUES ($1, $2, $3, $4, $5, $6, $7) ON CONFLICT (project, id) DO NOTHING";
+        let bytes = i64::try_from(content.len()).unwrap_or(i64::MAX);
         let inserted = sqlx::query(sql)
+            .bind(&*self.name)
             .bind(&record.id)
             .bind(&record.name)
             .bind(&record.created)
             .bind(&record.summary)
             .bind(content)
-            .execute(&self.writer)
+            .bind(bytes)
+            .execute(&self.store.writer)
             .await?;
         if inserted.rows_affected() > 0 {
             return Ok(Uploaded::New(record));
@@ -147,10 +150,13 @@ impl Store {
     /// # Errors
     /// The database does not answer.
     pub async fn maneuver(&self, id: &str) -> Result<Option<ManeuverRecord>, StoreError> {
-        let row = sqlx::query("SELECT id, name, created, summary FROM maneuvers WHERE id = $1")
-            .bind(id)
-            .fetch_optional(&self.readers)
-            .await?;
+        let row = sqlx::query(
+            "SELECT id, name, created, summary FROM maneuvers WHERE project = $1 AND id = $2",
+        )
+        .bind(&*self.name)
+        .bind(id)
+        .fetch_optional(&self.store.readers)
+        .await?;
         row.as_ref().map(read_record).transpose()
     }
 
@@ -159,9 +165,10 @@ impl Store {
     /// # Errors
     /// The database does not answer, or what it keeps was damaged.
     pub async fn maneuver_data(&self, id: &str) -> Result<Option<Maneuver>, StoreError> {
-        let row = sqlx::query("SELECT content FROM maneuvers WHERE id = $1")
+        let row = sqlx::query("SELECT content FROM maneuvers WHERE project = $1 AND id = $2")
+            .bind(&*self.name)
             .bind(id)
-            .fetch_optional(&self.readers)
+            .fetch_optional(&self.store.readers)
             .await?;
         let Some(row) = row else { return Ok(None) };
         let id = id.to_string();
@@ -185,12 +192,14 @@ impl Store {
             Some(None) => return Ok(Err(BadCursor)),
         };
         let sql = "SELECT id, name, created, summary FROM maneuvers \
-                   WHERE created < $1 OR (created = $1 AND id < $2) ORDER BY created DESC, id DESC LIMIT $3";
+                   WHERE project = $1 AND (created < $2 OR (created = $2 AND id < $3)) \
+                   ORDER BY created DESC, id DESC LIMIT $4";
         let rows = sqlx::query(sql)
+            .bind(&*self.name)
             .bind(created)
             .bind(id)
             .bind(one_more(limit))
-            .fetch_all(&self.readers)
+            .fetch_all(&self.store.readers)
             .await?;
         let records = rows.iter().map(read_record).collect::<Result<_, _>>()?;
         Ok(Ok(Page::new(records, limit, |record| {

@@ -23,6 +23,10 @@ const STEPS: &[Step] = &[
         version: 3,
         sql: include_str!("migrations/0003_answers.sql"),
     },
+    Step {
+        version: 4,
+        sql: include_str!("migrations/0004_projects.sql"),
+    },
 ];
 
 /// Brings the schema up to date. Processes that start at once do not disturb each other: all steps are looked for and

@@ -8,6 +8,7 @@
 //! * A worker holds a job by a lease. Each claim counts the job's `attempt` up; whoever writes with
 //!   the number of an earlier attempt is refused ([`StoreError::LeaseLost`]).
 //! * Maneuvers, models, specs, events and results are never changed once written.
+//! * What users ask for is asked of a [`Project`], and no project sees anything of another.
 
 mod address;
 mod answers;
@@ -15,6 +16,7 @@ mod clock;
 mod columns;
 mod engine;
 mod jobs;
+mod keys;
 mod lease;
 mod log;
 mod maneuvers;
@@ -22,6 +24,8 @@ mod migrate;
 mod models;
 mod neighbours;
 mod page;
+mod project;
+mod queue;
 mod results;
 mod signal;
 mod writing;
@@ -33,15 +37,17 @@ use sqlx::AnyPool;
 use tokio::time::{Instant, sleep};
 use tokio_util::sync::DropGuard;
 
-pub use address::without_password;
+pub use address::{is_missing, without_password};
 pub use answers::{KeptAnswer, Once};
 pub use clock::Clock;
 pub use jobs::{CancelReply, JobFilter, JobRecord, NewJob};
+pub use keys::{Key, KeyRecord, NewKey, Scope, Shown};
 pub use lease::{Claim, LEASE, MOST_LOST_WORKERS};
 pub use log::StoredEvent;
 pub use maneuvers::{ManeuverRecord, Uploaded};
 pub use models::ModelRecord;
 pub use page::{BadCursor, Page};
+pub use project::{DEFAULT_PROJECT, Project};
 pub use results::{Part, ResultParts};
 pub use signal::{Listener, Signal};
 

@@ -6,7 +6,7 @@ use uuid::Uuid;
 
 use super::jobs::read_id;
 use super::page::one_more;
-use super::{Page, Store, StoreError};
+use super::{Page, Project, StoreError};
 use crate::model::ModelDocument;
 
 #[derive(Clone, PartialEq, Debug)]
@@ -27,7 +27,7 @@ fn read_model(row: &AnyRow) -> Result<ModelRecord, StoreError> {
     })
 }
 
-impl Store {
+impl Project {
     /// Keeps a model that was checked. Kept again under the same id, it is what it was.
     ///
     /// # Errors
@@ -41,16 +41,17 @@ impl Store {
             what: "the model".into(),
             why: error.to_string(),
         })?;
-        let created = self.clock.now_text();
-        let sql = "INSERT INTO models (id, name, title, created, document) VALUES ($1, $2, $3, $4, $5) \
+        let created = self.store.clock.now_text();
+        let sql = "INSERT INTO models (project, id, name, title, created, document) VALUES ($1, $2, $3, $4, $5, $6) \
              ON CONFLICT (id) DO NOTHING";
         sqlx::query(sql)
+            .bind(&*self.name)
             .bind(id.to_string())
             .bind(&document.name)
             .bind(&document.title)
             .bind(&created)
             .bind(json)
-            .execute(&self.writer)
+            .execute(&self.store.writer)
             .await?;
         Ok(ModelRecord {
             id,
@@ -62,10 +63,12 @@ impl Store {
     /// # Errors
     /// The database does not answer.
     pub async fn model(&self, id: Uuid) -> Result<Option<ModelRecord>, StoreError> {
-        let row = sqlx::query("SELECT id, created, document FROM models WHERE id = $1")
-            .bind(id.to_string())
-            .fetch_optional(&self.readers)
-            .await?;
+        let row =
+            sqlx::query("SELECT id, created, document FROM models WHERE project = $1 AND id = $2")
+                .bind(&*self.name)
+                .bind(id.to_string())
+                .fetch_optional(&self.store.readers)
+                .await?;
         row.as_ref().map(read_model).transpose()
     }
 
@@ -79,12 +82,12 @@ impl Store {
         limit: usize,
     ) -> Result<Page<ModelRecord>, StoreError> {
         let before = before.unwrap_or(Uuid::max()).to_string();
-        let sql =
-            "SELECT id, created, document FROM models WHERE id < $1 ORDER BY id DESC LIMIT $2";
+        let sql = "SELECT id, created, document FROM models WHERE project = $1 AND id < $2 ORDER BY id DESC LIMIT $3";
         let rows = sqlx::query(sql)
+            .bind(&*self.name)
             .bind(before)
             .bind(one_more(limit))
-            .fetch_all(&self.readers)
+            .fetch_all(&self.store.readers)
             .await?;
         let models = rows.iter().map(read_model).collect::<Result<_, _>>()?;
         Ok(Page::new(models, limit, |model| model.id.to_string()))

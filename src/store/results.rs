@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use sqlx::{AnyConnection, Row};
 use uuid::Uuid;
 
-use super::{Store, StoreError, columns, off_reactor};
+use super::{Project, StoreError, columns, off_reactor};
 use crate::estimate::{OutputSeries, Role, Series, TimeHistory};
 use crate::job::JobResult;
 
@@ -207,16 +207,19 @@ pub(super) async fn insert(
     Ok(())
 }
 
-impl Store {
+impl Project {
     /// JSON of a part of a result; `None` where there is no result.
     ///
     /// # Errors
     /// The database does not answer.
     pub async fn result_part(&self, job: Uuid, part: Part) -> Result<Option<String>, StoreError> {
-        let row = sqlx::query("SELECT body FROM results WHERE job = $1 AND part = $2")
+        let row = sqlx::query(
+            "SELECT body FROM results WHERE job = (SELECT id FROM jobs WHERE id = $1 AND project = $2) AND part = $3",
+        )
             .bind(job.to_string())
+            .bind(&*self.name)
             .bind(part.name())
-            .fetch_optional(&self.readers)
+            .fetch_optional(&self.store.readers)
             .await?;
         let Some(row) = row else { return Ok(None) };
         let json = String::from_utf8(row.try_get("body")?).map_err(|error| {
@@ -230,9 +233,12 @@ impl Store {
     /// # Errors
     /// The database does not answer.
     pub async fn histories(&self, job: Uuid) -> Result<Option<Vec<TimeHistory>>, StoreError> {
-        let rows = sqlx::query("SELECT part, body FROM results WHERE job = $1 ORDER BY part")
+        let rows = sqlx::query(
+            "SELECT part, body FROM results WHERE job = (SELECT id FROM jobs WHERE id = $1 AND project = $2) ORDER BY part",
+        )
             .bind(job.to_string())
-            .fetch_all(&self.readers)
+            .bind(&*self.name)
+            .fetch_all(&self.store.readers)
             .await?;
         if rows.is_empty() {
             return Ok(None);

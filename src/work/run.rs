@@ -88,6 +88,7 @@ async fn work_on(store: &Store, claim: &Arc<Claim>, shutdown: &CancellationToken
 async fn load(store: &Store, claim: &Claim) -> Result<Vec<Arc<Maneuver>>, Unanswered> {
     let mut maneuvers: Vec<Arc<Maneuver>> = Vec::new();
     let uses = &claim.spec.maneuvers;
+    let project = store.project(&claim.project, "");
     for (number, used) in uses.iter().enumerate() {
         // parts of one recording are often used side by side
         if let Some(same) = uses[..number]
@@ -97,7 +98,7 @@ async fn load(store: &Store, claim: &Claim) -> Result<Vec<Arc<Maneuver>>, Unansw
             maneuvers.push(maneuvers[same].clone());
             continue;
         }
-        let loaded = persist("load", || store.maneuver_data(&used.id)).await?;
+        let loaded = persist("load", || project.maneuver_data(&used.id)).await?;
         let Some(maneuver) = loaded else {
             let message = "there is no maneuver of this id any more; upload it again";
             let fault = Fault::new(

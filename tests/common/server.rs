@@ -38,7 +38,7 @@ impl Server {
         let store = Store::open(database(directory.path()).to_str().unwrap())
             .await
             .unwrap();
-        let listener = http::bind("127.0.0.1:0").await.unwrap();
+        let listener = http::bind("127.0.0.1:0", &store).await.unwrap();
         let url = format!("http://{}", listener.local_addr().unwrap());
         let shutdown = CancellationToken::new();
         let (api, jobs) = (store.clone(), store.clone());

@@ -1,0 +1,31 @@
+//! Whose turn it is: the higher priority first, and among equals each key in turn, however much one of them has submitted.
+//!
+//! A job gets its `turn` when it is submitted: one behind the last that its key has in line, and not before the turn that is
+//! served now. So the third job of each key is served before the fourth of any, and a key that was idle has saved up nothing
+//! (start-time fair queueing with jobs of equal length).
+
+use sqlx::{AnyConnection, Row};
+
+use super::StoreError;
+
+/// Waiting jobs in their order.
+pub(super) const IN_LINE: &str = "priority DESC, turn, id";
+
+/// The turn of a job that is submitted now. Two that are submitted at once may get the same; their ids tell them apart.
+pub(super) async fn next_turn(
+    connection: &mut AnyConnection,
+    submitter: &str,
+) -> Result<i64, StoreError> {
+    let served = "SELECT COALESCE((SELECT MIN(turn) FROM jobs WHERE status = 'queued'), (SELECT MAX(turn) FROM jobs), 0) AS turn";
+    let served: i64 = sqlx::query(served)
+        .fetch_one(&mut *connection)
+        .await?
+        .try_get("turn")?;
+    let own = "SELECT MAX(turn) AS turn FROM jobs WHERE submitter = $1 AND status = 'queued'";
+    let own: Option<i64> = sqlx::query(own)
+        .bind(submitter)
+        .fetch_one(connection)
+        .await?
+        .try_get("turn")?;
+    Ok(own.map_or(served, |own| served.max(own + 1)))
+}
