@@ -75,13 +75,33 @@ const NEEDED: &[(&str, &[&str])] = &[
             "getResiduals",
             "getTimeHistories",
             "getResidualAnalysis",
+            "getProvenance",
         ],
     ),
     (
         "submit",
-        &["uploadManeuver", "addModel", "submitJob", "cancelJob"],
+        &[
+            "uploadManeuver",
+            "addModel",
+            "submitJob",
+            "submitJobs",
+            "rerunJob",
+            "cancelJob",
+        ],
     ),
-    ("admin", &["listKeys", "makeKey", "revokeKey", "rotateKey"]),
+    (
+        "admin",
+        &[
+            "listKeys",
+            "makeKey",
+            "revokeKey",
+            "rotateKey",
+            "deleteJob",
+            "deleteManeuver",
+            "expire",
+        ],
+    ),
+    ("metrics", &["getMetrics"]),
 ];
 
 #[tokio::test]

@@ -62,6 +62,8 @@ enum ScopeName {
     Submit,
     /// Make and revoke the project's keys, and delete what it has.
     Admin,
+    /// See /metrics: numbers over all projects, and no data of any.
+    Metrics,
 }
 
 impl ScopeName {
@@ -70,6 +72,7 @@ impl ScopeName {
             Self::Read => Scope::Read,
             Self::Submit => Scope::Submit,
             Self::Admin => Scope::Admin,
+            Self::Metrics => Scope::Metrics,
         }
     }
 }

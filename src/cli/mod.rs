@@ -16,6 +16,7 @@ mod model;
 mod process;
 mod progress;
 mod request;
+mod retain;
 mod serve;
 mod server;
 mod simulate;
@@ -62,6 +63,7 @@ enum Command {
     Health(health::Health),
     #[command(name = "key")]
     Keys(key::Keys),
+    Retain(retain::Retain),
     /// Print the OpenAPI document of the API.
     Openapi,
 }
@@ -82,6 +84,7 @@ pub fn main() -> ExitCode {
         Command::Derivatives(derivatives) => derivatives.run(),
         Command::Health(health) => block_on(health.run()),
         Command::Keys(keys) => block_on(keys.run()),
+        Command::Retain(retain) => block_on(retain.run()),
         Command::Openapi => openapi(),
     };
     match done {

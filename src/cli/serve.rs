@@ -50,6 +50,22 @@ pub struct Serve {
     #[arg(long, env = "TRIMTAB_MAX_CONNECTIONS", value_name = "N", default_value_t = http::Config::default().max_connections)]
     max_connections: usize,
 
+    /// Jobs that wait, of everybody; beyond, submissions are refused for the time being (429).
+    #[arg(long, env = "TRIMTAB_MAX_QUEUED", value_name = "N", default_value_t = http::Config::default().max_queued)]
+    max_queued: usize,
+
+    /// Jobs that wait, of one key.
+    #[arg(long, env = "TRIMTAB_MAX_QUEUED_PER_KEY", value_name = "N", default_value_t = http::Config::default().max_queued_per_key)]
+    max_queued_per_key: usize,
+
+    /// Requests of a key in a second, and twice as many at once; 0: as many as it will.
+    #[arg(long, env = "TRIMTAB_MAX_REQUESTS_PER_SECOND", value_name = "N", default_value_t = http::Config::default().max_requests_per_second)]
+    max_requests_per_second: u32,
+
+    /// Bytes that the maneuvers of a project may take.
+    #[arg(long, env = "TRIMTAB_MAX_STORED_BYTES", value_name = "BYTES", default_value_t = http::Config::default().max_stored_bytes)]
+    max_stored_bytes: u64,
+
     /// Another site whose pages may use the service from a browser (CORS), as https://HOST:PORT; may be given several times.
     #[arg(
         long = "allow-origin",
@@ -101,6 +117,10 @@ impl Serve {
             },
             max_job_values: self.max_job_values,
             max_connections: self.max_connections,
+            max_queued: self.max_queued,
+            max_queued_per_key: self.max_queued_per_key,
+            max_requests_per_second: self.max_requests_per_second,
+            max_stored_bytes: self.max_stored_bytes,
             origins: self.origins.clone(),
         }
     }

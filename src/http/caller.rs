@@ -56,7 +56,10 @@ pub fn needed(method: &Method, path: &str) -> Option<Scope> {
     {
         return None;
     }
-    if under("/v1/keys") || *method == Method::DELETE {
+    if under("/metrics") {
+        return Some(Scope::Metrics);
+    }
+    if under("/v1/keys") || under("/v1/retention") || *method == Method::DELETE {
         return Some(Scope::Admin);
     }
     // works out numbers from a result and keeps nothing
@@ -109,6 +112,7 @@ async fn identify(server: &Server, headers: &HeaderMap, is_page: bool) -> Result
     };
     let refused = match server.store.look_up_key(&key).await? {
         Shown::Good(record) => {
+            server.rates.check(record.id)?;
             return Ok(Caller {
                 project: record.project,
                 key: Some(record.id),
@@ -188,6 +192,7 @@ impl FromRequestParts<Server> for Service {
             caller,
             config: server.config.clone(),
             compute: server.compute.clone(),
+            metrics: server.metrics.clone(),
             shutdown: server.shutdown.clone(),
         })
     }

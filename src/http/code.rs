@@ -84,10 +84,18 @@ codes! {
     NotFinished "not_finished" CONFLICT "The job is not finished";
     /// The job is over: there is nothing to cancel.
     AlreadyOver "already_over" CONFLICT "The job is already over";
+    /// Jobs use the maneuver, and could not be run again without it.
+    InUse "in_use" CONFLICT "It is in use";
     /// A request with this `Idempotency-Key` is still in hand. Send it again after `Retry-After` seconds.
     KeyInHand "idempotency_key_in_hand" CONFLICT "The request is in hand";
     /// The `Idempotency-Key` was used for another request within the last 24 hours.
     KeyReused "idempotency_key_reused" UNPROCESSABLE_ENTITY "The key was used for another request";
+    /// The key asks more often than it may. Ask again after `Retry-After` seconds.
+    TooManyRequests "too_many_requests" TOO_MANY_REQUESTS "Too many requests";
+    /// More jobs wait than may: `detail` names the limit and the use. Submit again after `Retry-After` seconds.
+    QueueFull "queue_full" TOO_MANY_REQUESTS "The queue is full";
+    /// The project keeps as much as it may: `detail` names the limit and the use. Delete what is needed no more.
+    QuotaExceeded "quota_exceeded" PAYLOAD_TOO_LARGE "The project is full";
     /// The body is longer than the limit that `detail` names.
     BodyTooLarge "body_too_large" PAYLOAD_TOO_LARGE "The body is too large";
     /// The `Content-Type` is none of those that `detail` lists.

@@ -154,7 +154,9 @@ fn follow(
     job: Uuid,
     mut after: u64,
 ) -> impl Stream<Item = Result<sse::Event, Infallible>> {
+    let follower = service.metrics.follower();
     async_stream::stream! {
+        let _follower = follower;
         yield Ok(sse::Event::default().retry(Duration::from_secs(1)));
         loop {
             // before looking: what comes in between is not overlooked

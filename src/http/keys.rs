@@ -156,8 +156,7 @@ fn faults(order: &KeyOrder, most: i32) -> Vec<Fault> {
         wrong("/name", "name_length", message);
     }
     if order.scopes.is_empty() {
-        let message =
-            "a key without a scope opens nothing; name at least one of read, submit, admin";
+        let message = "a key without a scope opens nothing; name at least one of read, submit, admin, metrics";
         wrong("/scopes", "no_scope", message.to_string());
     }
     if order

@@ -150,6 +150,16 @@ async fn upload_maneuver(
         Ok::<_, Problem>((maneuver, summary))
     };
     let (maneuver, summary) = service.compute.run(read).await??;
+    let (stored, limit) = (
+        service.store.stored_bytes().await?,
+        service.config.max_stored_bytes,
+    );
+    if stored >= limit {
+        let detail = format!(
+            "the project's maneuvers take {stored} bytes, and {limit} are allowed (--max-stored-bytes); delete those that are needed no more"
+        );
+        return Err(Problem::new(Code::QuotaExceeded, detail));
+    }
     let uploaded = service
         .store
         .add_maneuver(&name, Arc::new(maneuver), summary)

@@ -5,6 +5,7 @@
 //! many at a time as there are cores. What goes wrong is a [`problem::Problem`] with a [`code::Code`].
 
 mod body;
+mod bulk;
 mod caller;
 pub mod code;
 mod coefficients;
@@ -21,6 +22,7 @@ mod jobs;
 mod json;
 mod keys;
 mod maneuvers;
+mod metrics;
 mod models;
 mod once;
 mod openapi;
@@ -29,8 +31,11 @@ mod prefer;
 pub mod problem;
 mod problems;
 mod query;
+mod rates;
+mod rerun;
 mod residual_analysis;
 mod results;
+mod retention;
 mod routes;
 mod serve;
 mod study;
@@ -62,6 +67,14 @@ pub struct Config {
     pub max_job_values: usize,
     /// Connections at a time; those beyond wait.
     pub max_connections: usize,
+    /// Jobs that wait, of everybody; beyond, submissions are refused for the time being.
+    pub max_queued: usize,
+    /// Jobs that wait, of one key.
+    pub max_queued_per_key: usize,
+    /// Requests of a key in a second, and twice as many at once; 0: as many as it will.
+    pub max_requests_per_second: u32,
+    /// Bytes that the maneuvers of a project may take.
+    pub max_stored_bytes: u64,
     /// Other sites whose pages may use the service from a browser.
     pub origins: Vec<Origin>,
 }
@@ -74,6 +87,10 @@ impl Default for Config {
             recording: ingest::Limits::default(),
             max_job_values: 100_000_000,
             max_connections: 1024,
+            max_queued: 20_000,
+            max_queued_per_key: 10_000,
+            max_requests_per_second: 200,
+            max_stored_bytes: 100_000_000_000,
             origins: Vec::new(),
         }
     }
@@ -85,6 +102,8 @@ pub struct Server {
     store: Store,
     config: Arc<Config>,
     compute: compute::Compute,
+    metrics: metrics::Metrics,
+    rates: rates::Rates,
     /// Ends what would not end by itself.
     shutdown: CancellationToken,
 }
@@ -96,5 +115,6 @@ pub struct Service {
     caller: caller::Caller,
     config: Arc<Config>,
     compute: compute::Compute,
+    metrics: metrics::Metrics,
     shutdown: CancellationToken,
 }

@@ -91,6 +91,10 @@ impl Problem {
         self
     }
 
+    pub fn errors(&self) -> &[Fault] {
+        &self.errors
+    }
+
     /// The fault of a single place.
     pub fn at(code: Code, pointer: &str, message: impl Into<String>) -> Self {
         Self::of_faults(code, vec![Fault::new(pointer, code.name(), message)])

@@ -19,8 +19,9 @@ use super::code::Code;
 use super::headers::Origin;
 use super::problem::{self, Problem};
 use super::{
-    Server, caller, coefficients, diagnosis, events, headers, health, histories, jobs, keys,
-    maneuvers, models, once, problems, residual_analysis, results, study, submit,
+    Server, bulk, caller, coefficients, diagnosis, events, headers, health, histories, jobs, keys,
+    maneuvers, metrics, models, once, problems, rerun, residual_analysis, results, retention,
+    study, submit,
 };
 
 /// Every resource.
@@ -29,6 +30,9 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(maneuvers::router())
         .merge(models::router())
         .merge(submit::router())
+        .merge(bulk::router())
+        .merge(rerun::router())
+        .merge(retention::router())
         .merge(jobs::router())
         .merge(events::router())
         .merge(results::router())
@@ -39,6 +43,7 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(residual_analysis::router())
         .merge(problems::router())
         .merge(keys::router())
+        .merge(metrics::router())
         .merge(health::router())
 }
 
@@ -51,7 +56,7 @@ pub(super) fn router(server: Server) -> Router {
         Problem::new(Code::CrossOrigin, detail).into_response()
     });
     let request_id = HeaderName::from_static("x-request-id");
-    let [of_once, of_callers] = [server.clone(), server.clone()];
+    let [of_once, of_callers, of_counts] = [(); 3].map(|()| server.clone());
     api.merge(super::pages::router())
         .with_state(server)
         .merge(docs)
@@ -64,6 +69,7 @@ pub(super) fn router(server: Server) -> Router {
         .layer(cross_origin)
         .layer(CatchPanicLayer::custom(Problem::of_panic))
         .layer(middleware::from_fn(problem::render))
+        .layer(middleware::from_fn_with_state(of_counts, metrics::count))
         .layer(CompressionLayer::new())
         .layer(headers::cross_origin(&origins))
         .layer(middleware::from_fn(headers::guard))

@@ -13,6 +13,8 @@ use tokio::sync::Semaphore;
 use tokio_util::sync::CancellationToken;
 
 use super::compute::Compute;
+use super::metrics::Metrics;
+use super::rates::Rates;
 use super::{Config, Server, routes};
 use crate::store::{Store, StoreError};
 
@@ -71,10 +73,13 @@ fn fault(address: &str) -> impl Fn(std::io::Error) -> BindError {
 /// production run this same function.
 pub async fn run(config: Config, listener: TcpListener, store: Store, shutdown: CancellationToken) {
     let connections = Arc::new(Semaphore::new(config.max_connections));
+    let rates = Rates::new(config.max_requests_per_second);
     let server = Server {
         store,
         config: Arc::new(config),
         compute: Compute::new(),
+        metrics: Metrics::new(),
+        rates,
         shutdown: shutdown.clone(),
     };
     let router = routes::router(server);

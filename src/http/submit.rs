@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use axum::Json;
-use axum::http::{HeaderMap, StatusCode, header};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
@@ -75,14 +75,8 @@ async fn submit_job(
     if query.validate_only {
         return Ok(Json(Outcome::Prepared(prepared)).into_response());
     }
-    let job = NewJob {
-        kind: kind_name(spec.kind).to_string(),
-        name: spec.name.clone(),
-        tags: spec.tags.clone(),
-        priority: spec.priority,
-        spec: text,
-        model: serde_json::to_string(&model)?,
-    };
+    room(&service, 1).await?;
+    let job = new_job(&spec, text, &model)?;
     let mut job = service.store.submit(id, &job).await?;
     let wait = prefer::wait(&headers);
     if let Some(wait) = wait {
@@ -101,6 +95,39 @@ async fn submit_job(
     Ok(response)
 }
 
+/// What is kept of a job that was checked; `text` is its spec as it was sent.
+pub fn new_job(spec: &JobSpec, text: String, model: &ModelDocument) -> Result<NewJob, Problem> {
+    Ok(NewJob {
+        kind: kind_name(spec.kind).to_string(),
+        name: spec.name.clone(),
+        tags: spec.tags.clone(),
+        priority: spec.priority,
+        spec: text,
+        model: serde_json::to_string(model)?,
+    })
+}
+
+/// Whether so many more jobs may wait. Several that ask at once may each be let in: it is a bound against floods.
+pub async fn room(service: &Service, jobs: usize) -> Result<(), Problem> {
+    let config = &service.config;
+    let waiting = service.store.waiting(config.max_queued).await?;
+    let refuse = |of: &str, use_: usize, limit: usize, setting: &str| {
+        let detail = format!(
+            "{use_} jobs of {of} wait, and {limit} may ({setting}); submit again when some are done"
+        );
+        let seconds = HeaderValue::from_static("10");
+        Err(Problem::new(Code::QueueFull, detail).with_header(header::RETRY_AFTER, seconds))
+    };
+    if waiting.own + jobs > config.max_queued_per_key {
+        let limit = config.max_queued_per_key;
+        return refuse("this key", waiting.own, limit, "--max-queued-per-key");
+    }
+    if waiting.all + jobs > config.max_queued {
+        return refuse("everybody", waiting.all, config.max_queued, "--max-queued");
+    }
+    Ok(())
+}
+
 pub fn kind_name(kind: JobKind) -> &'static str {
     match kind {
         JobKind::Estimate => "estimate",
@@ -110,7 +137,7 @@ pub fn kind_name(kind: JobKind) -> &'static str {
 }
 
 /// What the job amounts to, and the model that it names or holds; or all that is wrong with it.
-async fn check(
+pub async fn check(
     service: &Service,
     spec: &Arc<JobSpec>,
 ) -> Result<(ModelDocument, Prepared), Problem> {

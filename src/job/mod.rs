@@ -9,6 +9,7 @@ mod filter;
 mod missing;
 mod plausible;
 mod prepare;
+mod provenance;
 mod resolve;
 mod run;
 mod spec;
@@ -21,6 +22,7 @@ pub use checks::MOST_MANEUVERS;
 pub use diagnosis::run_diagnosis;
 pub use event::{Event, EventBody, Prepared};
 pub use prepare::{Plan, prepare};
+pub use provenance::Maker;
 pub use run::{JobResult, run};
 pub use spec::{
     Candidate, Gaps, HIGHEST_PRIORITY, JobKind, JobSpec, ManeuverUse, ModelSource,

@@ -6,6 +6,7 @@ use uuid::Uuid;
 
 use super::log::{Head, append, read_status};
 use super::page::one_more;
+use super::writing::Writing;
 use super::{BadCursor, Page, Project, Signal, StoreError, queue};
 use crate::job::{EventBody, Status};
 
@@ -96,9 +97,42 @@ impl Project {
     /// # Errors
     /// The database cannot be written.
     pub async fn submit(&self, id: Uuid, job: &NewJob) -> Result<JobRecord, StoreError> {
+        let accepted = self.submit_all(&[(id, job)]).await?.pop();
+        accepted.ok_or_else(|| StoreError::corrupt("a job", "it vanished"))
+    }
+
+    /// Accepts all of these jobs, or none.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub async fn submit_all(&self, jobs: &[(Uuid, &NewJob)]) -> Result<Vec<JobRecord>, StoreError> {
+        let mut writing = self.store.begin().await?;
+        let mut accepted = Vec::new();
+        for (id, job) in jobs {
+            accepted.push(self.accept(&mut writing, *id, job).await?);
+        }
+        writing.tell(Signal::Work);
+        writing.commit().await?;
+        let mut records = Vec::new();
+        for ((id, _), new) in jobs.iter().zip(accepted) {
+            let record = match new {
+                Some(record) => Some(record),
+                None => self.job(*id).await?,
+            };
+            records.push(record.ok_or_else(|| StoreError::corrupt("a job", "it vanished"))?);
+        }
+        Ok(records)
+    }
+
+    /// `None`: there is one of this id.
+    async fn accept(
+        &self,
+        writing: &mut Writing,
+        id: Uuid,
+        job: &NewJob,
+    ) -> Result<Option<JobRecord>, StoreError> {
         let now = self.store.clock.now_text();
         let tags = serde_json::Value::from(job.tags.clone()).to_string();
-        let mut writing = self.store.begin().await?;
         let turn = queue::next_turn(writing.connection(), &self.submitter).await?;
         let inserted = sqlx::query(
             "INSERT INTO jobs (id, kind, name, tags, status, created, last_seq, attempt, lost, spec, model, \
@@ -120,9 +154,7 @@ impl Project {
         .execute(writing.connection())
         .await?;
         if inserted.rows_affected() == 0 {
-            drop(writing);
-            let known = self.job(id).await?;
-            return known.ok_or_else(|| StoreError::corrupt("a job", "it vanished"));
+            return Ok(None);
         }
         for tag in &job.tags {
             sqlx::query("INSERT INTO job_tags (tag, job) VALUES ($1, $2) ON CONFLICT DO NOTHING")
@@ -137,9 +169,7 @@ impl Project {
         };
         let queued = [EventBody::Queued];
         append(writing.connection(), id, &mut head, &now, &queued).await?;
-        writing.tell(Signal::Work);
-        writing.commit().await?;
-        Ok(JobRecord {
+        Ok(Some(JobRecord {
             id,
             kind: job.kind.clone(),
             name: job.name.clone(),
@@ -151,7 +181,7 @@ impl Project {
             finished: None,
             attempt: 0,
             ending: None,
-        })
+        }))
     }
 
     /// # Errors
@@ -165,6 +195,30 @@ impl Project {
         .fetch_optional(&self.store.readers)
         .await?;
         row.as_ref().map(read_job).transpose()
+    }
+
+    /// What was submitted, to be submitted again: the model is what it was then.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn submitted(&self, id: Uuid) -> Result<Option<NewJob>, StoreError> {
+        let sql = "SELECT kind, name, tags, priority, spec, model FROM jobs WHERE id = $1 AND project = $2";
+        let row = sqlx::query(sql)
+            .bind(id.to_string())
+            .bind(&*self.name)
+            .fetch_optional(&self.store.readers)
+            .await?;
+        let Some(row) = row else { return Ok(None) };
+        let tags = serde_json::from_str(row.try_get("tags")?)
+            .map_err(|error| StoreError::corrupt(format!("job {id}"), error))?;
+        Ok(Some(NewJob {
+            kind: row.try_get("kind")?,
+            name: row.try_get("name")?,
+            tags,
+            priority: i32::try_from(row.try_get::<i64, _>("priority")?).unwrap_or(0),
+            spec: row.try_get("spec")?,
+            model: row.try_get("model")?,
+        }))
     }
 
     /// JSON of the spec, as it was submitted.

@@ -30,16 +30,19 @@ pub enum Scope {
     Submit,
     /// Make and revoke the project's keys, and delete what it has.
     Admin,
+    /// See what the service does: numbers over all projects, and no data of any.
+    Metrics,
 }
 
 impl Scope {
-    pub const ALL: [Self; 3] = [Self::Read, Self::Submit, Self::Admin];
+    pub const ALL: [Self; 4] = [Self::Read, Self::Submit, Self::Admin, Self::Metrics];
 
     pub fn name(self) -> &'static str {
         match self {
             Self::Read => "read",
             Self::Submit => "submit",
             Self::Admin => "admin",
+            Self::Metrics => "metrics",
         }
     }
 }

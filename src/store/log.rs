@@ -4,7 +4,7 @@ use sqlx::{AnyConnection, Row};
 use uuid::Uuid;
 
 use super::page::one_more;
-use super::{Page, Project, StoreError};
+use super::{Page, Project, StoreError, clock, tallies};
 use crate::job::{EventBody, Status};
 
 /// An event as it is kept. The body stays JSON: most readers hand it on as it is.
@@ -85,7 +85,37 @@ pub(super) async fn append(
     .bind(finished)
     .execute(&mut *connection)
     .await?;
+    for event in events {
+        count(connection, &job, event, now).await?;
+    }
     Ok(())
+}
+
+/// Counts the first claim of a job, and its end.
+async fn count(
+    connection: &mut AnyConnection,
+    job: &str,
+    event: &EventBody,
+    now: &str,
+) -> Result<(), StoreError> {
+    let how = match event {
+        EventBody::Claimed { attempt: 1, .. } => None,
+        EventBody::Failed { faults } => Some(faults.first().map_or("failed", |fault| &fault.code)),
+        event if event.is_last() => Some(event.name()),
+        _ => return Ok(()),
+    };
+    let row = sqlx::query("SELECT created, started FROM jobs WHERE id = $1")
+        .bind(job)
+        .fetch_one(&mut *connection)
+        .await?;
+    let since = |moment: &str| clock::seconds(moment, now).unwrap_or(0.0).max(0.0);
+    match how {
+        None => tallies::count_wait(connection, since(row.try_get("created")?)).await,
+        Some(how) => {
+            let started: Option<&str> = row.try_get("started")?;
+            tallies::count_end(connection, how, started.map(since)).await
+        }
+    }
 }
 
 pub(super) fn read_status(text: &str) -> Result<Status, StoreError> {

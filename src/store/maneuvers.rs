@@ -147,6 +147,19 @@ impl Project {
             .ok_or_else(|| StoreError::corrupt("a maneuver", "it vanished"))
     }
 
+    /// Bytes that the maneuvers of the project take.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn stored_bytes(&self) -> Result<u64, StoreError> {
+        let sql = "SELECT CAST(COALESCE(SUM(bytes), 0) AS BIGINT) AS bytes FROM maneuvers WHERE project = $1";
+        let row = sqlx::query(sql)
+            .bind(&*self.name)
+            .fetch_one(&self.store.readers)
+            .await?;
+        Ok(u64::try_from(row.try_get::<i64, _>("bytes")?).unwrap_or(0))
+    }
+
     /// # Errors
     /// The database does not answer.
     pub async fn maneuver(&self, id: &str) -> Result<Option<ManeuverRecord>, StoreError> {

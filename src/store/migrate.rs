@@ -27,6 +27,10 @@ const STEPS: &[Step] = &[
         version: 4,
         sql: include_str!("migrations/0004_projects.sql"),
     },
+    Step {
+        version: 5,
+        sql: include_str!("migrations/0005_tallies.sql"),
+    },
 ];
 
 /// Brings the schema up to date. Processes that start at once do not disturb each other: all steps are looked for and

@@ -27,7 +27,9 @@ mod page;
 mod project;
 mod queue;
 mod results;
+mod retention;
 mod signal;
+mod tallies;
 mod writing;
 
 use std::sync::Arc;
@@ -48,8 +50,11 @@ pub use maneuvers::{ManeuverRecord, Uploaded};
 pub use models::ModelRecord;
 pub use page::{BadCursor, Page};
 pub use project::{DEFAULT_PROJECT, Project};
+pub use queue::Waiting;
 pub use results::{Part, ResultParts};
+pub use retention::{Deleted, Expired, Rule};
 pub use signal::{Listener, Signal};
+pub use tallies::{BUCKETS, Census, Histogram};
 
 use engine::Engine;
 

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use uuid::Uuid;
 
-use super::{Key, KeyRecord, Listener, NewKey, Store, StoreError};
+use super::{Expired, Key, KeyRecord, Listener, NewKey, Rule, Store, StoreError};
 
 /// The project of those who need no key, and of what was stored before there were keys.
 pub const DEFAULT_PROJECT: &str = "default";
@@ -69,5 +69,23 @@ impl Project {
         overlap: Duration,
     ) -> Result<Option<(KeyRecord, Key)>, StoreError> {
         self.store.rotate_key(Some(&self.name), id, overlap).await
+    }
+
+    /// Deletes what is older than `age`; see [`Store::expire`].
+    ///
+    /// # Errors
+    /// As [`Store::expire`].
+    pub async fn expire(
+        &self,
+        age: Duration,
+        keep_tag: &str,
+        dry_run: bool,
+    ) -> Result<Expired, StoreError> {
+        let rule = Rule {
+            project: Some(self.name.to_string()),
+            before: self.store.clock.text_before(age),
+            keep_tag: keep_tag.to_string(),
+        };
+        self.store.expire(&rule, dry_run).await
     }
 }

@@ -6,7 +6,37 @@
 
 use sqlx::{AnyConnection, Row};
 
-use super::StoreError;
+use super::{Project, StoreError};
+
+/// How many jobs wait, counted no further than is asked for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Waiting {
+    /// Of everybody.
+    pub all: usize,
+    /// Of this key.
+    pub own: usize,
+}
+
+impl Project {
+    /// # Errors
+    /// The database does not answer.
+    pub async fn waiting(&self, most: usize) -> Result<Waiting, StoreError> {
+        let sql = "SELECT (SELECT COUNT(*) FROM (SELECT id FROM jobs WHERE status = 'queued' LIMIT $1) AS a) AS everybody, \
+                   (SELECT COUNT(*) FROM (SELECT id FROM jobs WHERE submitter = $2 AND status = 'queued' LIMIT $1) AS b) AS own";
+        let row = sqlx::query(sql)
+            .bind(i64::try_from(most).unwrap_or(i64::MAX))
+            .bind(&*self.submitter)
+            .fetch_one(&self.store.readers)
+            .await?;
+        let of = |column| {
+            Ok::<_, StoreError>(usize::try_from(row.try_get::<i64, _>(column)?).unwrap_or(0))
+        };
+        Ok(Waiting {
+            all: of("everybody")?,
+            own: of("own")?,
+        })
+    }
+}
 
 /// Waiting jobs in their order.
 pub(super) const IN_LINE: &str = "priority DESC, turn, id";

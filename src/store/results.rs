@@ -6,7 +6,7 @@ use uuid::Uuid;
 
 use super::{Project, StoreError, columns, off_reactor};
 use crate::estimate::{OutputSeries, Role, Series, TimeHistory};
-use crate::job::JobResult;
+use crate::job::{JobResult, Maker};
 
 /// A part that is kept as JSON.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -19,6 +19,8 @@ pub enum Part {
     Study,
     /// [`crate::diagnose::Diagnosis`]; only of jobs of that kind.
     Diagnosis,
+    /// [`Maker`].
+    Maker,
 }
 
 impl Part {
@@ -28,6 +30,7 @@ impl Part {
             Self::Model => "model",
             Self::Study => "study",
             Self::Diagnosis => "diagnosis",
+            Self::Maker => "maker",
         }
     }
 }
@@ -40,7 +43,7 @@ impl ResultParts {
     ///
     /// # Errors
     /// A part has no encoding.
-    pub fn encode(result: &JobResult) -> Result<Self, StoreError> {
+    pub fn encode(result: &JobResult, maker: &Maker) -> Result<Self, StoreError> {
         let unwritable = |error: serde_json::Error| StoreError::Unwritable {
             what: "the result".into(),
             why: error.to_string(),
@@ -54,6 +57,7 @@ impl ResultParts {
                 Part::Model.name().to_string(),
                 serde_json::to_vec(&result.model),
             ),
+            (Part::Maker.name().to_string(), serde_json::to_vec(maker)),
         ];
         if let Some(study) = &result.study {
             let study = serde_json::to_vec(study);

@@ -5,6 +5,7 @@
 //! many solver threads.
 
 mod clock;
+mod maker;
 mod persist;
 mod run;
 mod solve;

@@ -7,6 +7,7 @@ use tokio::sync::mpsc;
 use tokio::task::JoinError;
 
 use super::clock::ThreadClock;
+use super::maker::this_program;
 use super::stop::Stop;
 use crate::estimate::Outcome;
 use crate::flight::Maneuver;
@@ -83,7 +84,7 @@ pub fn solve(
         }),
     };
     let result = result.map_err(Unanswered::Refused)?;
-    let parts = ResultParts::encode(&result)?;
+    let parts = ResultParts::encode(&result, this_program())?;
     let (outcome, reason) = (result.estimate.outcome, result.estimate.reason);
     Ok(Answer {
         outcome,

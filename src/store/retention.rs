@@ -1,0 +1,183 @@
+//! Deleting: one job or maneuver by hand, or what is older than it need be kept.
+
+use sqlx::{AnyConnection, AssertSqlSafe, Row};
+use uuid::Uuid;
+
+use super::log::read_status;
+use super::{Project, Store, StoreError};
+
+/// What became of the wish to delete something.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Deleted {
+    Gone,
+    Unknown,
+    /// A job that is not over.
+    NotOver,
+    /// A maneuver that so many jobs use.
+    InUse(u64),
+}
+
+/// What need not be kept.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Rule {
+    /// Of this project only.
+    pub project: Option<String>,
+    /// Jobs that ended, and maneuvers that were uploaded, before this moment.
+    pub before: String,
+    /// Jobs with this tag are kept, and what they use.
+    pub keep_tag: String,
+}
+
+/// What was deleted, or would be.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Expired {
+    pub jobs: u64,
+    pub maneuvers: u64,
+    /// That the maneuvers take.
+    pub maneuver_bytes: u64,
+}
+
+const OVER: &str = "('succeeded', 'failed', 'cancelled')";
+
+/// Jobs that end with a transaction, so that it does not hold up others for long.
+const AT_ONCE: usize = 100;
+
+impl Project {
+    /// Deletes a job that is over, with its log and result.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub async fn delete_job(&self, id: Uuid) -> Result<Deleted, StoreError> {
+        let mut writing = self.store.begin().await?;
+        let sql = format!(
+            "SELECT status FROM jobs WHERE id = $1 AND project = $2 {}",
+            self.store.engine.locking()
+        );
+        let row = sqlx::query(AssertSqlSafe(sql))
+            .bind(id.to_string())
+            .bind(&*self.name)
+            .fetch_optional(writing.connection())
+            .await?;
+        let Some(row) = row else {
+            return Ok(Deleted::Unknown);
+        };
+        if !read_status(row.try_get("status")?)?.is_over() {
+            return Ok(Deleted::NotOver);
+        }
+        delete(writing.connection(), &id.to_string()).await?;
+        writing.commit().await?;
+        Ok(Deleted::Gone)
+    }
+
+    /// Deletes a maneuver that no job uses: a result without its data could not be made again.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub async fn delete_maneuver(&self, id: &str) -> Result<Deleted, StoreError> {
+        if self.maneuver(id).await?.is_none() {
+            return Ok(Deleted::Unknown);
+        }
+        let mut writing = self.store.begin().await?;
+        let sql =
+            "SELECT COUNT(*) AS jobs FROM jobs WHERE project = $1 AND spec LIKE '%' || $2 || '%'";
+        let row = sqlx::query(sql)
+            .bind(&*self.name)
+            .bind(id)
+            .fetch_one(writing.connection())
+            .await?;
+        let jobs = u64::try_from(row.try_get::<i64, _>("jobs")?).unwrap_or(0);
+        if jobs > 0 {
+            return Ok(Deleted::InUse(jobs));
+        }
+        sqlx::query("DELETE FROM maneuvers WHERE project = $1 AND id = $2")
+            .bind(&*self.name)
+            .bind(id)
+            .execute(writing.connection())
+            .await?;
+        writing.commit().await?;
+        Ok(Deleted::Gone)
+    }
+}
+
+impl Store {
+    /// Deletes what need not be kept, or with `dry_run` says how much it is: jobs that are over, and maneuvers that no job uses
+    /// which is left.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub async fn expire(&self, rule: &Rule, dry_run: bool) -> Result<Expired, StoreError> {
+        let project = |table: &str| {
+            let of_one = format!("{table}.project = $3");
+            if rule.project.is_some() {
+                of_one
+            } else {
+                format!("$3 = $3 AND {table}.project <> ''")
+            }
+        };
+        let doomed = format!(
+            "jobs.status IN {OVER} AND jobs.finished < $1 AND {} \
+             AND NOT EXISTS (SELECT 1 FROM job_tags WHERE job_tags.job = jobs.id AND job_tags.tag = $2)",
+            project("jobs")
+        );
+        let unused = format!(
+            "maneuvers.created < $1 AND {} AND NOT EXISTS (SELECT 1 FROM jobs \
+             WHERE jobs.project = maneuvers.project AND jobs.spec LIKE '%' || maneuvers.id || '%' AND NOT ({doomed}))",
+            project("maneuvers")
+        );
+        let of_one = rule.project.as_deref().unwrap_or_default();
+        let select = format!(
+            "SELECT COUNT(*) AS maneuvers, CAST(COALESCE(SUM(bytes), 0) AS BIGINT) AS bytes FROM maneuvers WHERE {unused}"
+        );
+        let row = sqlx::query(AssertSqlSafe(select))
+            .bind(&rule.before)
+            .bind(&rule.keep_tag)
+            .bind(of_one)
+            .fetch_one(&self.readers)
+            .await?;
+        let jobs = format!("SELECT id FROM jobs WHERE {doomed} ORDER BY id");
+        let jobs = sqlx::query(AssertSqlSafe(jobs))
+            .bind(&rule.before)
+            .bind(&rule.keep_tag)
+            .bind(of_one)
+            .fetch_all(&self.readers)
+            .await?;
+        let of = |column| {
+            Ok::<_, StoreError>(u64::try_from(row.try_get::<i64, _>(column)?).unwrap_or(0))
+        };
+        let expired = Expired {
+            jobs: jobs.len() as u64,
+            maneuvers: of("maneuvers")?,
+            maneuver_bytes: of("bytes")?,
+        };
+        if dry_run {
+            return Ok(expired);
+        }
+        for some in jobs.chunks(AT_ONCE) {
+            let mut writing = self.begin().await?;
+            for job in some {
+                delete(writing.connection(), job.try_get("id")?).await?;
+            }
+            writing.commit().await?;
+        }
+        let delete = format!("DELETE FROM maneuvers WHERE {unused}");
+        sqlx::query(AssertSqlSafe(delete))
+            .bind(&rule.before)
+            .bind(&rule.keep_tag)
+            .bind(of_one)
+            .execute(&self.writer)
+            .await?;
+        Ok(expired)
+    }
+}
+
+async fn delete(connection: &mut AnyConnection, job: &str) -> Result<(), StoreError> {
+    for sql in [
+        "DELETE FROM results WHERE job = $1",
+        "DELETE FROM events WHERE job = $1",
+        "DELETE FROM job_tags WHERE job = $1",
+        "DELETE FROM jobs WHERE id = $1",
+    ] {
+        sqlx::query(sql).bind(job).execute(&mut *connection).await?;
+    }
+    Ok(())
+}
