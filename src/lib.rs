@@ -13,10 +13,10 @@
 //! | J, R, F, the estimate | cost, steps, error bounds | [`estimate`] |
 //! | S⊥, ψ, the effect that is missing | screening, trials, verdict | [`diagnose`] |
 //!
-//! Around them: what a job is ([`job`]), what keeps it ([`store`]), who runs it ([`work`]), how it is asked for
-//! ([`http`], [`cli`]), how its result looks ([`dashboard`]). Arrows go one way: `estimate → simulate → model → flight`, `ingest → flight`,
-//! `job → estimate`, `store → job`, `work → store`, `http → store, job, ingest, dashboard`. `http` and `work` meet
-//! only at the store. From `flight` to `job` all is synchronous and deterministic.
+//! Around them: what a job is ([`job`]), what keeps it ([`store`]), who runs it ([`work`]), who is told of its end
+//! ([`webhook`]), how it is asked for ([`http`], [`cli`]), how its result looks ([`dashboard`]). Arrows go one way:
+//! `estimate → simulate → model → flight`, `ingest → flight`, `job → estimate`, `store → job`, `work → store`,
+//! `webhook → store`, `http → store, job, ingest, dashboard, webhook`. `http` and `work` meet only at the store. From `flight` to `job` all is synchronous and deterministic.
 
 pub mod cli;
 pub mod dashboard;
@@ -29,4 +29,5 @@ pub mod job;
 pub mod model;
 pub mod simulate;
 pub mod store;
+pub mod webhook;
 pub mod work;

@@ -99,6 +99,12 @@ const NEEDED: &[(&str, &[&str])] = &[
             "deleteJob",
             "deleteManeuver",
             "expire",
+            "listWebhooks",
+            "addWebhook",
+            "deleteWebhook",
+            "rotateWebhook",
+            "testWebhook",
+            "listDeliveries",
         ],
     ),
     ("metrics", &["getMetrics"]),
@@ -110,6 +116,9 @@ async fn every_operation_is_open_to_whom_it_should_be_and_to_nobody_else() {
     let maneuver = server.upload(&elevator()).await;
     let done = server.submit(&job(&maneuver)).await;
     server.wait(&done).await;
+    let order = json!({"url": "https://example.org/hook"});
+    let webhook = server.post_json("/v1/webhooks", &order).await.json();
+    let webhook = webhook["id"].as_str().unwrap().to_string();
     // from here on there are keys, and what was here is the default project's
     let all = Scope::ALL;
     let (spare, _) = made(&server, "default", &[Scope::Read], None).await;
@@ -141,6 +150,7 @@ async fn every_operation_is_open_to_whom_it_should_be_and_to_nobody_else() {
                 "maneuvers" => maneuver.clone(),
                 "models" => "short-period".to_string(),
                 "keys" => spare.to_string(),
+                "webhooks" => webhook.clone(),
                 _ => "internal".to_string(),
             };
             let path = template.replace("{id}", &of).replace("{code}", &of);

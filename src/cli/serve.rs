@@ -5,7 +5,7 @@ use tokio_util::sync::CancellationToken;
 
 use super::Failure;
 use super::process::Process;
-use crate::{http, ingest, work};
+use crate::{http, ingest, webhook, work};
 
 #[derive(Args)]
 pub struct Serve {
@@ -66,6 +66,15 @@ pub struct Serve {
     #[arg(long, env = "TRIMTAB_MAX_STORED_BYTES", value_name = "BYTES", default_value_t = http::Config::default().max_stored_bytes)]
     max_stored_bytes: u64,
 
+    /// A host that webhooks may lead to although it is on this machine or its network; also without TLS. May be given several times.
+    #[arg(
+        long = "webhook-allow",
+        env = "TRIMTAB_WEBHOOK_ALLOW",
+        value_name = "HOST",
+        value_delimiter = ','
+    )]
+    webhook_allow: Vec<String>,
+
     /// Another site whose pages may use the service from a browser (CORS), as https://HOST:PORT; may be given several times.
     #[arg(
         long = "allow-origin",
@@ -97,9 +106,12 @@ impl Serve {
             workers,
             "ready"
         );
+        let config = self.config();
+        let allowed = config.webhooks.clone();
         tokio::join!(
-            http::run(self.config(), listener, store.clone(), shutdown.clone()),
-            work::run(store.clone(), workers, shutdown),
+            http::run(config, listener, store.clone(), shutdown.clone()),
+            work::run(store.clone(), workers, shutdown.clone()),
+            webhook::run(store.clone(), allowed, shutdown),
         );
         store.close().await;
         Ok(())
@@ -121,6 +133,7 @@ impl Serve {
             max_queued_per_key: self.max_queued_per_key,
             max_requests_per_second: self.max_requests_per_second,
             max_stored_bytes: self.max_stored_bytes,
+            webhooks: webhook::Allowed::new(self.webhook_allow.clone()),
             origins: self.origins.clone(),
         }
     }

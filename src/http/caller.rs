@@ -59,7 +59,10 @@ pub fn needed(method: &Method, path: &str) -> Option<Scope> {
     if under("/metrics") {
         return Some(Scope::Metrics);
     }
-    if under("/v1/keys") || under("/v1/retention") || *method == Method::DELETE {
+    let is_admins = ["/v1/keys", "/v1/webhooks", "/v1/retention"]
+        .into_iter()
+        .any(under);
+    if is_admins || *method == Method::DELETE {
         return Some(Scope::Admin);
     }
     // works out numbers from a result and keeps nothing

@@ -70,6 +70,8 @@ codes! {
     UnknownJob "unknown_job" NOT_FOUND "There is no such job";
     /// The project has no key of this id that is good.
     UnknownKey "unknown_key" NOT_FOUND "There is no such key";
+    /// The project has no webhook of this id.
+    UnknownWebhook "unknown_webhook" NOT_FOUND "There is no such webhook";
     /// There is no problem of this code.
     UnknownCode "unknown_code" NOT_FOUND "There is no such code";
     /// The job ended without a result: `detail` says how it ended.
@@ -84,6 +86,8 @@ codes! {
     NotFinished "not_finished" CONFLICT "The job is not finished";
     /// The job is over: there is nothing to cancel.
     AlreadyOver "already_over" CONFLICT "The job is already over";
+    /// The project has as many webhooks as it may. Delete one first.
+    TooManyWebhooks "too_many_webhooks" CONFLICT "There are too many webhooks";
     /// Jobs use the maneuver, and could not be run again without it.
     InUse "in_use" CONFLICT "It is in use";
     /// A request with this `Idempotency-Key` is still in hand. Send it again after `Retry-After` seconds.
@@ -108,6 +112,8 @@ codes! {
     InvalidJob "invalid_job" UNPROCESSABLE_ENTITY "The job has faults";
     /// The key cannot be made so. `errors` lists all faults, each with its place.
     InvalidKey "invalid_key" UNPROCESSABLE_ENTITY "The key cannot be made so";
+    /// The webhook cannot be made so: `errors` tells the place.
+    InvalidWebhook "invalid_webhook" UNPROCESSABLE_ENTITY "The webhook cannot be made so";
     /// The aircraft's constants have faults. `errors` lists all of them.
     InvalidAircraft "invalid_aircraft" UNPROCESSABLE_ENTITY "The aircraft's constants have faults";
     /// The service failed: a defect of ours. Report it with the `request_id`.

@@ -40,6 +40,7 @@ mod routes;
 mod serve;
 mod study;
 mod submit;
+mod webhooks;
 
 use std::sync::Arc;
 
@@ -47,6 +48,7 @@ use tokio_util::sync::CancellationToken;
 
 use crate::ingest;
 use crate::store::{Project, Store};
+use crate::webhook::Allowed;
 
 pub use caller::Caller;
 pub use headers::Origin;
@@ -75,6 +77,8 @@ pub struct Config {
     pub max_requests_per_second: u32,
     /// Bytes that the maneuvers of a project may take.
     pub max_stored_bytes: u64,
+    /// Where webhooks may lead.
+    pub webhooks: Allowed,
     /// Other sites whose pages may use the service from a browser.
     pub origins: Vec<Origin>,
 }
@@ -91,6 +95,7 @@ impl Default for Config {
             max_queued_per_key: 10_000,
             max_requests_per_second: 200,
             max_stored_bytes: 100_000_000_000,
+            webhooks: Allowed::default(),
             origins: Vec::new(),
         }
     }

@@ -27,6 +27,7 @@ use super::{caller, once, problem, routes};
         (name = "Jobs", description = "Estimations: submitted, followed, cancelled."),
         (name = "Results", description = "What a finished job answers."),
         (name = "Keys", description = "Who may do what in a project."),
+        (name = "Webhooks", description = "Being told of the end of jobs."),
         (name = "Problems", description = "What can go wrong."),
         (name = "Operations", description = "For those that run the service."),
     ),

@@ -21,7 +21,7 @@ use super::problem::{self, Problem};
 use super::{
     Server, bulk, caller, coefficients, diagnosis, events, headers, health, histories, jobs, keys,
     maneuvers, metrics, models, once, problems, rerun, residual_analysis, results, retention,
-    study, submit,
+    study, submit, webhooks,
 };
 
 /// Every resource.
@@ -43,6 +43,7 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(residual_analysis::router())
         .merge(problems::router())
         .merge(keys::router())
+        .merge(webhooks::router())
         .merge(metrics::router())
         .merge(health::router())
 }

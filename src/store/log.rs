@@ -4,7 +4,7 @@ use sqlx::{AnyConnection, Row};
 use uuid::Uuid;
 
 use super::page::one_more;
-use super::{Page, Project, StoreError, clock, tallies};
+use super::{Page, Project, StoreError, clock, tallies, webhooks};
 use crate::job::{EventBody, Status};
 
 /// An event as it is kept. The body stays JSON: most readers hand it on as it is.
@@ -86,13 +86,13 @@ pub(super) async fn append(
     .execute(&mut *connection)
     .await?;
     for event in events {
-        count(connection, &job, event, now).await?;
+        note(connection, &job, event, now).await?;
     }
     Ok(())
 }
 
-/// Counts the first claim of a job, and its end.
-async fn count(
+/// What follows from the first claim of a job, and from its end: they are counted, and who wants to know is owed it.
+async fn note(
     connection: &mut AnyConnection,
     job: &str,
     event: &EventBody,
@@ -104,7 +104,7 @@ async fn count(
         event if event.is_last() => Some(event.name()),
         _ => return Ok(()),
     };
-    let row = sqlx::query("SELECT created, started FROM jobs WHERE id = $1")
+    let row = sqlx::query("SELECT project, created, started FROM jobs WHERE id = $1")
         .bind(job)
         .fetch_one(&mut *connection)
         .await?;
@@ -113,7 +113,9 @@ async fn count(
         None => tallies::count_wait(connection, since(row.try_get("created")?)).await,
         Some(how) => {
             let started: Option<&str> = row.try_get("started")?;
-            tallies::count_end(connection, how, started.map(since)).await
+            tallies::count_end(connection, how, started.map(since)).await?;
+            let project = row.try_get("project")?;
+            webhooks::owe(connection, project, job, event.name(), now).await
         }
     }
 }

@@ -31,6 +31,10 @@ const STEPS: &[Step] = &[
         version: 5,
         sql: include_str!("migrations/0005_tallies.sql"),
     },
+    Step {
+        version: 6,
+        sql: include_str!("migrations/0006_webhooks.sql"),
+    },
 ];
 
 /// Brings the schema up to date. Processes that start at once do not disturb each other: all steps are looked for and

@@ -30,6 +30,7 @@ mod results;
 mod retention;
 mod signal;
 mod tallies;
+mod webhooks;
 mod writing;
 
 use std::sync::Arc;
@@ -55,6 +56,7 @@ pub use results::{Part, ResultParts};
 pub use retention::{Deleted, Expired, Rule};
 pub use signal::{Listener, Signal};
 pub use tallies::{BUCKETS, Census, Histogram};
+pub use webhooks::{Attempt, Delivery, DeliveryRecord, Webhook};
 
 use engine::Engine;
 

@@ -101,7 +101,7 @@ impl Project {
 
 impl Store {
     /// Deletes what need not be kept, or with `dry_run` says how much it is: jobs that are over, and maneuvers that no job uses
-    /// which is left.
+    /// which is left. The record of messages to webhooks goes with them.
     ///
     /// # Errors
     /// The database cannot be written.
@@ -161,6 +161,17 @@ impl Store {
         }
         let delete = format!("DELETE FROM maneuvers WHERE {unused}");
         sqlx::query(AssertSqlSafe(delete))
+            .bind(&rule.before)
+            .bind(&rule.keep_tag)
+            .bind(of_one)
+            .execute(&self.writer)
+            .await?;
+        let told = format!(
+            "DELETE FROM deliveries WHERE next IS NULL AND created < $1 AND $2 = $2 \
+             AND webhook IN (SELECT id FROM webhooks WHERE {})",
+            project("webhooks")
+        );
+        sqlx::query(AssertSqlSafe(told))
             .bind(&rule.before)
             .bind(&rule.keep_tag)
             .bind(of_one)

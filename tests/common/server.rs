@@ -7,7 +7,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 use tokio::task::JoinHandle;
 use tokio_util::sync::CancellationToken;
-use trimtab::{http, store::Store, work};
+use trimtab::{http, store::Store, webhook, work};
 
 /// API and workers in the test's process. It ends with the test.
 pub struct Server {
@@ -41,12 +41,14 @@ impl Server {
         let listener = http::bind("127.0.0.1:0", &store).await.unwrap();
         let url = format!("http://{}", listener.local_addr().unwrap());
         let shutdown = CancellationToken::new();
-        let (api, jobs) = (store.clone(), store.clone());
-        let (of_api, of_jobs) = (shutdown.clone(), shutdown.clone());
+        let [api, jobs, hooks] = [(); 3].map(|()| store.clone());
+        let [of_api, of_jobs, of_hooks] = [(); 3].map(|()| shutdown.clone());
+        let allowed = config.webhooks.clone();
         let task = tokio::spawn(async move {
             tokio::join!(
                 http::run(config, listener, api, of_api),
-                work::run(jobs, workers, of_jobs)
+                work::run(jobs, workers, of_jobs),
+                webhook::run(hooks, allowed, of_hooks)
             );
         });
         Self {
