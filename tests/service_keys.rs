@@ -57,6 +57,8 @@ const NEEDED: &[(&str, &[&str])] = &[
         "read",
         &[
             "listManeuvers",
+            "listMappings",
+            "getMapping",
             "getManeuver",
             "getManeuverData",
             "listModels",
@@ -82,6 +84,7 @@ const NEEDED: &[(&str, &[&str])] = &[
         "submit",
         &[
             "uploadManeuver",
+            "addMapping",
             "addModel",
             "submitJob",
             "submitJobs",
@@ -99,6 +102,7 @@ const NEEDED: &[(&str, &[&str])] = &[
             "deleteJob",
             "deleteManeuver",
             "expire",
+            "deleteMapping",
             "listWebhooks",
             "addWebhook",
             "deleteWebhook",
@@ -119,6 +123,9 @@ async fn every_operation_is_open_to_whom_it_should_be_and_to_nobody_else() {
     let order = json!({"url": "https://example.org/hook"});
     let webhook = server.post_json("/v1/webhooks", &order).await.json();
     let webhook = webhook["id"].as_str().unwrap().to_string();
+    let mapping = json!({"time": {"step": 0.1, "unit": "s"}, "channels": {"q": {"from": "q", "unit": "deg/s"}}});
+    let kept = server.post_json("/v1/mappings?name=logger", &mapping).await;
+    assert_eq!(kept.status, 201, "{}", kept.text());
     // from here on there are keys, and what was here is the default project's
     let all = Scope::ALL;
     let (spare, _) = made(&server, "default", &[Scope::Read], None).await;
@@ -151,6 +158,7 @@ async fn every_operation_is_open_to_whom_it_should_be_and_to_nobody_else() {
                 "models" => "short-period".to_string(),
                 "keys" => spare.to_string(),
                 "webhooks" => webhook.clone(),
+                "mappings" => "logger".to_string(),
                 _ => "internal".to_string(),
             };
             let path = template.replace("{id}", &of).replace("{code}", &of);

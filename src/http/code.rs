@@ -72,6 +72,8 @@ codes! {
     UnknownKey "unknown_key" NOT_FOUND "There is no such key";
     /// The project has no webhook of this id.
     UnknownWebhook "unknown_webhook" NOT_FOUND "There is no such webhook";
+    /// There is no mapping of this name, or none of the project's own.
+    UnknownMapping "unknown_mapping" NOT_FOUND "There is no such mapping";
     /// There is no problem of this code.
     UnknownCode "unknown_code" NOT_FOUND "There is no such code";
     /// The job ended without a result: `detail` says how it ended.
@@ -88,6 +90,8 @@ codes! {
     AlreadyOver "already_over" CONFLICT "The job is already over";
     /// The project has as many webhooks as it may. Delete one first.
     TooManyWebhooks "too_many_webhooks" CONFLICT "There are too many webhooks";
+    /// Something else goes by this name. Take another.
+    NameTaken "name_taken" CONFLICT "The name is taken";
     /// Jobs use the maneuver, and could not be run again without it.
     InUse "in_use" CONFLICT "It is in use";
     /// A request with this `Idempotency-Key` is still in hand. Send it again after `Retry-After` seconds.
@@ -114,6 +118,8 @@ codes! {
     InvalidKey "invalid_key" UNPROCESSABLE_ENTITY "The key cannot be made so";
     /// The webhook cannot be made so: `errors` tells the place.
     InvalidWebhook "invalid_webhook" UNPROCESSABLE_ENTITY "The webhook cannot be made so";
+    /// The mapping has a fault. `errors` tells the place.
+    InvalidMapping "invalid_mapping" UNPROCESSABLE_ENTITY "The mapping has faults";
     /// The aircraft's constants have faults. `errors` lists all of them.
     InvalidAircraft "invalid_aircraft" UNPROCESSABLE_ENTITY "The aircraft's constants have faults";
     /// The service failed: a defect of ours. Report it with the `request_id`.

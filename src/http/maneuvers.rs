@@ -16,9 +16,9 @@ use super::code::Code;
 use super::format::{Format, cacheable, choose};
 use super::problem::{Problem, ProblemDocument};
 use super::query::{Id, PageQuery, Parameters, bad_cursor, page_limit};
-use super::{Server, Service, body, decimate};
+use super::{Server, Service, body, decimate, mappings};
 use crate::flight::{Channel, Maneuver};
-use crate::ingest::{self, Mapping, Summary};
+use crate::ingest::{self, Summary};
 use crate::job::Fault;
 use crate::store::{ManeuverRecord, Uploaded};
 
@@ -83,8 +83,8 @@ struct UploadQuery {
     /// For people; at most 200 characters.
     #[param(example = "ATTAS elevator 3-2-1-1")]
     name: Option<String>,
-    /// Where a MAT file or an ASCII matrix has time and channels, and in which units: the name of a bundled
-    /// mapping (`fvsysid-attas`, `fvsysid-hfb320`, `sidpac`) or a JSON document. Sources are variables
+    /// Where a MAT file or an ASCII matrix has time and channels, and in which units: the name of a mapping
+    /// that is bundled (`fvsysid-attas`, `fvsysid-hfb320`, `sidpac`) or kept under `/v1/mappings`, or a JSON document. Sources are variables
     /// (`alpha`), fields of structs (`rec.alpha`), columns (`data(:,2)`) or rows (`data(2,:)`) of either, or
     /// columns of the only matrix of a file (`(:,2)`).
     #[param(
@@ -138,9 +138,10 @@ async fn upload_maneuver(
         let detail = format!("name: longer than {LONGEST_NAME} characters");
         return Err(Problem::new(Code::InvalidQuery, detail));
     }
-    let mapping = query.mapping.as_deref();
-    let mapping = mapping.map(Mapping::named_or_json).transpose();
-    let mapping = mapping.map_err(|fault| Problem::of_faults(Code::InvalidQuery, vec![fault]))?;
+    let mapping = match query.mapping.as_deref() {
+        Some(text) => Some(mappings::find(&service, text).await?),
+        None => None,
+    };
     let limit = service.config.max_maneuver_body;
     let bytes = body::read(&headers, body, limit, "--max-maneuver-body").await?;
     let limits = service.config.recording;

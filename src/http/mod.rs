@@ -22,6 +22,7 @@ mod jobs;
 mod json;
 mod keys;
 mod maneuvers;
+mod mappings;
 mod metrics;
 mod models;
 mod once;

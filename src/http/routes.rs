@@ -20,14 +20,15 @@ use super::headers::Origin;
 use super::problem::{self, Problem};
 use super::{
     Server, bulk, caller, coefficients, diagnosis, events, headers, health, histories, jobs, keys,
-    maneuvers, metrics, models, once, problems, rerun, residual_analysis, results, retention,
-    study, submit, webhooks,
+    maneuvers, mappings, metrics, models, once, problems, rerun, residual_analysis, results,
+    retention, study, submit, webhooks,
 };
 
 /// Every resource.
 pub(super) fn api() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .merge(maneuvers::router())
+        .merge(mappings::router())
         .merge(models::router())
         .merge(submit::router())
         .merge(bulk::router())

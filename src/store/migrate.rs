@@ -35,6 +35,10 @@ const STEPS: &[Step] = &[
         version: 6,
         sql: include_str!("migrations/0006_webhooks.sql"),
     },
+    Step {
+        version: 7,
+        sql: include_str!("migrations/0007_mappings.sql"),
+    },
 ];
 
 /// Brings the schema up to date. Processes that start at once do not disturb each other: all steps are looked for and

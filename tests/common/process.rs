@@ -20,9 +20,14 @@ impl Process {
     }
 
     pub fn serve(database: &str, listen: &str, workers: usize) -> Self {
+        Self::serve_with(database, listen, workers, &[])
+    }
+
+    /// With further settings.
+    pub fn serve_with(database: &str, listen: &str, workers: usize, more: &[&str]) -> Self {
         let workers = workers.to_string();
         let arguments = ["serve", "--listen", listen, "--workers", &workers];
-        let (child, line) = started(&arguments, database);
+        let (child, line) = started(&[&arguments, more].concat(), database);
         let url = line.strip_prefix("listening on ");
         Self {
             url: url.expect("one line with the URL").to_string(),

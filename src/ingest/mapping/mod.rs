@@ -12,7 +12,8 @@ mod apply;
 mod source;
 
 use indexmap::IndexMap;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 pub(super) use apply::Archive;
 use source::{Part, Source};
@@ -25,11 +26,11 @@ use super::{
 use crate::flight::Fault;
 
 /// Says where time and channels are in a MAT file or an ASCII matrix.
-#[derive(Clone, PartialEq, Debug, Deserialize)]
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Mapping {
     /// For people: which recordings it is for.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     about: String,
     pub(super) time: MappedTime,
     /// By name, in the order of the document.
@@ -37,16 +38,19 @@ pub struct Mapping {
 }
 
 /// Either `from`, or `step` (with `start`, else 0) for even sampling.
-#[derive(Clone, PartialEq, Debug, Deserialize)]
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MappedTime {
     pub(super) unit: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) from: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) start: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) step: Option<f64>,
 }
 
-#[derive(Clone, PartialEq, Debug, Deserialize)]
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MappedChannel {
     pub(super) from: String,
