@@ -155,6 +155,7 @@ on_both! {
     who_listens_before_looking_misses_nothing,
     a_later_schema_is_refused_not_damaged,
     what_is_written_again_is_written_once,
+    what_was_told_last_arrives_with_the_end,
     a_claim_that_was_not_heard_of_is_given_again,
     processes_that_start_at_once_do_not_disturb_each_other,
 }
@@ -498,6 +499,25 @@ async fn a_signal_reaches_other_processes() {
     tokio::time::timeout(within, heard)
         .await
         .expect("of the wish");
+}
+
+async fn what_was_told_last_arrives_with_the_end(bench: Bench) {
+    let job = bench.submit("job").await;
+    let claim = bench.claim("w").await;
+    let told = [prepared(), prepared()];
+    // the first arrived, and who wrote it was not told so
+    bench.store.record(&claim, 0, &told[..1]).await.unwrap();
+    for _ in 0..2 {
+        let end = bench
+            .store
+            .finish_behind(&claim, 0, &told, succeeded(), None);
+        end.await.unwrap();
+        let names = bench.event_names(job).await;
+        assert_eq!(
+            names,
+            ["queued", "claimed", "prepared", "prepared", "succeeded"]
+        );
+    }
 }
 
 async fn projects_see_nothing_of_each_other(bench: Bench) {

@@ -139,14 +139,14 @@ impl Store {
         events: &[EventBody],
     ) -> Result<(), StoreError> {
         let (mut writing, mut held) = self.begin_as(claim).await?;
-        let arrived = held.written.saturating_sub(before).min(events.len());
+        let missing = held.missing(before, events);
         let now = self.clock.now_text();
         append(
             writing.connection(),
             claim.job,
             &mut held.head,
             &now,
-            &events[arrived..],
+            missing,
         )
         .await?;
         let written = held.written.max(before + events.len());
@@ -165,23 +165,33 @@ impl Store {
         ending: EventBody,
         result: Option<&ResultParts>,
     ) -> Result<(), StoreError> {
+        self.finish_behind(claim, 0, &[], ending, result).await
+    }
+
+    /// As [`Store::record`] and then [`Store::finish`], together.
+    ///
+    /// # Errors
+    /// As [`Store::finish`].
+    pub async fn finish_behind(
+        &self,
+        claim: &Claim,
+        before: usize,
+        events: &[EventBody],
+        ending: EventBody,
+        result: Option<&ResultParts>,
+    ) -> Result<(), StoreError> {
         debug_assert!(ending.is_last());
         let (mut writing, mut held) = match self.begin_as(claim).await {
             Err(StoreError::LeaseLost) if self.is_ended(claim, &ending).await? => return Ok(()),
             begun => begun?,
         };
+        let mut last = held.missing(before, events).to_vec();
+        last.push(ending);
         if let Some(result) = result {
             results::insert(writing.connection(), claim.job, result).await?;
         }
         let now = self.clock.now_text();
-        append(
-            writing.connection(),
-            claim.job,
-            &mut held.head,
-            &now,
-            &[ending],
-        )
-        .await?;
+        append(writing.connection(), claim.job, &mut held.head, &now, &last).await?;
         give_up_lease(&mut writing, claim).await?;
         writing.commit().await
     }
@@ -298,6 +308,14 @@ struct Held {
     head: Head,
     /// Events that this claim has recorded.
     written: usize,
+}
+
+impl Held {
+    /// Of events that follow the first `before` of the claim, those that have not arrived.
+    fn missing<'a>(&self, before: usize, events: &'a [EventBody]) -> &'a [EventBody] {
+        let arrived = self.written.saturating_sub(before).min(events.len());
+        &events[arrived..]
+    }
 }
 
 /// The log has grown by its last event for now.

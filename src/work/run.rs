@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use tokio::sync::mpsc;
-use tokio::time::{MissedTickBehavior, interval, sleep};
+use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
 use tokio_util::sync::CancellationToken;
 
 use super::persist::persist;
@@ -17,6 +17,9 @@ use crate::store::{Claim, LEASE, ResultParts, Signal, Store, StoreError};
 
 /// How long a solver may take to notice that the process ends; the job is released in any case.
 const SHUTDOWN_GRACE: Duration = Duration::from_secs(2);
+
+/// How long what is told waits for what is told next: a transaction waits for the disk, and a short job is told of in one.
+const MOMENT: Duration = Duration::from_millis(20);
 
 /// How many events may wait to be written before the solver waits for them.
 const LOG_CAPACITY: usize = 256;
@@ -49,6 +52,8 @@ enum Settled {
 }
 
 struct Ending {
+    /// What was told last and is not written yet: it is, together with the end.
+    told: Told,
     event: EventBody,
     result: Option<ResultParts>,
 }
@@ -56,10 +61,19 @@ struct Ending {
 impl Ending {
     fn without_result(event: EventBody) -> Self {
         Self {
+            told: Told::default(),
             event,
             result: None,
         }
     }
+}
+
+/// What the solver told, behind what is written.
+#[derive(Default)]
+struct Told {
+    /// How many events are written.
+    before: usize,
+    events: Vec<EventBody>,
 }
 
 async fn work_on(store: &Store, claim: &Arc<Claim>, shutdown: &CancellationToken) -> Settled {
@@ -75,11 +89,14 @@ async fn work_on(store: &Store, claim: &Arc<Claim>, shutdown: &CancellationToken
             let (claim, stop) = (claim.clone(), stop.clone());
             move || solve(&claim.spec, &claim.model, &maneuvers, &stop, &log)
         });
-        record(store, claim, events, &stop).await;
-        solver.await?
+        let told = record(store, claim, events, &stop).await;
+        Ok::<_, Unanswered>((solver.await?, told))
     };
     tokio::select! {
-        answered = run => settle(answered, stop.asked()),
+        run = run => match run {
+            Ok((answered, told)) => settle(answered, told, stop.asked()),
+            Err(unanswered) => settle(Err(unanswered), Told::default(), stop.asked()),
+        },
         settled = watch_over(store, claim, &stop, shutdown) => settled,
     }
 }
@@ -113,19 +130,40 @@ async fn load(store: &Store, claim: &Claim) -> Result<Vec<Arc<Maneuver>>, Unansw
     Ok(maneuvers)
 }
 
-/// Writes what the solver tells, all that has come in the meantime in one transaction.
-async fn record(store: &Store, claim: &Claim, mut events: mpsc::Receiver<EventBody>, stop: &Stop) {
-    let (mut batch, mut before) = (Vec::new(), 0);
-    while events.recv_many(&mut batch, LOG_CAPACITY).await > 0 {
-        let recorded = persist("record", || store.record(claim, before, &batch)).await;
-        before += batch.len();
+/// Writes what the solver tells, all that comes within a moment in one transaction; what came last is left for the
+/// transaction that ends the job.
+async fn record(
+    store: &Store,
+    claim: &Claim,
+    mut events: mpsc::Receiver<EventBody>,
+    stop: &Stop,
+) -> Told {
+    let mut told = Told::default();
+    while let Some(event) = events.recv().await {
+        told.events.push(event);
+        let gathered = async {
+            while told.events.len() < LOG_CAPACITY {
+                match events.recv().await {
+                    Some(event) => told.events.push(event),
+                    None => return true,
+                }
+            }
+            false
+        };
+        if timeout(MOMENT, gathered).await.unwrap_or(false) {
+            return told;
+        }
+        let batch = &told.events;
+        let recorded = persist("record", || store.record(claim, told.before, batch)).await;
         if let Err(error) = recorded {
             tracing::warn!(job = %claim.job, %error, "the job is given up: its events cannot be written");
             stop.ask(Reason::LeaseLost);
-            return;
+            return Told::default();
         }
-        batch.clear();
+        told.before += told.events.len();
+        told.events.clear();
     }
+    told
 }
 
 /// Keeps the lease, passes on the wish to stop. Returns only when the solver is not to be waited for.
@@ -161,7 +199,7 @@ async fn watch_over(
 }
 
 /// What the run's end means for the job.
-fn settle(answered: Result<Answer, Unanswered>, asked: Option<Reason>) -> Settled {
+fn settle(answered: Result<Answer, Unanswered>, told: Told, asked: Option<Reason>) -> Settled {
     if asked == Some(Reason::LeaseLost) {
         return Settled::Abandoned;
     }
@@ -171,6 +209,7 @@ fn settle(answered: Result<Answer, Unanswered>, asked: Option<Reason>) -> Settle
             return Settled::Released;
         }
         Ok(answer) if stopped(&answer) => Ending {
+            told,
             event: EventBody::Cancelled { has_result: true },
             result: Some(answer.parts),
         },
@@ -180,12 +219,19 @@ fn settle(answered: Result<Answer, Unanswered>, asked: Option<Reason>) -> Settle
             reason,
             parts,
         }) => Ending {
+            told,
             event: EventBody::Succeeded { outcome, reason },
             result: Some(parts),
         },
-        Err(Unanswered::Refused(faults)) => Ending::without_result(EventBody::Failed { faults }),
+        Err(Unanswered::Refused(faults)) => Ending {
+            told,
+            ..Ending::without_result(EventBody::Failed { faults })
+        },
         Err(Unanswered::Store(error)) => failed("store", &error),
-        Err(Unanswered::Panicked(text)) => failed("solver", &text),
+        Err(Unanswered::Panicked(text)) => Ending {
+            told,
+            ..failed("solver", &text)
+        },
         Err(Unanswered::Dropped) => return Settled::Released,
     };
     Settled::Ended(ending)
@@ -203,12 +249,16 @@ fn failed(where_: &str, error: &dyn std::fmt::Display) -> Ending {
 /// Writes the end of a job. A result that cannot be kept fails the job rather than being computed
 /// again and again.
 async fn end(store: &Store, claim: &Claim, ending: Ending) -> Result<(), StoreError> {
-    let Ending { event, result } = ending;
-    let finish = || store.finish(claim, event.clone(), result.as_ref());
+    let Ending {
+        told: Told { before, events },
+        event,
+        result,
+    } = ending;
+    let finish = || store.finish_behind(claim, before, &events, event.clone(), result.as_ref());
     match persist("finish", finish).await {
         Err(error) if result.is_some() && !matches!(error, StoreError::LeaseLost) => {
             let event = failed("store of the result", &error).event;
-            store.finish(claim, event, None).await
+            (store.finish_behind(claim, before, &events, event, None)).await
         }
         written => written,
     }

@@ -35,7 +35,7 @@ SOLVER = {}
 
 
 def estimate(text):
-    """Parameters of the short period from a recording with t[s], de[deg], alpha[deg] and q[deg/s]."""
+    """Parameters of the short period from a recording with t, de, alpha and q, in rad or deg."""
     import io
 
     import numpy as np
@@ -48,8 +48,13 @@ def estimate(text):
     import problems
 
     table = pd.read_csv(io.StringIO(text))
-    t = table["t[s]"].to_numpy()
-    de, alpha, q = (np.radians(table[name].to_numpy()) for name in ("de[deg]", "alpha[deg]", "q[deg/s]"))
+
+    def column(name):
+        header = next(header for header in table if header.startswith(name + "["))
+        values = table[header].to_numpy()
+        return np.radians(values) if "deg" in header else values
+
+    t, de, alpha, q = (column(name) for name in ("t", "de", "alpha", "q"))
     before = t - t[0] < 1.0
     al, de0 = alpha[before].mean(), de[before].mean()
     start = [-1.0, 1.0, -0.1, -1.0, -1.0, -1.0, al, de0, 0.0]
@@ -64,7 +69,11 @@ def estimate(text):
 
 
 if __name__ == "__main__":
-    text = open(os.environ["WARM_UP"]).read()
+    # as jobs know it: compiled there, it is compiled for them
+    from service import estimate as warm
+
+    with open(os.environ["WARM_UP"]) as file:
+        text = file.read()
     for _ in range(2):
-        estimate(text)
+        warm(text)
     SimpleWorker([QUEUE], connection=REDIS).work(logging_level="WARNING")
