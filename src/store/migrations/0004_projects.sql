@@ -21,6 +21,7 @@ ALTER TABLE jobs ADD COLUMN turn BIGINT NOT NULL DEFAULT 0;         -- see store
 CREATE INDEX jobs_of_project ON jobs (project, id);
 CREATE INDEX jobs_in_line ON jobs (status, priority DESC, turn, id);
 CREATE INDEX jobs_by_turn ON jobs (turn);
+CREATE INDEX jobs_by_status_and_turn ON jobs (status, turn);
 CREATE INDEX jobs_of_submitter ON jobs (submitter, status, turn);
 
 ALTER TABLE models ADD COLUMN project TEXT NOT NULL DEFAULT 'default';
