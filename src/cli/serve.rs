@@ -30,6 +30,10 @@ pub struct Serve {
     #[arg(long, env = "TRIMTAB_MAX_JSON_BODY", value_name = "BYTES", default_value_t = http::Config::default().max_json_body)]
     max_json_body: usize,
 
+    /// Bytes of all bodies that are on their way in at a time, and being read.
+    #[arg(long, env = "TRIMTAB_MAX_BODY_MEMORY", value_name = "BYTES", default_value_t = http::Config::default().max_body_memory)]
+    max_body_memory: usize,
+
     /// Columns of a recording, time included.
     #[arg(long, env = "TRIMTAB_MAX_COLUMNS", value_name = "N", default_value_t = ingest::Limits::default().max_columns)]
     max_columns: usize,
@@ -121,6 +125,7 @@ impl Serve {
         http::Config {
             max_maneuver_body: self.max_maneuver_body,
             max_json_body: self.max_json_body,
+            max_body_memory: self.max_body_memory,
             recording: ingest::Limits {
                 max_columns: self.max_columns,
                 max_samples: self.max_samples,

@@ -1,10 +1,12 @@
 //! Reading bodies, within bounds of length and time.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use axum::body::Body;
-use axum::http::{HeaderMap, header};
+use axum::http::{HeaderMap, HeaderValue, header};
 use http_body_util::BodyExt;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, timeout, timeout_at};
 
 use super::code::Code;
@@ -19,13 +21,54 @@ const WHOLE: Duration = Duration::from_secs(600);
 /// How long the rest of a refused body is read and thrown away.
 const DISCARD: Duration = Duration::from_secs(5);
 
+/// What bodies take that are on their way in or being worked on, all together.
+#[derive(Clone)]
+pub struct Room(Arc<Semaphore>);
+
+/// Room is given out by so many bytes.
+const STEP: usize = 65_536;
+
+/// How long a body waits for room.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+impl Room {
+    pub fn new(bytes: usize) -> Self {
+        Self(Arc::new(Semaphore::new(
+            (bytes / STEP).clamp(1, Semaphore::MAX_PERMITS),
+        )))
+    }
+
+    async fn take(&self, bytes: usize) -> Result<OwnedSemaphorePermit, Problem> {
+        let steps = u32::try_from(bytes.div_ceil(STEP)).unwrap_or(u32::MAX);
+        let taken = timeout(PATIENCE, self.0.clone().acquire_many_owned(steps)).await;
+        taken.ok().and_then(Result::ok).ok_or_else(|| {
+            let detail = "other bodies on their way take all the room that there is (--max-body-memory); send it again in a while";
+            let seconds = HeaderValue::from_static("5");
+            Problem::new(Code::Busy, detail).with_header(header::RETRY_AFTER, seconds)
+        })
+    }
+}
+
+/// A body, and its room: to be kept as long as the bytes are.
+pub struct Received {
+    pub bytes: Vec<u8>,
+    pub room: Option<OwnedSemaphorePermit>,
+}
+
 /// The whole body, if it is no longer than `limit` bytes. No more than that is ever held.
 pub async fn read(
     headers: &HeaderMap,
     mut body: Body,
     limit: usize,
     setting: &str,
-) -> Result<Vec<u8>, Problem> {
+    room: &Room,
+) -> Result<Received, Problem> {
+    if let Some(encoding) = headers.get(header::CONTENT_ENCODING)
+        && encoding != "identity"
+    {
+        let detail = "bodies are read as they are; send it without Content-Encoding";
+        return Err(Problem::new(Code::UnsupportedMediaType, detail));
+    }
     let announced = headers.get(header::CONTENT_LENGTH);
     let announced = announced.and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
     if announced.is_some_and(|length| length > limit as u64) {
@@ -36,6 +79,7 @@ pub async fn read(
         return Err(too_large(limit, setting));
     }
     let mut bytes = Vec::new();
+    let mut taken: Option<OwnedSemaphorePermit> = None;
     let deadline = Instant::now() + WHOLE;
     let too_slow = || {
         let detail = format!(
@@ -49,7 +93,7 @@ pub async fn read(
         let frame = timeout(IDLE, body.frame());
         let frame = timeout_at(deadline, frame).await.map_err(|_| too_slow())?;
         let Some(frame) = frame.map_err(|_| too_slow())? else {
-            return Ok(bytes);
+            return Ok(Received { bytes, room: taken });
         };
         let frame = frame.map_err(|error| {
             let detail = format!("the body broke off after {} bytes: {error}", bytes.len());
@@ -62,6 +106,14 @@ pub async fn read(
             drop(bytes);
             discard(&mut body).await;
             return Err(too_large(limit, setting));
+        }
+        let has = taken.as_ref().map_or(0, |taken| taken.num_permits() * STEP);
+        if bytes.len() + data.len() > has {
+            let more = room.take(bytes.len() + data.len() - has).await?;
+            match &mut taken {
+                Some(taken) => taken.merge(more),
+                None => taken = Some(more),
+            }
         }
         bytes.extend_from_slice(data);
     }

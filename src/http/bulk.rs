@@ -27,6 +27,9 @@ pub fn router() -> OpenApiRouter<Server> {
 
 const MOST_JOBS: usize = 500;
 
+/// What the specs of all jobs may take: each keeps its own.
+const MOST_BYTES: usize = 20_000_000;
+
 /// Beyond so many, further faults tell nothing new.
 const MOST_FAULTS: usize = 100;
 
@@ -37,7 +40,7 @@ struct Bulk {
     #[schema(value_type = Object, example = json!({"model": "short-period", "tags": ["flight 12"]}))]
     job: Map<String, Value>,
     /// Each becomes a job of its own, up to 500.
-    #[schema(value_type = Vec<ManeuverUse>)]
+    #[schema(value_type = Vec<ManeuverUse>, min_items = 1, max_items = 500)]
     maneuvers: Vec<Value>,
 }
 
@@ -55,6 +58,7 @@ struct Submitted {
     request_body = Bulk,
     responses(
         (status = 202, description = "They are accepted.", body = Submitted),
+        (status = 413, description = "`body_too_large`: all specs together.", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 422, description = "`wrong_shape`, `invalid_job`: `errors` lists all faults by JSON pointer.", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 429, description = "`queue_full`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
@@ -70,6 +74,14 @@ async fn submit_jobs(
     if bulk.job.contains_key("maneuvers") {
         let message = "maneuvers stand beside the job, not in it";
         return Err(Problem::at(Code::WrongShape, "/job/maneuvers", message));
+    }
+    let each = serde_json::to_string(&bulk.job)?.len();
+    if each.saturating_mul(bulk.maneuvers.len()) > MOST_BYTES {
+        let detail = format!(
+            "{} jobs of {each} bytes each are more than {MOST_BYTES} bytes; store the model (POST /v1/models) and name it by its id",
+            bulk.maneuvers.len()
+        );
+        return Err(Problem::new(Code::BodyTooLarge, detail));
     }
     room(&service, bulk.maneuvers.len()).await?;
     let (mut jobs, mut faults) = (Vec::new(), Vec::new());

@@ -196,6 +196,7 @@ impl FromRequestParts<Server> for Service {
             config: server.config.clone(),
             compute: server.compute.clone(),
             metrics: server.metrics.clone(),
+            room: server.room.clone(),
             shutdown: server.shutdown.clone(),
         })
     }

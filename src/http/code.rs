@@ -92,6 +92,8 @@ codes! {
     TooManyWebhooks "too_many_webhooks" CONFLICT "There are too many webhooks";
     /// Something else goes by this name. Take another.
     NameTaken "name_taken" CONFLICT "The name is taken";
+    /// There are no keys yet. The first is made where the database is, with `trimtab key new`.
+    NoKeyYet "no_key_yet" CONFLICT "There is no key yet";
     /// Jobs use the maneuver, and could not be run again without it.
     InUse "in_use" CONFLICT "It is in use";
     /// A request with this `Idempotency-Key` is still in hand. Send it again after `Retry-After` seconds.
@@ -124,6 +126,8 @@ codes! {
     InvalidAircraft "invalid_aircraft" UNPROCESSABLE_ENTITY "The aircraft's constants have faults";
     /// The service failed: a defect of ours. Report it with the `request_id`.
     Internal "internal" INTERNAL_SERVER_ERROR "The service failed";
+    /// The service holds as much of what is being sent to it as it may. Send it again after `Retry-After` seconds.
+    Busy "busy" SERVICE_UNAVAILABLE "The service is busy";
     /// The database does not answer in time. Nothing was lost that was accepted; try again.
     StoreUnavailable "store_unavailable" SERVICE_UNAVAILABLE "The store does not answer";
 }

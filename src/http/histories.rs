@@ -29,7 +29,7 @@ struct HistoryQuery {
     /// About how many samples of each segment to answer with; absent: all. The first, the last, and
     /// the least and greatest of each series in equal stretches of time are kept, so that a plot looks
     /// the same and no peak is lost; `samples` says how many there are.
-    #[param(minimum = 2, example = 500)]
+    #[param(example = 500)]
     max_points: Option<usize>,
     /// `json` or `csv`; absent: as `Accept` says.
     #[param(inline)]

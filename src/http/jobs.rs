@@ -170,7 +170,7 @@ struct ListQuery {
     /// Only those that have this tag.
     tag: Option<String>,
     /// Only those submitted after this moment (RFC 3339).
-    #[param(example = "2026-11-21T12:00:00Z")]
+    #[param(format = DateTime, example = "2026-11-21T12:00:00Z")]
     created_after: Option<String>,
 }
 

@@ -25,7 +25,8 @@ impl<T: DeserializeOwned> FromRequest<Server> for JsonBody<T> {
             return Err(body::unsupported(&media_type, &["application/json"]));
         }
         let limit = server.config.max_json_body;
-        let bytes = body::read(&parts.headers, body, limit, "--max-json-body").await?;
+        let bytes = body::read(&parts.headers, body, limit, "--max-json-body", &server.room);
+        let body::Received { bytes, room: _room } = bytes.await?;
         let text = text(bytes)?;
         Ok(Self {
             value: parse(&text)?,
@@ -44,6 +45,7 @@ pub fn text(bytes: Vec<u8>) -> Result<String, Problem> {
 
 /// Reads JSON; a fault of shape comes with its JSON pointer.
 pub fn parse<T: DeserializeOwned>(text: &str) -> Result<T, Problem> {
+    refuse_nul(text)?;
     let invalid = |error: serde_json::Error| Problem::new(Code::InvalidJson, error.to_string());
     let mut deserializer = serde_json::Deserializer::from_str(text);
     let value = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
@@ -57,6 +59,26 @@ pub fn parse<T: DeserializeOwned>(text: &str) -> Result<T, Problem> {
     })?;
     deserializer.end().map_err(invalid)?;
     Ok(value)
+}
+
+/// A database may not be able to keep the character U+0000, which only an escape can bring into JSON or TOML.
+pub fn refuse_nul(text: &str) -> Result<(), Problem> {
+    let is_escape = |at: usize| {
+        let before = text.as_bytes()[..at].iter().rev();
+        before.take_while(|byte| **byte == b'\\').count() % 2 == 0
+    };
+    let escapes = ["\\u0000", "\\U00000000"];
+    let found = escapes.iter().flat_map(|escape| text.match_indices(escape));
+    match found.map(|(at, _)| at).find(|at| is_escape(*at)) {
+        Some(at) => {
+            let message = format!(
+                "byte {}: the character U+0000 is in no text here; leave it out",
+                at + 1
+            );
+            Err(Problem::at(Code::WrongShape, "", message))
+        }
+        None => Ok(()),
+    }
 }
 
 /// The JSON pointer (RFC 6901) of a path.

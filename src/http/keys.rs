@@ -86,7 +86,7 @@ struct KeyList {
 #[serde(deny_unknown_fields)]
 struct KeyOrder {
     /// What it is used by, for people.
-    #[schema(example = "data pipeline of the lab")]
+    #[schema(min_length = 1, max_length = 200, example = "data pipeline of the lab")]
     name: String,
     /// `read` and `submit` if absent.
     #[serde(default = "usual_scopes")]
@@ -122,12 +122,17 @@ async fn list_keys(service: Service) -> Result<Json<KeyList>, Problem> {
     request_body = KeyOrder,
     responses(
         (status = 201, description = "It is made.", body = MadeKey),
+        (status = 409, description = "`no_key_yet`", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 422, description = "`invalid_key`: `errors` lists the faults by JSON pointer.", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn make_key(
     service: Service,
     JsonBody { value: order, .. }: JsonBody<KeyOrder>,
 ) -> Result<Response, Problem> {
+    if service.caller.key.is_none() {
+        let detail = "there are no keys yet; the first is made where the database is (trimtab key new --scope admin), or nobody might have one that makes others";
+        return Err(Problem::new(Code::NoKeyYet, detail));
+    }
     let faults = faults(&order, service.caller.max_priority);
     if !faults.is_empty() {
         return Err(Problem::of_faults(Code::InvalidKey, faults));

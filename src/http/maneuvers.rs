@@ -143,7 +143,8 @@ async fn upload_maneuver(
         None => None,
     };
     let limit = service.config.max_maneuver_body;
-    let bytes = body::read(&headers, body, limit, "--max-maneuver-body").await?;
+    let body = body::read(&headers, body, limit, "--max-maneuver-body", &service.room).await?;
+    let (bytes, _room) = (body.bytes, body.room);
     let limits = service.config.recording;
     let read = move || {
         let maneuver = ingest::read_mapped(&bytes, format, mapping.as_ref(), &limits)?;
@@ -234,7 +235,7 @@ struct DataQuery {
     channels: Option<String>,
     /// About how many samples to answer with; absent: all. The first, the last, and the least and
     /// greatest of each channel in equal stretches of time are kept, so that a plot looks the same.
-    #[param(minimum = 2, example = 500)]
+    #[param(example = 500)]
     max_points: Option<usize>,
     /// `json` or `csv`; absent: as `Accept` says.
     #[param(inline)]

@@ -13,6 +13,7 @@ mod compute;
 mod csv;
 mod decimate;
 mod diagnosis;
+mod drain;
 mod events;
 mod format;
 mod headers;
@@ -64,6 +65,8 @@ pub struct Config {
     pub max_maneuver_body: usize,
     /// Bytes of a job or a model.
     pub max_json_body: usize,
+    /// Bytes of all bodies that are on their way in at a time, and being read.
+    pub max_body_memory: usize,
     /// What a recording may hold.
     pub recording: ingest::Limits,
     /// Values (samples times channels, time included) that the maneuvers of one job may hold.
@@ -89,6 +92,7 @@ impl Default for Config {
         Self {
             max_maneuver_body: 100_000_000,
             max_json_body: 2_000_000,
+            max_body_memory: 1_000_000_000,
             recording: ingest::Limits::default(),
             max_job_values: 100_000_000,
             max_connections: 1024,
@@ -110,6 +114,7 @@ pub struct Server {
     compute: compute::Compute,
     metrics: metrics::Metrics,
     rates: rates::Rates,
+    room: body::Room,
     /// Ends what would not end by itself.
     shutdown: CancellationToken,
 }
@@ -122,5 +127,6 @@ pub struct Service {
     config: Arc<Config>,
     compute: compute::Compute,
     metrics: metrics::Metrics,
+    room: body::Room,
     shutdown: CancellationToken,
 }

@@ -132,7 +132,8 @@ async fn add_model(
         }
     };
     let limit = service.config.max_json_body;
-    let bytes = body::read(&headers, body, limit, "--max-json-body").await?;
+    let body = body::read(&headers, body, limit, "--max-json-body", &service.room).await?;
+    let (bytes, _room) = (body.bytes, body.room);
     let text = json::text(bytes)?;
     let check = move || {
         let document = read(&text)?;
@@ -148,6 +149,7 @@ async fn add_model(
 }
 
 fn parse_toml(text: &str) -> Result<ModelDocument, Problem> {
+    json::refuse_nul(text)?;
     // its message shows the line
     toml::from_str(text).map_err(|error| {
         // the message repeats the line at fault, however long that is

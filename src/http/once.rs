@@ -63,8 +63,15 @@ async fn of_key(service: &Service, request: Request, next: Next) -> Result<Respo
     let key = key(request.headers())?;
     let (parts, body) = request.into_parts();
     let config = &service.config;
-    let limit = config.max_maneuver_body.max(config.max_json_body);
-    let body = body::read(&parts.headers, body, limit, "--max-maneuver-body").await?;
+    let is_recording = parts.uri.path() == "/v1/maneuvers";
+    let (limit, setting) = if is_recording {
+        (config.max_maneuver_body, "--max-maneuver-body")
+    } else {
+        (config.max_json_body, "--max-json-body")
+    };
+    let room = &service.room;
+    let body = body::read(&parts.headers, body, limit, setting, room).await?;
+    let (body, _room) = (body.bytes, body.room);
     let asked = digest(&parts, &body);
     let id = match service.store.take_in_hand(&key, &asked).await? {
         Once::Do(id) => id,

@@ -110,7 +110,12 @@ fn problem_response(description: &str) -> Response {
 
 /// Every POST can be sent again.
 fn takes_a_key(operation: &mut Operation) {
-    let text = ObjectBuilder::new().schema_type(Type::String).build();
+    let text = ObjectBuilder::new()
+        .schema_type(Type::String)
+        .min_length(Some(1))
+        .max_length(Some(255))
+        .pattern(Some("^[ -~]+$"))
+        .build();
     let key = ParameterBuilder::new()
         .name(once::KEY.as_str())
         .parameter_in(ParameterIn::Header)

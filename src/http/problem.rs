@@ -58,16 +58,22 @@ pub struct Problem {
 
 impl Problem {
     pub fn new(code: Code, detail: impl Into<String>) -> Self {
+        let mut detail = detail.into();
+        shorten(&mut detail);
         Self {
             code,
-            detail: detail.into(),
+            detail,
             errors: Vec::new(),
             headers: Vec::new(),
         }
     }
 
     /// A problem that consists of faults, of which there is at least one.
-    pub fn of_faults(code: Code, errors: Vec<Fault>) -> Self {
+    pub fn of_faults(code: Code, mut errors: Vec<Fault>) -> Self {
+        for fault in &mut errors {
+            shorten(&mut fault.message);
+            shorten(&mut fault.pointer);
+        }
         let first = errors.first().map(|fault| match fault.pointer.as_str() {
             "" => fault.message.clone(),
             pointer => format!("{pointer}: {}", fault.message),
@@ -110,6 +116,15 @@ impl Problem {
             errors: self.errors,
             request_id,
         }
+    }
+}
+
+/// What was sent is not sent back, however much of it a message repeats.
+fn shorten(text: &mut String) {
+    const LONGEST: usize = 1000;
+    if let Some((end, _)) = text.char_indices().nth(LONGEST) {
+        text.truncate(end);
+        text.push('…');
     }
 }
 

@@ -17,6 +17,10 @@ impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Problem> {
+        if parts.uri.query().is_some_and(|query| query.contains("%00")) {
+            let detail = "the query has the character U+0000 (%00), which no text here has";
+            return Err(Problem::new(Code::InvalidQuery, detail));
+        }
         match Query::try_from_uri(&parts.uri) {
             Ok(Query(value)) => Ok(Self(value)),
             Err(rejection) => {
@@ -38,7 +42,12 @@ impl<S: Send + Sync> FromRequestParts<S> for Id {
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
         let path = Path::<String>::from_request_parts(parts, state).await;
         let invalid = |rejection| Problem::new(Code::InvalidPath, format!("{rejection}"));
-        path.map(|Path(id)| Self(id)).map_err(invalid)
+        let Path(id) = path.map_err(invalid)?;
+        if id.contains('\0') {
+            let detail = "the path has the character U+0000 (%00), which no id has";
+            return Err(Problem::new(Code::InvalidPath, detail));
+        }
+        Ok(Self(id))
     }
 }
 

@@ -19,8 +19,8 @@ use super::code::Code;
 use super::headers::Origin;
 use super::problem::{self, Problem};
 use super::{
-    Server, bulk, caller, coefficients, diagnosis, events, headers, health, histories, jobs, keys,
-    maneuvers, mappings, metrics, models, once, problems, rerun, residual_analysis, results,
+    Server, bulk, caller, coefficients, diagnosis, drain, events, headers, health, histories, jobs,
+    keys, maneuvers, mappings, metrics, models, once, problems, rerun, residual_analysis, results,
     retention, study, submit, webhooks,
 };
 
@@ -72,6 +72,7 @@ pub(super) fn router(server: Server) -> Router {
         .layer(CatchPanicLayer::custom(Problem::of_panic))
         .layer(middleware::from_fn(problem::render))
         .layer(middleware::from_fn_with_state(of_counts, metrics::count))
+        .layer(middleware::map_request(drain::drain))
         .layer(CompressionLayer::new())
         .layer(headers::cross_origin(&origins))
         .layer(middleware::from_fn(headers::guard))

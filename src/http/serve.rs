@@ -10,8 +10,10 @@ use hyper_util::server::graceful::GracefulShutdown;
 use hyper_util::service::TowerToHyperService;
 use tokio::net::{TcpListener, TcpStream, lookup_host};
 use tokio::sync::Semaphore;
+use tokio_io_timeout::TimeoutStream;
 use tokio_util::sync::CancellationToken;
 
+use super::body::Room;
 use super::compute::Compute;
 use super::metrics::Metrics;
 use super::rates::Rates;
@@ -21,6 +23,10 @@ use crate::store::{Store, StoreError};
 /// A client that sends the head of a request more slowly than this is hung up on, and so is one that
 /// keeps a connection open this long without a request.
 const HEAD_TIMEOUT: Duration = Duration::from_secs(30);
+
+/// A client that does not read its answer is hung up on: when nothing more of it could be sent for this long. A stream of
+/// events with nothing to send is not meant.
+const UNREAD_TIMEOUT: Duration = Duration::from_secs(30);
 
 /// How long requests under way have to end when the service ends.
 const DRAIN: Duration = Duration::from_secs(3);
@@ -73,12 +79,16 @@ fn fault(address: &str) -> impl Fn(std::io::Error) -> BindError {
 /// production run this same function.
 pub async fn run(config: Config, listener: TcpListener, store: Store, shutdown: CancellationToken) {
     let connections = Arc::new(Semaphore::new(config.max_connections));
+    // one body of each kind must fit in any case
+    let least = config.max_maneuver_body + config.max_json_body;
+    let room = Room::new(config.max_body_memory.max(2 * least));
     let rates = Rates::new(config.max_requests_per_second);
     let server = Server {
         store,
         config: Arc::new(config),
         compute: Compute::new(),
         metrics: Metrics::new(),
+        room,
         rates,
         shutdown: shutdown.clone(),
     };
@@ -123,6 +133,9 @@ fn serve(
 ) -> impl Future<Output = ()> + use<> {
     // answers are written whole: waiting for more to fill a packet only delays events
     let _ = stream.set_nodelay(true);
+    let mut stream = TimeoutStream::new(stream);
+    stream.set_write_timeout(Some(UNREAD_TIMEOUT));
+    let stream = Box::pin(stream);
     let connection = http1::Builder::new()
         .timer(TokioTimer::new())
         .header_read_timeout(HEAD_TIMEOUT)

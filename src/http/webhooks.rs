@@ -110,10 +110,15 @@ struct WithSecret {
 struct WebhookOrder {
     /// Where messages are sent. By https and to no address of the service's own machine or network, unless the operator
     /// allowed the host by name (`--webhook-allow`).
-    #[schema(example = "https://lab.example/hooks/trimtab")]
+    #[schema(
+        min_length = 1,
+        max_length = 2000,
+        example = "https://lab.example/hooks/trimtab"
+    )]
     url: String,
     /// What to tell; absent: every end.
     #[serde(default = "Ending::all")]
+    #[schema(min_items = 1)]
     events: BTreeSet<Ending>,
 }
 

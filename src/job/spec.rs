@@ -34,6 +34,7 @@ pub struct JobSpec {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub edits: Vec<Edit>,
     /// One or more; fitted together.
+    #[schema(min_items = 1)]
     pub maneuvers: Vec<ManeuverUse>,
     /// How model inputs and outputs are made from recorded channels, where not simply by name.
     #[serde(

@@ -272,7 +272,7 @@ mod tests {
     async fn a_panic_of_the_solver_is_an_end_of_the_job() {
         let solver = tokio::task::spawn_blocking(|| panic!("matrix of {} rows", 3));
         let answered = solver.await.map_err(Unanswered::from);
-        let Settled::Ended(ending) = settle(answered, None) else {
+        let Settled::Ended(ending) = settle(answered, Told::default(), None) else {
             panic!("the job must be over");
         };
         let EventBody::Failed { faults } = ending.event else {
