@@ -1,5 +1,7 @@
 //! The equations of a document, parsed, with their names and units checked.
 
+use indexmap::IndexMap;
+
 use super::dimensions::measure;
 use super::document::ModelDocument;
 use super::expression::{self, Expression, Function, Kind, Span};
@@ -111,6 +113,23 @@ impl Equations {
     }
 }
 
+/// Names that are told of one equation: each once, and no more than these.
+const MOST_NAMES: usize = 20;
+
+/// The first faults of a document come with a guess at what was meant: guessing takes the longest of all.
+const MOST_GUESSES: usize = 20;
+
+/// The names in the tree that are wrong, each where it stands first.
+fn each_once(parsed: &Expression, is_wrong: impl Fn(&str) -> bool) -> IndexMap<&str, Span> {
+    let mut wrong = IndexMap::new();
+    for (name, span) in parsed.names() {
+        if wrong.len() < MOST_NAMES && is_wrong(name) {
+            wrong.entry(name).or_insert(span);
+        }
+    }
+    wrong
+}
+
 /// Parses one equation, checks its names and units. What cannot be read counts as 0, with a fault added.
 fn read_equation(
     pointer: &str,
@@ -120,7 +139,6 @@ fn read_equation(
     names: &Names,
     faults: &mut Vec<Fault>,
 ) -> Expression {
-    let mut fault = |code, message: String| faults.push(Fault::new(pointer, code, message));
     let zero = Expression {
         kind: Kind::Number(0.0),
         span: Span::default(),
@@ -128,20 +146,21 @@ fn read_equation(
     let parsed = match expression::parse(text) {
         Ok(parsed) => parsed,
         Err(error) => {
-            fault("syntax_error", error.to_string());
+            faults.push(Fault::new(pointer, "syntax_error", error.to_string()));
             return zero;
         }
     };
-    let mut all_known = true;
-    for (name, span) in parsed.names() {
-        if names.meaning(name).is_none() {
-            all_known = false;
-            fault(
-                "unknown_symbol",
-                format!("column {}: {}", span.start + 1, names.unknown(name)),
-            );
-        }
+    let unknown = each_once(&parsed, |name| names.meaning(name).is_none());
+    let all_known = unknown.is_empty();
+    for (name, span) in unknown {
+        let message = match faults.len() < MOST_GUESSES {
+            true => names.unknown(name),
+            false => Names::undefined(name),
+        };
+        let message = format!("column {}: {message}", span.start + 1);
+        faults.push(Fault::new(pointer, "unknown_symbol", message));
     }
+    let mut fault = |code, message: String| faults.push(Fault::new(pointer, code, message));
     if let Some(function) = data_function(&parsed) {
         let message = format!(
             "{}() looks at a recording and may stand only in a parameter's start, or where a job says how to make a channel",
@@ -196,15 +215,16 @@ fn depends_on_parameters_only(
     let Ok(parsed) = expression::parse(text) else {
         return;
     };
-    for (name, span) in parsed.names() {
-        if !matches!(
+    let is_wrong = |name: &str| {
+        let fit = matches!(
             names.meaning(name),
             None | Some(Meaning::Constant(_) | Meaning::Parameter(_))
-        ) {
-            let place = span.start + 1;
-            let message =
-                format!("column {place}: '{name}' is not a parameter or constant; {remedy}");
-            faults.push(Fault::new(pointer, code, message));
-        }
+        );
+        !fit
+    };
+    for (name, span) in each_once(&parsed, is_wrong) {
+        let place = span.start + 1;
+        let message = format!("column {place}: '{name}' is not a parameter or constant; {remedy}");
+        faults.push(Fault::new(pointer, code, message));
     }
 }

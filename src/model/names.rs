@@ -116,15 +116,19 @@ impl<'d> Names<'d> {
     pub fn unknown(&self, name: &str) -> String {
         let known = self.table.keys().copied();
         let near = known
-            .map(|candidate| (strsim::damerau_levenshtein(candidate, name), candidate))
+            .filter(|candidate| candidate.len().abs_diff(name.len()) <= 2)
+            .map(|candidate| (strsim::osa_distance(candidate, name), candidate))
             .filter(|&(distance, candidate)| distance <= 2.min(candidate.len() / 2))
             .min();
         match near {
             Some((_, candidate)) => format!("'{name}' is not defined; did you mean '{candidate}'?"),
-            None => format!(
-                "'{name}' is not a constant, input, parameter, definition or state of this model"
-            ),
+            None => Self::undefined(name),
         }
+    }
+
+    /// As [`Self::unknown`], without a guess at what was meant.
+    pub fn undefined(name: &str) -> String {
+        format!("'{name}' is not a constant, input, parameter, definition or state of this model")
     }
 
     fn add(
