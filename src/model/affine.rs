@@ -31,8 +31,12 @@ pub enum Factor {
     One,
 }
 
+/// Each coefficient is differentiated by each parameter, with a pass over all nodes: more passes and nodes than these
+/// would take seconds, and the steps of so large a model gain little.
+const MOST_VISITS: usize = 100_000_000;
+
 impl Affine {
-    /// `None` where some row is not affine, or depends on the time.
+    /// `None` where some row is not affine, or depends on the time, or where there is too much to differentiate.
     pub(super) fn find(graph: &mut Graph, slots: Slots, rows: &[NodeId]) -> Option<Self> {
         if !are_affine(graph, slots, rows) {
             return None;
@@ -58,6 +62,9 @@ impl Affine {
         }
         let rest = graph.at_zero(rows, slots.parameter(0));
         columns.push((Factor::One, rest.into_iter().map(Some).collect()));
+        if columns.len() * slots.parameters * graph.len() > MOST_VISITS {
+            return None;
+        }
         for (factor, nodes) in columns {
             let own: Vec<NodeId> = nodes.iter().flatten().copied().collect();
             for parameter in 0..slots.parameters {
