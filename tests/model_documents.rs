@@ -188,6 +188,65 @@ fn all_faults_are_told_at_once() {
     assert_eq!(codes, ["unknown_unit", "unknown_symbol", "syntax_error"]);
 }
 
+/// A guess at what was meant is made for the first of very many, and no name is told twice.
+#[test]
+fn names_that_are_not_there_are_told_once_each_and_not_all() {
+    let names: Vec<String> = (0..900)
+        .map(|i| format!("{}{i:03}", "n".repeat(61)))
+        .collect();
+    let mut document = changed("/states/q/derivative", json!("Mq*(qq + qq)"));
+    for name in &names[..400] {
+        document["parameters"][name] = json!({"start": 1.0});
+    }
+    let equation = names[400..]
+        .iter()
+        .map(|name| &name[1..])
+        .collect::<Vec<_>>();
+    for i in 0..200 {
+        let long = equation[i..i + 100].join("+");
+        document["definitions"][format!("d{i}")] = json!({"equation": long});
+    }
+    document["states"]["q"]["initial"] = json!(vec!["alpha"; 900].join("+"));
+    let faults = compile(document).expect_err("faults");
+    let of = |pointer: &str| faults.iter().filter(|f| f.pointer == pointer).count();
+    assert_eq!(of("/states/q/derivative"), 1);
+    assert_eq!(of("/definitions/d7/equation"), 20);
+    assert_eq!(of("/states/q/initial"), 1);
+    let guesses = faults.iter().filter(|f| f.message.contains("did you mean"));
+    assert_eq!(guesses.count(), 20);
+}
+
+/// Each of many coefficients by each of many parameters, with a pass over thousands of operations for each.
+#[test]
+fn very_large_linear_models_are_integrated_without_their_matrices() {
+    let large = |parameters: usize| {
+        let mut document =
+            json!({"name": "large", "constants": {"k": {"value": 1.0, "unit": "1/s"}}});
+        for i in 0..parameters {
+            document["parameters"][format!("p{i}")] = json!({"start": 1.0});
+        }
+        let sum = |d: usize| (0..200).map(move |i| format!("sin({d}{i}.5*p0)"));
+        for d in 1..11 {
+            let equation = sum(d).collect::<Vec<_>>().join("+");
+            document["definitions"][format!("d{d}")] = json!({"equation": equation});
+        }
+        let all = (1..11)
+            .map(|d| format!("d{d}"))
+            .collect::<Vec<_>>()
+            .join("+");
+        document["definitions"]["s"] = json!({"equation": all});
+        for i in 0..64 {
+            document["inputs"][format!("u{i}")] = json!({});
+            let derivative = format!("k*(s*x{i} + p1*u{i})");
+            document["states"][format!("x{i}")] = json!({"initial": "0", "derivative": derivative});
+        }
+        document["outputs"]["y"] = json!({"equation": "x0"});
+        compile(document).expect("a model")
+    };
+    assert!(large(2).affine_dynamics.is_some());
+    assert!(large(500).affine_dynamics.is_none());
+}
+
 #[test]
 fn a_model_of_500_states_is_refused_with_the_bound() {
     let states: serde_json::Map<String, Value> = (0..500)
@@ -272,6 +331,11 @@ fn edits_add_one_parameter_whose_unit_follows() {
     assert_eq!(
         refused(json!({"kind": "sensor_bias", "target": "q", "parameter": "Mq"})).code(),
         "duplicate_name"
+    );
+    assert_eq!(
+        refused(json!({"kind": "sensor_bias", "target": "q", "parameter": "b".repeat(65)}))
+            .to_string(),
+        "\"parameter\" has 65 bytes, at most 64 are allowed"
     );
 }
 

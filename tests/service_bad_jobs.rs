@@ -120,6 +120,24 @@ const CASES: &[Case] = &[
         pointer: "/edits/0",
         code: "unknown_target",
     },
+    Case {
+        what: "more edits than a model can have effects",
+        spoil: |spec| {
+            let edit = json!({"kind": "sensor_bias", "target": "q"});
+            spec["edits"] = Value::Array(vec![edit; 10_000]);
+        },
+        pointer: "/edits",
+        code: "too_many_edits",
+    },
+    Case {
+        what: "an effect on the same output ten thousand times over",
+        spoil: |spec| {
+            let target = vec!["q"; 10_000].join("+");
+            spec["edits"] = json!([{"kind": "sensor_delay", "target": target}]);
+        },
+        pointer: "/edits/0",
+        code: "too_long",
+    },
 ];
 
 #[tokio::test]

@@ -13,6 +13,9 @@ const VARIANCES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
 /// Most maneuvers in one job.
 pub const MOST_MANEUVERS: usize = 256;
 
+/// Most edits of a model, in one job or one candidate.
+pub(super) const MOST_EDITS: usize = 64;
+
 /// Most iterations that a job may ask for.
 pub const MOST_ITERATIONS: usize = 1_000;
 
@@ -34,6 +37,9 @@ pub(super) fn check_shape(spec: &JobSpec, maneuvers: usize, faults: &mut Vec<Fau
             format!("{maneuvers} maneuvers; at most {MOST_MANEUVERS} are allowed in one job");
         faults.push(Fault::new("/maneuvers", "too_many_maneuvers", message));
     }
+    if spec.edits.len() > MOST_EDITS {
+        faults.push(too_many_edits("/edits", spec.edits.len()));
+    }
     if let ModelSource::Reference(name) = &spec.model
         && name.is_empty()
     {
@@ -43,6 +49,13 @@ pub(super) fn check_shape(spec: &JobSpec, maneuvers: usize, faults: &mut Vec<Fau
             "name a model of the catalog, or send a document",
         ));
     }
+}
+
+pub(super) fn too_many_edits(pointer: &str, count: usize) -> Fault {
+    let message = format!(
+        "{count} edits are more than {MOST_EDITS}; write a model document with the effects in it"
+    );
+    Fault::new(pointer, "too_many_edits", message)
 }
 
 pub(super) fn check_options(options: &Options, model: &Model, faults: &mut Vec<Fault>) {
@@ -94,7 +107,7 @@ pub(super) fn check_names(spec: &JobSpec, model: &Model, faults: &mut Vec<Fault>
         let known = quantities.map(|quantity| quantity.name.as_str());
         if !known.clone().any(|known| known == name) {
             let what = ("input or output", name.as_str());
-            faults.push(unknown_name("/channels", "unknown_channel", what, known));
+            unknown_name("/channels", "unknown_channel", what, known, faults);
         }
     }
 }

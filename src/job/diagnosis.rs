@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use super::Fault;
 use super::bounds::JOB_TOO_LARGE;
+use super::checks::{MOST_EDITS, too_many_edits};
 use super::prepare::Plan;
 use super::resolve::Stretch;
 use super::run::JobResult;
@@ -95,14 +96,15 @@ pub(super) fn case(
         let message = format!("at most {MOST_CANDIDATES} candidates are allowed");
         faults.push(Fault::new("/candidates", JOB_TOO_LARGE, message));
     }
-    for (i, candidate) in spec.candidates.iter().enumerate() {
+    for (i, candidate) in spec.candidates.iter().enumerate().take(MOST_CANDIDATES) {
+        let pointer = format!("/candidates/{i}/edits");
+        if candidate.edits.len() > MOST_EDITS {
+            faults.push(too_many_edits(&pointer, candidate.edits.len()));
+            continue;
+        }
         let effect = Effect::own(&candidate.name, candidate.edits.clone());
         if let Err(error) = effect.apply(document) {
-            faults.push(Fault::new(
-                format!("/candidates/{i}/edits"),
-                error.code(),
-                error.to_string(),
-            ));
+            faults.push(Fault::new(pointer, error.code(), error.to_string()));
         }
     }
     if !faults.is_empty() {

@@ -40,12 +40,8 @@ pub(super) fn check_options(options: &Options, model: &Model, faults: &mut Vec<F
         let Some(state) = model.states.iter().find(|state| state.name == *name) else {
             let known = model.states.iter().map(|state| state.name.as_str());
             let what = ("state", name.as_str());
-            faults.push(unknown_name(
-                "/options/process_noise",
-                "bad_option",
-                what,
-                known,
-            ));
+            let pointer = "/options/process_noise";
+            unknown_name(pointer, "bad_option", what, known, faults);
             continue;
         };
         match noise.start {

@@ -168,7 +168,7 @@ fn unknowns(
 /// The declared document with the job's edits and overrides in it.
 fn edited(spec: &JobSpec, declared: &ModelDocument, faults: &mut Vec<Fault>) -> ModelDocument {
     let mut document = declared.clone();
-    for (i, edit) in spec.edits.iter().enumerate() {
+    for (i, edit) in spec.edits.iter().enumerate().take(checks::MOST_EDITS) {
         match edit.apply(&document) {
             Ok(edited) => document = edited,
             Err(error) => faults.push(Fault::new(
@@ -185,18 +185,13 @@ fn edited(spec: &JobSpec, declared: &ModelDocument, faults: &mut Vec<Fault>) -> 
         }
         let known = document.constants.keys().map(String::as_str);
         let what = ("constant", name.as_str());
-        faults.push(unknown_name("/constants", "unknown_constant", what, known));
+        unknown_name("/constants", "unknown_constant", what, known, faults);
     }
     for (name, change) in &spec.parameters {
         let Some(parameter) = document.parameters.get_mut(name) else {
             let known = document.parameters.keys().map(String::as_str);
             let what = ("parameter", name.as_str());
-            faults.push(unknown_name(
-                "/parameters",
-                "unknown_parameter",
-                what,
-                known,
-            ));
+            unknown_name("/parameters", "unknown_parameter", what, known, faults);
             continue;
         };
         if let Some(start) = &change.start {

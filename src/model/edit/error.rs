@@ -4,6 +4,12 @@ use crate::model::expression::SyntaxError;
 
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 pub enum EditError {
+    #[error("\"{field}\" has {length} bytes, at most {most} are allowed")]
+    TooLong {
+        field: &'static str,
+        length: usize,
+        most: usize,
+    },
     #[error("the model has no {wanted} '{target}'; it has {}", list(known))]
     NoTarget {
         wanted: &'static str,
@@ -17,11 +23,11 @@ pub enum EditError {
         kind: &'static str,
         wanted: &'static str,
     },
-    #[error("the term '{term}': {message}")]
+    #[error("the term '{term:.80}': {message}")]
     BadTerm { term: String, message: String },
-    #[error("the term '{term}': {source}")]
+    #[error("the term '{term:.80}': {source}")]
     Syntax { term: String, source: SyntaxError },
-    #[error("the term '{term}': {message}")]
+    #[error("the term '{term:.80}': {message}")]
     Units { term: String, message: String },
     /// The document has the target, but not what the effect acts through.
     #[error("{kind} of '{target}': {message}")]
@@ -36,6 +42,7 @@ impl EditError {
     /// The stable word for it.
     pub fn code(&self) -> &'static str {
         match self {
+            Self::TooLong { .. } => "too_long",
             Self::NoTarget { .. } => "unknown_target",
             Self::NameTaken { .. } => "duplicate_name",
             Self::NoTerm { .. } => "missing_term_absent",

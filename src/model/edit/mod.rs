@@ -24,7 +24,11 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::document::ModelDocument;
+use super::expression::{LONGEST, LONGEST_NAME};
 use sheet::Sheet;
+
+/// Longest target, in bytes: the names of some outputs.
+const LONGEST_TARGET: usize = 1024;
 
 /// One edit. `kind` and `target` are the words of the effect catalogue.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
@@ -204,8 +208,10 @@ impl Edit {
     /// The document with the effect in it. What it has more: [`Added::between`].
     ///
     /// # Errors
-    /// The target is not in the model or not fit for the kind, the term cannot be read, or the parameter's name is taken.
+    /// The target is not in the model or not fit for the kind, the term cannot be read, the parameter's name is taken,
+    /// or one of them is too long.
     pub fn apply(&self, document: &ModelDocument) -> Result<ModelDocument, EditError> {
+        self.check_lengths()?;
         let mut sheet = Sheet::new(self, document);
         match self.kind {
             EditKind::SensorBias => sensors::bias(&mut sheet),
@@ -231,6 +237,27 @@ impl Edit {
             EditKind::StructuralMode => sensors::structural_mode(&mut sheet),
         }?;
         Ok(sheet.document)
+    }
+
+    /// What is written here comes back many times in the document.
+    fn check_lengths(&self) -> Result<(), EditError> {
+        let term = self.term.as_deref().unwrap_or_default();
+        let parameter = self.parameter.as_deref().unwrap_or_default();
+        let unit = self.unit.as_deref().unwrap_or_default();
+        let bounds = [
+            ("target", self.target.as_str(), LONGEST_TARGET),
+            ("term", term, LONGEST),
+            ("parameter", parameter, LONGEST_NAME),
+            ("unit", unit, LONGEST_NAME),
+        ];
+        match bounds.iter().find(|(_, text, most)| text.len() > *most) {
+            None => Ok(()),
+            Some(&(field, text, most)) => Err(EditError::TooLong {
+                field,
+                length: text.len(),
+                most,
+            }),
+        }
     }
 
     /// The term, or that it is needed.

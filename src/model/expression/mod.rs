@@ -96,6 +96,9 @@ pub const DEEPEST: usize = 64;
 /// Most operators, names and numbers in one expression.
 pub const MOST_NODES: usize = 2_000;
 
+/// Longest name, in bytes.
+pub const LONGEST_NAME: usize = 64;
+
 /// Whether a text can stand as a name in equations.
 pub fn is_name(text: &str) -> bool {
     let mut characters = text.chars();
@@ -103,5 +106,5 @@ pub fn is_name(text: &str) -> bool {
         .next()
         .is_some_and(|c| c.is_ascii_alphabetic() || c == '_')
         && characters.all(|c| c.is_ascii_alphanumeric() || c == '_')
-        && text.len() <= 64
+        && text.len() <= LONGEST_NAME
 }
