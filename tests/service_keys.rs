@@ -276,6 +276,17 @@ async fn keys_are_made_rotated_and_revoked_over_the_api() {
     let places: Vec<&str> = faults.iter().map(|(place, _)| place.as_str()).collect();
     assert_eq!(places, ["/name", "/scopes", "/days", "/max_priority"]);
 
+    // an admin of a project is none of the service
+    let only_admin = key(&server, "icing", &[Scope::Admin]).await;
+    let order = json!({"name": "watcher", "scopes": ["metrics"]});
+    let answer = ask(&server, Method::POST, "/v1/keys", &only_admin, &order).await;
+    assert_eq!(
+        answer.problem(422, "invalid_key"),
+        [("/scopes".into(), "out_of_range".into())]
+    );
+    let answer = ask(&server, Method::POST, "/v1/keys", &admin, &order).await;
+    assert_eq!(answer.status, 201, "{}", answer.text());
+
     let path = format!("/v1/keys/{}", made["id"].as_str().unwrap());
     let rotate = format!("{path}/rotate");
     let overlap = json!({"overlap_hours": 1});

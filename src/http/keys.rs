@@ -12,6 +12,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
 
+use super::caller::Caller;
 use super::code::Code;
 use super::json::JsonBody;
 use super::problem::{Problem, ProblemDocument};
@@ -133,7 +134,7 @@ async fn make_key(
         let detail = "there are no keys yet; the first is made where the database is (trimtab key new --scope admin), or nobody might have one that makes others";
         return Err(Problem::new(Code::NoKeyYet, detail));
     }
-    let faults = faults(&order, service.caller.max_priority);
+    let faults = faults(&order, &service.caller);
     if !faults.is_empty() {
         return Err(Problem::of_faults(Code::InvalidKey, faults));
     }
@@ -151,7 +152,8 @@ pub fn days(days: u32) -> Duration {
     Duration::from_secs(u64::from(days) * 24 * 3600)
 }
 
-fn faults(order: &KeyOrder, most: i32) -> Vec<Fault> {
+fn faults(order: &KeyOrder, caller: &Caller) -> Vec<Fault> {
+    let most = caller.max_priority;
     let mut faults = Vec::new();
     let mut wrong = |pointer: &str, code: &'static str, message: String| {
         faults.push(Fault::new(pointer, code, message));
@@ -163,6 +165,14 @@ fn faults(order: &KeyOrder, most: i32) -> Vec<Fault> {
     if order.scopes.is_empty() {
         let message = "a key without a scope opens nothing; name at least one of read, submit, admin, metrics";
         wrong("/scopes", "no_scope", message.to_string());
+    }
+    // it is the one scope that reaches beyond the project
+    let is_beyond =
+        order.scopes.contains(&Scope::Metrics) && !caller.scopes.contains(&Scope::Metrics);
+    if is_beyond {
+        let message =
+            "'metrics' is given by who has it, or where the database is (trimtab key new)";
+        wrong("/scopes", "out_of_range", message.to_string());
     }
     if order
         .days
