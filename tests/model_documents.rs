@@ -206,7 +206,7 @@ fn names_that_are_not_there_are_told_once_each_and_not_all() {
         let long = equation[i..i + 100].join("+");
         document["definitions"][format!("d{i}")] = json!({"equation": long});
     }
-    document["states"]["q"]["initial"] = json!(vec!["alpha"; 900].join("+"));
+    document["states"]["q"]["initial"] = json!(vec!["q"; 200].join("+"));
     let faults = compile(document).expect_err("faults");
     let of = |pointer: &str| faults.iter().filter(|f| f.pointer == pointer).count();
     assert_eq!(of("/states/q/derivative"), 1);
