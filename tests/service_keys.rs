@@ -163,7 +163,6 @@ async fn every_operation_is_open_to_whom_it_should_be_and_to_nobody_else() {
             };
             let path = template.replace("{id}", &of).replace("{code}", &of);
             let body = json!({"a body": "of another shape"});
-            // the one that revokes comes last, or the key that is to be rotated is gone
             for (who, key, refused) in &callers {
                 let answer = ask(&server, method.clone(), &path, key, &body).await;
                 let status = answer.status.as_u16();
@@ -293,6 +292,10 @@ async fn keys_are_made_rotated_and_revoked_over_the_api() {
     let next = ask(&server, Method::POST, &rotate, &admin, &overlap)
         .await
         .json();
+    assert!(
+        next["expires"].is_string(),
+        "what replaces a key that expires does, too"
+    );
     let next = next["secret"].as_str().unwrap();
     for both in [&secret, next] {
         assert_eq!(get(&server, "/v1/jobs", both).await.status, 200);
@@ -385,4 +388,50 @@ async fn jobs_are_listed_from_a_moment_on() {
         .get("/v1/jobs?created_after=yesterday")
         .await
         .problem(400, "invalid_query");
+}
+
+/// Pages of the sites that the operator named may use the service from a browser, and no others.
+#[tokio::test]
+async fn a_browser_is_let_in_from_where_the_operator_said() {
+    let config = Config {
+        origins: vec!["https://dashboards.lab".parse().unwrap()],
+        ..Config::default()
+    };
+    let server = Server::start_with(config, 0).await;
+    let preflight = async |origin: &'static str| {
+        let request = server
+            .request(Method::OPTIONS, "/v1/jobs")
+            .header("origin", origin)
+            .header("access-control-request-method", "POST")
+            .header(
+                "access-control-request-headers",
+                "authorization,content-type",
+            );
+        let answer = send(request).await;
+        answer.header("access-control-allow-origin").to_string()
+    };
+    assert_eq!(
+        preflight("https://dashboards.lab").await,
+        "https://dashboards.lab"
+    );
+    assert_eq!(preflight("https://evil.example").await, "");
+    let post = async |origin: &'static str| {
+        let request = server
+            .request(Method::POST, "/v1/jobs")
+            .header("origin", origin)
+            .header("sec-fetch-site", "cross-site")
+            .header("content-type", "application/json");
+        send(request.body("{}")).await
+    };
+    post("https://dashboards.lab")
+        .await
+        .problem(422, "wrong_shape");
+    post("https://evil.example")
+        .await
+        .problem(403, "cross_origin");
+    let answer = server.get("/v1/jobs").await;
+    let policy = answer.header("content-security-policy");
+    assert!(policy.contains("default-src 'none'") && policy.contains("frame-ancestors 'none'"));
+    assert_eq!(answer.header("x-content-type-options"), "nosniff");
+    assert_eq!(answer.header("cache-control"), "private, no-cache");
 }

@@ -134,9 +134,7 @@ async fn the_end_of_a_job_is_told_once_and_signed() {
     );
     assert_eq!(log[0]["id"], heard[0].0["webhook-id"].to_str().unwrap());
     // what was not asked for is not told
-    let mut endless = job(&server.upload(&elevator()).await);
-    endless["model"] = json!("short-period");
-    let waiting = server.submit(&endless).await;
+    let waiting = server.submit(&job(&server.upload(&elevator()).await)).await;
     server
         .post_json(&format!("/v1/jobs/{waiting}/cancel"), &Value::Null)
         .await;

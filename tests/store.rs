@@ -11,8 +11,9 @@ use trimtab::estimate::Outcome;
 use trimtab::job::{EventBody, Fault, JobSpec, ModelSource, Status};
 use trimtab::model::ModelDocument;
 use trimtab::store::{
-    CancelReply, Claim, Clock, DEFAULT_PROJECT, JobFilter, Key, LEASE, MOST_LOST_WORKERS, NewJob,
-    NewKey, Once, Project, Scope, Shown, Signal, Store, StoreError, Uploaded,
+    Attempt, CancelReply, Claim, Clock, DEFAULT_PROJECT, JobFilter, Key, LEASE, MOST_LOST_WORKERS,
+    NewJob, NewKey, Once, Project, Rule, Scope, Shown, Signal, Store, StoreError, Uploaded,
+    Waiting,
 };
 
 struct Bench {
@@ -141,6 +142,10 @@ on_both! {
     a_key_opens_until_it_is_revoked_or_expires,
     each_key_is_served_in_turn,
     a_higher_priority_goes_first,
+    what_a_webhook_is_owed_is_taken_by_one_and_sent_until_it_arrives,
+    what_is_old_goes_from_one_project_or_from_all,
+    what_goes_on_is_counted_over_all_processes,
+    a_mapping_is_kept_under_its_name,
     jobs_are_claimed_once_and_oldest_first,
     many_workers_on_two_processes_never_share_a_job,
     a_worker_that_lost_its_lease_cannot_write_any_more,
@@ -207,7 +212,7 @@ async fn a_worker_that_lost_its_lease_cannot_write_any_more(bench: Bench) {
     let lost = |result| assert!(matches!(result, Err(StoreError::LeaseLost)));
     lost(bench.store.heartbeat(&ghost).await.map(drop));
     lost(bench.store.record(&ghost, 0, &[prepared()]).await);
-    lost(bench.store.finish(&ghost, succeeded(), None).await);
+    lost(bench.store.finish(&ghost, 0, &[], succeeded(), None).await);
     lost(bench.store.release(&ghost, "late").await);
 
     bench
@@ -217,11 +222,11 @@ async fn a_worker_that_lost_its_lease_cannot_write_any_more(bench: Bench) {
         .unwrap();
     bench
         .store
-        .finish(&successor, succeeded(), None)
+        .finish(&successor, 0, &[], succeeded(), None)
         .await
         .unwrap();
     lost(bench.store.record(&successor, 1, &[prepared()]).await);
-    lost(bench.store.finish(&ghost, succeeded(), None).await);
+    lost(bench.store.finish(&ghost, 0, &[], succeeded(), None).await);
     let log = ["queued", "claimed", "claimed", "prepared", "succeeded"];
     assert_eq!(bench.event_names(job).await, log);
 }
@@ -231,7 +236,7 @@ async fn the_same_worker_with_an_earlier_claim_is_a_ghost_too(bench: Bench) {
     let before = bench.claim("w").await;
     bench.clock.advance(LEASE + Duration::from_secs(1));
     bench.claim("w").await;
-    let result = bench.store.finish(&before, succeeded(), None).await;
+    let result = bench.store.finish(&before, 0, &[], succeeded(), None).await;
     assert!(matches!(result, Err(StoreError::LeaseLost)));
 }
 
@@ -265,7 +270,10 @@ async fn a_job_that_kills_its_workers_is_given_up(bench: Bench) {
     assert_eq!(faults[0].code, "workers_lost");
     assert_eq!(job.attempt, MOST_LOST_WORKERS, "giving up is no attempt");
     // the last of them was only slow, and must not take the end for its own
-    let late = bench.store.finish(&claims[2], succeeded(), None).await;
+    let late = bench
+        .store
+        .finish(&claims[2], 0, &[], succeeded(), None)
+        .await;
     assert!(matches!(late, Err(StoreError::LeaseLost)));
 }
 
@@ -313,7 +321,11 @@ async fn the_wish_to_cancel_outlives_the_worker(bench: Bench) {
     let claim = bench.claim("w2").await;
     assert!(claim.cancelling);
     let ending = EventBody::Cancelled { has_result: false };
-    bench.store.finish(&claim, ending, None).await.unwrap();
+    bench
+        .store
+        .finish(&claim, 0, &[], ending, None)
+        .await
+        .unwrap();
     let log = [
         "queued",
         "claimed",
@@ -335,7 +347,7 @@ async fn what_was_accepted_is_there_after_reopening(bench: Bench) {
     let faults = vec![Fault::new("/model", "some_code", "a message")];
     bench
         .store
-        .finish(&claim, EventBody::Failed { faults }, None)
+        .finish(&claim, 0, &[], EventBody::Failed { faults }, None)
         .await
         .unwrap();
     let before = bench.project().job(job).await.unwrap();
@@ -445,8 +457,16 @@ async fn what_is_written_again_is_written_once(bench: Bench) {
     bench.store.record(&claim, 0, &events[..2]).await.unwrap();
     bench.store.heartbeat(&claim).await.unwrap();
     bench.store.record(&claim, 0, &events).await.unwrap();
-    bench.store.finish(&claim, succeeded(), None).await.unwrap();
-    bench.store.finish(&claim, succeeded(), None).await.unwrap();
+    bench
+        .store
+        .finish(&claim, 0, &[], succeeded(), None)
+        .await
+        .unwrap();
+    bench
+        .store
+        .finish(&claim, 0, &[], succeeded(), None)
+        .await
+        .unwrap();
     let log = [
         "queued",
         "claimed",
@@ -508,9 +528,7 @@ async fn what_was_told_last_arrives_with_the_end(bench: Bench) {
     // the first arrived, and who wrote it was not told so
     bench.store.record(&claim, 0, &told[..1]).await.unwrap();
     for _ in 0..2 {
-        let end = bench
-            .store
-            .finish_behind(&claim, 0, &told, succeeded(), None);
+        let end = bench.store.finish(&claim, 0, &told, succeeded(), None);
         end.await.unwrap();
         let names = bench.event_names(job).await;
         assert_eq!(
@@ -524,7 +542,11 @@ async fn projects_see_nothing_of_each_other(bench: Bench) {
     let job = bench.submit("job").await;
     let claim = bench.claim("w").await;
     assert_eq!(claim.project, DEFAULT_PROJECT);
-    bench.store.finish(&claim, succeeded(), None).await.unwrap();
+    bench
+        .store
+        .finish(&claim, 0, &[], succeeded(), None)
+        .await
+        .unwrap();
     let other = bench.store.project("other", "");
     assert_eq!(other.job(job).await.unwrap(), None);
     assert_eq!(other.job_spec(job).await.unwrap(), None);
@@ -579,6 +601,7 @@ async fn a_key_opens_until_it_is_revoked_or_expires(bench: Bench) {
     let (short, of_short) = store.add_key(&short).await.unwrap();
     let (long, of_long) = store.add_key(&new_key("p")).await.unwrap();
     let shown = async |key: &Key| store.look_up_key(key.reveal()).await.unwrap();
+    assert_eq!(long.lifetime, None);
     let good = |shown: Shown| match shown {
         Shown::Good(key) => key.id,
         bad => panic!("{bad:?}"),
@@ -633,7 +656,11 @@ async fn served(bench: &Bench, jobs: usize) -> String {
     let mut order = String::new();
     for _ in 0..jobs {
         let claim = bench.claim("w").await;
-        bench.store.finish(&claim, succeeded(), None).await.unwrap();
+        bench
+            .store
+            .finish(&claim, 0, &[], succeeded(), None)
+            .await
+            .unwrap();
         order += &claim.spec.name;
     }
     order
@@ -672,4 +699,264 @@ async fn a_higher_priority_goes_first(bench: Bench) {
         bench.project().submit(id, &job).await.unwrap();
     }
     assert_eq!(served(&bench, 4).await, "dacb");
+}
+
+/// Claims the next job and ends it.
+async fn finish_next(bench: &Bench) {
+    let claim = bench.claim("w").await;
+    let done = bench.store.finish(&claim, 0, &[], succeeded(), None);
+    done.await.unwrap();
+}
+
+async fn what_a_webhook_is_owed_is_taken_by_one_and_sent_until_it_arrives(bench: Bench) {
+    let project = bench.project();
+    let events = ["job.succeeded".to_string()];
+    let id = bench.clock.new_id();
+    let hook = project.add_webhook(id, "https://lab.example/", &events, "whsec_a");
+    assert_eq!(project.webhook(id).await.unwrap(), None);
+    let hook = hook.await.unwrap();
+    assert_eq!(
+        project.webhooks().await.unwrap(),
+        std::slice::from_ref(&hook)
+    );
+    let other = bench.store.project("other", "");
+    assert_eq!(other.webhooks().await.unwrap(), []);
+    assert!(!other.rotate_webhook(id, "mine", LEASE).await.unwrap());
+    assert!(!other.delete_webhook(id).await.unwrap());
+
+    let job = bench.submit("job").await;
+    assert_eq!(bench.store.take_delivery().await.unwrap(), None);
+    finish_next(&bench).await;
+    let taken = bench
+        .store
+        .take_delivery()
+        .await
+        .unwrap()
+        .expect("a delivery");
+    assert_eq!(
+        (taken.job.clone(), taken.event.as_str()),
+        (job.to_string(), "job.succeeded")
+    );
+    assert_eq!(
+        (taken.attempts, &taken.secrets),
+        (1, &vec!["whsec_a".to_string()])
+    );
+    let second = bench.other().await;
+    assert_eq!(second.take_delivery().await.unwrap(), None, "it is in hand");
+    // who took it died
+    bench.clock.advance(Duration::from_secs(61));
+    let again = second.take_delivery().await.unwrap().expect("a delivery");
+    assert_eq!((again.id, again.attempts), (taken.id, 2));
+    let failed = Attempt::Failed {
+        status: Some(500),
+        fault: "it answers 500".into(),
+        again: Some(Duration::from_secs(5)),
+    };
+    second.settle_delivery(&again, &failed).await.unwrap();
+    let hour = Duration::from_secs(3600);
+    assert!(project.rotate_webhook(id, "whsec_b", hour).await.unwrap());
+    bench.clock.advance(Duration::from_secs(6));
+    let third = bench
+        .store
+        .take_delivery()
+        .await
+        .unwrap()
+        .expect("a delivery");
+    assert_eq!(third.secrets, ["whsec_b", "whsec_a"]);
+    bench
+        .store
+        .settle_delivery(&third, &Attempt::Arrived(204))
+        .await
+        .unwrap();
+    bench.clock.advance(hour * 100);
+    assert_eq!(bench.store.take_delivery().await.unwrap(), None);
+    let log = project.deliveries(id, 10).await.unwrap();
+    assert_eq!(
+        (log.len(), log[0].attempts, log[0].status),
+        (1, 3, Some(204))
+    );
+    assert!(log[0].done.is_some() && log[0].next.is_none() && log[0].fault.is_none());
+    assert_eq!(other.deliveries(id, 10).await.unwrap(), []);
+
+    // two are owed when the receiver says that it is gone: neither is sent again
+    for _ in 0..2 {
+        project.try_webhook(id).await.unwrap();
+    }
+    let one = bench
+        .store
+        .take_delivery()
+        .await
+        .unwrap()
+        .expect("a delivery");
+    assert_eq!(
+        one.secrets,
+        ["whsec_b"],
+        "the former secret has had its time"
+    );
+    bench
+        .store
+        .settle_delivery(&one, &Attempt::Gone(410))
+        .await
+        .unwrap();
+    assert_eq!(bench.store.take_delivery().await.unwrap(), None);
+    assert!(
+        project
+            .webhook(id)
+            .await
+            .unwrap()
+            .unwrap()
+            .disabled
+            .is_some()
+    );
+    assert!(project.delete_webhook(id).await.unwrap());
+    assert_eq!(project.webhooks().await.unwrap(), []);
+}
+
+async fn what_is_old_goes_from_one_project_or_from_all(bench: Bench) {
+    let projects = ["a", "b"].map(|name| bench.store.project(name, ""));
+    for project in &projects {
+        let recording = maneuver(elevator().as_bytes());
+        let kept = project.add_maneuver("x", recording, "{}".into()).await;
+        assert!(matches!(kept.unwrap(), Uploaded::New(_)));
+        let id = bench.clock.new_id();
+        project.submit(id, &new_job(project.name())).await.unwrap();
+        finish_next(&bench).await;
+    }
+    bench.clock.advance(Duration::from_secs(100));
+    let rule = |project: Option<&str>, keep_tag: &str| Rule {
+        project: project.map(str::to_string),
+        before: bench.clock.text_before(Duration::from_secs(50)),
+        keep_tag: keep_tag.into(),
+    };
+    let expire = async |rule: Rule, dry_run: bool| {
+        let expired = bench.store.expire(&rule, dry_run).await.unwrap();
+        (expired.jobs, expired.maneuvers)
+    };
+    assert_eq!(expire(rule(None, "keep"), true).await, (2, 2));
+    assert_eq!(
+        expire(rule(None, "tag"), true).await,
+        (0, 2),
+        "the jobs have that tag"
+    );
+    assert_eq!(expire(rule(Some("nobody"), "keep"), false).await, (0, 0));
+    assert_eq!(expire(rule(Some("a"), "keep"), false).await, (1, 1));
+    assert_eq!(expire(rule(None, "keep"), false).await, (1, 1));
+    assert_eq!(expire(rule(None, "keep"), false).await, (0, 0));
+    assert_eq!(projects[1].stored_bytes().await.unwrap(), 0);
+}
+
+async fn what_goes_on_is_counted_over_all_processes(bench: Bench) {
+    for _ in 0..3 {
+        bench.submit("job").await;
+    }
+    bench.clock.advance(Duration::from_secs(2));
+    let waiting = bench.store.census().await.unwrap();
+    assert_eq!(waiting.jobs, [("queued".to_string(), 3)]);
+    assert!((2.0..10.0).contains(&waiting.oldest_wait), "{waiting:?}");
+    finish_next(&bench).await;
+    let claim = bench.claim("w").await;
+    let faults = vec![Fault::new("", "out_of_luck", "no")];
+    let failed = EventBody::Failed { faults };
+    bench
+        .store
+        .finish(&claim, 0, &[], failed, None)
+        .await
+        .unwrap();
+    let census = bench.other().await.census().await.unwrap();
+    let count = |name: &str, number| (name.to_string(), number);
+    assert_eq!(
+        census.ended,
+        [count("out_of_luck", 1), count("succeeded", 1)]
+    );
+    assert_eq!(
+        census.jobs,
+        [
+            count("failed", 1),
+            count("queued", 1),
+            count("succeeded", 1)
+        ]
+    );
+    // 2 s and a little more: behind 1 s, before 3 s
+    assert_eq!(census.waited.counts[5], 2, "{census:?}");
+    assert!((4.0..6.0).contains(&census.waited.sum), "{census:?}");
+    assert_eq!(census.ran.counts.iter().sum::<u64>(), 2);
+    let (most, own) = (
+        bench.project(),
+        bench.store.project(DEFAULT_PROJECT, "another key"),
+    );
+    assert_eq!(most.waiting(10).await.unwrap(), Waiting { all: 1, own: 1 });
+    assert_eq!(own.waiting(10).await.unwrap(), Waiting { all: 1, own: 0 });
+}
+
+async fn a_mapping_is_kept_under_its_name(bench: Bench) {
+    let project = bench.project();
+    assert!(project.add_mapping("logger", "{}").await.unwrap());
+    assert!(
+        project.add_mapping("logger", "{}").await.unwrap(),
+        "it is the same"
+    );
+    assert!(!project.add_mapping("logger", "{\"x\": 1}").await.unwrap());
+    let other = bench.store.project("other", "");
+    assert!(other.add_mapping("logger", "{\"x\": 1}").await.unwrap());
+    let kept = project
+        .mapping("logger")
+        .await
+        .unwrap()
+        .expect("the mapping");
+    assert_eq!(kept.document, "{}");
+    assert_eq!(project.mappings().await.unwrap(), [kept]);
+    assert!(project.delete_mapping("logger").await.unwrap());
+    assert!(!project.delete_mapping("logger").await.unwrap());
+    assert_eq!(other.mappings().await.unwrap().len(), 1);
+}
+
+/// What a database of an earlier version has is the default project's, whole.
+#[tokio::test]
+async fn a_database_from_before_there_were_projects_is_carried_over() {
+    let directory = tempfile::tempdir().unwrap();
+    let file = directory.path().join("old.db");
+    let address = file.to_str().unwrap();
+    sqlx::any::install_default_drivers();
+    let pool = sqlx::AnyPool::connect(&format!("sqlite://{address}?mode=rwc"))
+        .await
+        .unwrap();
+    let steps = [
+        "CREATE TABLE schema_steps (version BIGINT PRIMARY KEY NOT NULL, applied TEXT NOT NULL); \
+         INSERT INTO schema_steps VALUES (1, ''), (2, ''), (3, '')",
+        include_str!("../src/store/migrations/0001_first.sql"),
+        include_str!("../src/store/migrations/0002_many_machines.sql"),
+        include_str!("../src/store/migrations/0003_answers.sql"),
+        "INSERT INTO maneuvers VALUES ('m', 'run 1', '2026-11-21T12:00:00.000Z', '{}', X'0102'); \
+         INSERT INTO models VALUES ('01950000-0000-7000-8000-000000000001', 'n', 't', '2026-11-21T12:00:00.000Z', '{\"name\": \"n\"}'); \
+         INSERT INTO answers VALUES ('k', 'r', '01950000-0000-7000-8000-000000000002', '9999', NULL, NULL)",
+    ];
+    for sql in steps {
+        sqlx::raw_sql(sql).execute(&pool).await.unwrap();
+    }
+    let spec = r#"{"model": "short-period", "maneuvers": [{"id": "m"}]}"#;
+    let model = serde_json::to_string(&ModelDocument::default()).unwrap();
+    sqlx::query(
+        "INSERT INTO jobs (id, kind, name, tags, status, created, last_seq, attempt, lost, spec, model) \
+         VALUES ('01950000-0000-7000-8000-000000000003', 'estimate', 'old', '[]', 'queued', '2026-11-21T12:00:00.000Z', 0, 0, 0, $1, $2)",
+    )
+    .bind(spec)
+    .bind(model)
+    .execute(&pool)
+    .await
+    .unwrap();
+    pool.close().await;
+
+    let store = Store::open(address).await.unwrap();
+    let project = store.project(DEFAULT_PROJECT, "");
+    assert_eq!(project.maneuver("m").await.unwrap().unwrap().name, "run 1");
+    assert_eq!(project.stored_bytes().await.unwrap(), 2);
+    let model = "01950000-0000-7000-8000-000000000001".parse().unwrap();
+    assert!(project.model(model).await.unwrap().is_some());
+    let once = project.take_in_hand("k", "r").await.unwrap();
+    assert_eq!(once, Once::InHand);
+    let claim = store.claim("w").await.unwrap().expect("the old job");
+    assert_eq!(
+        (claim.project.as_str(), claim.spec.maneuvers[0].id.as_str()),
+        (DEFAULT_PROJECT, "m")
+    );
 }

@@ -30,7 +30,7 @@ pub struct Serve {
     #[arg(long, env = "TRIMTAB_MAX_JSON_BODY", value_name = "BYTES", default_value_t = http::Config::default().max_json_body)]
     max_json_body: usize,
 
-    /// Bytes of all bodies that are on their way in at a time, and being read.
+    /// Bytes of all bodies that are on their way in at a time, and being read; at least twice the largest.
     #[arg(long, env = "TRIMTAB_MAX_BODY_MEMORY", value_name = "BYTES", default_value_t = http::Config::default().max_body_memory)]
     max_body_memory: usize,
 

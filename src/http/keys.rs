@@ -102,7 +102,7 @@ struct KeyOrder {
     max_priority: i32,
 }
 
-pub fn usual_scopes() -> BTreeSet<Scope> {
+fn usual_scopes() -> BTreeSet<Scope> {
     [Scope::Read, Scope::Submit].into()
 }
 
@@ -230,7 +230,7 @@ pub const fn a_day() -> u32 {
     24
 }
 
-/// Replace a key by a new one that may do the same; the old one expires after the overlap.
+/// Replace a key by a new one that may do the same, for as long from now; the old one expires after the overlap.
 #[utoipa::path(post, path = "/v1/keys/{id}/rotate", tag = "Keys", operation_id = "rotateKey",
     params(("id" = Uuid, Path)),
     request_body = Rotation,

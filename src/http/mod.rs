@@ -52,9 +52,8 @@ use crate::ingest;
 use crate::store::{Project, Store};
 use crate::webhook::Allowed;
 
-pub use caller::Caller;
 pub use headers::Origin;
-pub use keys::{a_day, days, usual_scopes};
+pub use keys::{a_day, days};
 pub use openapi::document;
 pub use serve::{BindError, bind, is_loopback, run};
 

@@ -74,12 +74,20 @@ impl Clock {
 
     /// A UUID v7 of now; those of one process sort in the order in which they were made.
     pub fn new_id(&self) -> Uuid {
-        static CONTEXT: std::sync::Mutex<ContextV7> = std::sync::Mutex::new(ContextV7::new());
-        let now = self.now();
-        let seconds = u64::try_from(now.as_second()).unwrap_or(0);
-        let nanoseconds = u32::try_from(now.subsec_nanosecond()).unwrap_or(0);
-        Uuid::new_v7(uuid::Timestamp::from_unix(&CONTEXT, seconds, nanoseconds))
+        id_of(self.now())
     }
+}
+
+/// A UUID v7 of a moment of the tables.
+pub(super) fn id_at(moment: &str) -> Uuid {
+    id_of(moment.parse().unwrap_or(Timestamp::UNIX_EPOCH))
+}
+
+fn id_of(moment: Timestamp) -> Uuid {
+    static CONTEXT: std::sync::Mutex<ContextV7> = std::sync::Mutex::new(ContextV7::new());
+    let seconds = u64::try_from(moment.as_second()).unwrap_or(0);
+    let nanoseconds = u32::try_from(moment.subsec_nanosecond()).unwrap_or(0);
+    Uuid::new_v7(uuid::Timestamp::from_unix(&CONTEXT, seconds, nanoseconds))
 }
 
 /// The time between two moments of the tables, s.

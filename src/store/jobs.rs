@@ -292,22 +292,12 @@ impl Project {
     /// The database cannot be written.
     pub async fn cancel(&self, id: Uuid) -> Result<CancelReply, StoreError> {
         let mut writing = self.store.begin().await?;
-        let sql = format!(
-            "SELECT status, last_seq FROM jobs WHERE id = $1 AND project = $2 {}",
-            self.store.engine.locking()
-        );
-        let row = sqlx::query(AssertSqlSafe(sql))
-            .bind(id.to_string())
-            .bind(&*self.name)
-            .fetch_optional(writing.connection())
-            .await?;
-        let Some(row) = row else {
+        let Some((status, last_seq)) = self.hold(&mut writing, id).await? else {
             return Ok(CancelReply::Unknown);
         };
-        let status = read_status(row.try_get("status")?)?;
         let mut head = Head {
             status: Some(status),
-            last_seq: row.try_get("last_seq")?,
+            last_seq,
         };
         let events: &[EventBody] = match status {
             Status::Queued => &[
@@ -329,5 +319,25 @@ impl Project {
             Some(job) if status.is_over() => CancelReply::AlreadyOver(job),
             Some(job) => CancelReply::Asked(job),
         })
+    }
+
+    /// Status and last event of a job, which nobody else changes until the transaction ends.
+    pub(super) async fn hold(
+        &self,
+        writing: &mut Writing,
+        id: Uuid,
+    ) -> Result<Option<(Status, i64)>, StoreError> {
+        let sql = format!(
+            "SELECT status, last_seq FROM jobs WHERE id = $1 AND project = $2 {}",
+            self.store.engine.locking()
+        );
+        let row = sqlx::query(AssertSqlSafe(sql))
+            .bind(id.to_string())
+            .bind(&*self.name)
+            .fetch_optional(writing.connection())
+            .await?;
+        let Some(row) = row else { return Ok(None) };
+        let status = read_status(row.try_get("status")?)?;
+        Ok(Some((status, row.try_get("last_seq")?)))
     }
 }

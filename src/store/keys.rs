@@ -101,6 +101,8 @@ pub struct KeyRecord {
     pub scopes: BTreeSet<Scope>,
     pub max_priority: i32,
     pub created: String,
+    /// As it was asked for.
+    pub lifetime: Option<Duration>,
     pub expires: Option<String>,
     pub revoked: Option<String>,
     /// When it was last used, to ten minutes.
@@ -110,14 +112,14 @@ pub struct KeyRecord {
 /// What there is to say to somebody who shows a key.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Shown {
-    Good(KeyRecord),
+    Good(Box<KeyRecord>),
     Unknown,
     Revoked,
     Expired,
 }
 
 const COLUMNS: &str =
-    "id, project, name, scopes, max_priority, created, expires, revoked, used FROM keys";
+    "id, project, name, scopes, max_priority, created, lifetime, expires, revoked, used FROM keys";
 
 fn read_key(row: &AnyRow) -> Result<KeyRecord, StoreError> {
     let id = read_id(row, "id")?;
@@ -130,6 +132,9 @@ fn read_key(row: &AnyRow) -> Result<KeyRecord, StoreError> {
         scopes,
         max_priority: i32::try_from(row.try_get::<i64, _>("max_priority")?).unwrap_or(0),
         created: row.try_get("created")?,
+        lifetime: row
+            .try_get::<Option<i64>, _>("lifetime")?
+            .map(|seconds| Duration::from_secs(u64::try_from(seconds).unwrap_or(0))),
         expires: row.try_get("expires")?,
         revoked: row.try_get("revoked")?,
         used: row.try_get("used")?,
@@ -161,14 +166,15 @@ impl Store {
             scopes: new.scopes.clone(),
             max_priority: new.max_priority,
             created: self.clock.now_text(),
+            lifetime: new.lifetime,
             expires: new.lifetime.map(|time| self.clock.text_after(time)),
             revoked: None,
             used: None,
         };
         let names: Vec<&str> = record.scopes.iter().map(|scope| scope.name()).collect();
         sqlx::query(
-            "INSERT INTO keys (id, project, name, digest, scopes, max_priority, created, expires) \
-             VALUES ($1, $2, $3, $4, $5, $6, $7, $8)",
+            "INSERT INTO keys (id, project, name, digest, scopes, max_priority, created, lifetime, expires) \
+             VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9)",
         )
         .bind(record.id.to_string())
         .bind(&record.project)
@@ -177,6 +183,7 @@ impl Store {
         .bind(serde_json::Value::from(names).to_string())
         .bind(i64::from(record.max_priority))
         .bind(&record.created)
+        .bind(new.lifetime.map(|time| i64::try_from(time.as_secs()).unwrap_or(i64::MAX)))
         .bind(&record.expires)
         .execute(&self.writer)
         .await?;
@@ -207,8 +214,11 @@ impl Store {
         {
             return Ok(Shown::Expired);
         }
-        self.note_use(&record).await?;
-        Ok(Shown::Good(record))
+        // whoever has a good key comes in, even where that cannot be written down
+        if let Err(error) = self.note_use(&record).await {
+            tracing::warn!(%error, key = %record.id, "its use was not noted");
+        }
+        Ok(Shown::Good(Box::new(record)))
     }
 
     async fn note_use(&self, key: &KeyRecord) -> Result<(), StoreError> {
@@ -258,7 +268,7 @@ impl Store {
         self.key(project, id).await
     }
 
-    /// Makes a key that may do what this one may, which ends after `overlap`: time to carry the new one to where it is used.
+    /// Makes a key that may do what this one may, and for as long from now; the old one ends after `overlap`: time to carry the new one to where it is used.
     /// `None`: there is none that is good.
     ///
     /// # Errors
@@ -281,7 +291,7 @@ impl Store {
             name: old.name,
             scopes: old.scopes,
             max_priority: old.max_priority,
-            lifetime: None,
+            lifetime: old.lifetime,
         };
         let made = self.add_key(&new).await?;
         let until = self.clock.text_after(overlap);

@@ -155,24 +155,12 @@ impl Store {
         writing.commit().await
     }
 
-    /// Ends a job: its last event and its result, together. Ending it again changes nothing.
+    /// Ends a job: what was told last and is not recorded yet (as [`Store::record`] takes it), the last event and the result,
+    /// together. Ending it again changes nothing.
     ///
     /// # Errors
     /// [`StoreError::LeaseLost`]: the job has another worker or is over. Nothing is written then.
     pub async fn finish(
-        &self,
-        claim: &Claim,
-        ending: EventBody,
-        result: Option<&ResultParts>,
-    ) -> Result<(), StoreError> {
-        self.finish_behind(claim, 0, &[], ending, result).await
-    }
-
-    /// As [`Store::record`] and then [`Store::finish`], together.
-    ///
-    /// # Errors
-    /// As [`Store::finish`].
-    pub async fn finish_behind(
         &self,
         claim: &Claim,
         before: usize,

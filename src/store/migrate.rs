@@ -4,41 +4,15 @@ use sqlx::{AssertSqlSafe, Row};
 
 use super::{Store, StoreError};
 
-struct Step {
-    version: i64,
-    sql: &'static str,
-}
-
-/// In order. A step that was released is never edited: a change is a further step.
-const STEPS: &[Step] = &[
-    Step {
-        version: 1,
-        sql: include_str!("migrations/0001_first.sql"),
-    },
-    Step {
-        version: 2,
-        sql: include_str!("migrations/0002_many_machines.sql"),
-    },
-    Step {
-        version: 3,
-        sql: include_str!("migrations/0003_answers.sql"),
-    },
-    Step {
-        version: 4,
-        sql: include_str!("migrations/0004_projects.sql"),
-    },
-    Step {
-        version: 5,
-        sql: include_str!("migrations/0005_tallies.sql"),
-    },
-    Step {
-        version: 6,
-        sql: include_str!("migrations/0006_webhooks.sql"),
-    },
-    Step {
-        version: 7,
-        sql: include_str!("migrations/0007_mappings.sql"),
-    },
+/// In order, from version 1. A step that was released is never edited: a change is a further step.
+const STEPS: &[&str] = &[
+    include_str!("migrations/0001_first.sql"),
+    include_str!("migrations/0002_many_machines.sql"),
+    include_str!("migrations/0003_answers.sql"),
+    include_str!("migrations/0004_projects.sql"),
+    include_str!("migrations/0005_tallies.sql"),
+    include_str!("migrations/0006_webhooks.sql"),
+    include_str!("migrations/0007_mappings.sql"),
 ];
 
 /// Brings the schema up to date. Processes that start at once do not disturb each other: all steps are looked for and
@@ -54,20 +28,21 @@ pub(super) async fn run(store: &Store) -> Result<(), StoreError> {
         .fetch_one(writing.connection())
         .await?;
     let reached = row.try_get::<Option<i64>, _>("version")?.unwrap_or(0);
-    let known = STEPS.last().map_or(0, |step| step.version);
+    let steps = (1..).zip(STEPS);
+    let known = steps.clone().map(|(version, _)| version).max().unwrap_or(0);
     if reached > known {
         return Err(StoreError::LaterVersion { reached, known });
     }
-    for step in STEPS.iter().filter(|step| step.version > reached) {
+    for (version, step) in steps.filter(|(version, _)| *version > reached) {
         // safe: put together from this program's own text
-        let sql = AssertSqlSafe(store.engine.schema(step.sql));
+        let sql = AssertSqlSafe(store.engine.schema(step));
         sqlx::raw_sql(sql).execute(writing.connection()).await?;
         sqlx::query("INSERT INTO schema_steps (version, applied) VALUES ($1, $2)")
-            .bind(step.version)
+            .bind(version)
             .bind(store.clock().now_text())
             .execute(writing.connection())
             .await?;
-        tracing::info!(version = step.version, "database schema brought up to date");
+        tracing::info!(version, "database schema brought up to date");
     }
     writing.commit().await
 }

@@ -1,9 +1,11 @@
 //! Deleting: one job or maneuver by hand, or what is older than it need be kept.
+//!
+//! Which maneuvers a job uses stands in its spec and nowhere else: a maneuver's id is a digest of 64 digits, so that a spec
+//! that has it in its text uses it. That takes a look at every spec, which deleting, done seldom, can afford.
 
 use sqlx::{AnyConnection, AssertSqlSafe, Row};
 use uuid::Uuid;
 
-use super::log::read_status;
 use super::{Project, Store, StoreError};
 
 /// What became of the wish to delete something.
@@ -49,20 +51,10 @@ impl Project {
     /// The database cannot be written.
     pub async fn delete_job(&self, id: Uuid) -> Result<Deleted, StoreError> {
         let mut writing = self.store.begin().await?;
-        let sql = format!(
-            "SELECT status FROM jobs WHERE id = $1 AND project = $2 {}",
-            self.store.engine.locking()
-        );
-        let row = sqlx::query(AssertSqlSafe(sql))
-            .bind(id.to_string())
-            .bind(&*self.name)
-            .fetch_optional(writing.connection())
-            .await?;
-        let Some(row) = row else {
-            return Ok(Deleted::Unknown);
-        };
-        if !read_status(row.try_get("status")?)?.is_over() {
-            return Ok(Deleted::NotOver);
+        match self.hold(&mut writing, id).await? {
+            None => return Ok(Deleted::Unknown),
+            Some((status, _)) if !status.is_over() => return Ok(Deleted::NotOver),
+            Some(_) => {}
         }
         delete(writing.connection(), &id.to_string()).await?;
         writing.commit().await?;
@@ -106,25 +98,17 @@ impl Store {
     /// # Errors
     /// The database cannot be written.
     pub async fn expire(&self, rule: &Rule, dry_run: bool) -> Result<Expired, StoreError> {
-        let project = |table: &str| {
-            let of_one = format!("{table}.project = $3");
-            if rule.project.is_some() {
-                of_one
-            } else {
-                format!("$3 = $3 AND {table}.project <> ''")
-            }
-        };
+        // all projects have a name: that is what `of_one` is compared with where none is asked for
+        let is_wanted = if rule.project.is_some() { "=" } else { "<>" };
+        let of_one = rule.project.as_deref().unwrap_or_default();
         let doomed = format!(
-            "jobs.status IN {OVER} AND jobs.finished < $1 AND {} \
-             AND NOT EXISTS (SELECT 1 FROM job_tags WHERE job_tags.job = jobs.id AND job_tags.tag = $2)",
-            project("jobs")
+            "jobs.status IN {OVER} AND jobs.finished < $1 AND jobs.project {is_wanted} $3 \
+             AND NOT EXISTS (SELECT 1 FROM job_tags WHERE job_tags.job = jobs.id AND job_tags.tag = $2)"
         );
         let unused = format!(
-            "maneuvers.created < $1 AND {} AND NOT EXISTS (SELECT 1 FROM jobs \
-             WHERE jobs.project = maneuvers.project AND jobs.spec LIKE '%' || maneuvers.id || '%' AND NOT ({doomed}))",
-            project("maneuvers")
+            "maneuvers.created < $1 AND maneuvers.project {is_wanted} $3 AND NOT EXISTS (SELECT 1 FROM jobs \
+             WHERE jobs.project = maneuvers.project AND jobs.spec LIKE '%' || maneuvers.id || '%' AND NOT ({doomed}))"
         );
-        let of_one = rule.project.as_deref().unwrap_or_default();
         let select = format!(
             "SELECT COUNT(*) AS maneuvers, CAST(COALESCE(SUM(bytes), 0) AS BIGINT) AS bytes FROM maneuvers WHERE {unused}"
         );
@@ -167,13 +151,11 @@ impl Store {
             .execute(&self.writer)
             .await?;
         let told = format!(
-            "DELETE FROM deliveries WHERE next IS NULL AND created < $1 AND $2 = $2 \
-             AND webhook IN (SELECT id FROM webhooks WHERE {})",
-            project("webhooks")
+            "DELETE FROM deliveries WHERE next IS NULL AND created < $1 \
+             AND webhook IN (SELECT id FROM webhooks WHERE project {is_wanted} $2)"
         );
         sqlx::query(AssertSqlSafe(told))
             .bind(&rule.before)
-            .bind(&rule.keep_tag)
             .bind(of_one)
             .execute(&self.writer)
             .await?;

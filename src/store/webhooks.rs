@@ -11,7 +11,7 @@ use sqlx::{AnyConnection, AssertSqlSafe, Row};
 use uuid::Uuid;
 
 use super::jobs::read_id;
-use super::{Project, Store, StoreError};
+use super::{Project, Store, StoreError, clock};
 
 /// How long a delivery stays with the process that took it.
 const IN_HAND: Duration = Duration::from_secs(60);
@@ -138,7 +138,7 @@ async fn insert(
 ) -> Result<(), StoreError> {
     let sql = "INSERT INTO deliveries (id, webhook, type, job, created, next) VALUES ($1, $2, $3, $4, $5, $5)";
     sqlx::query(sql)
-        .bind(Uuid::now_v7().to_string())
+        .bind(clock::id_at(now).to_string())
         .bind(webhook.to_string())
         .bind(event)
         .bind(job)

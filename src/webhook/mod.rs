@@ -40,7 +40,7 @@ pub async fn run(store: Store, allowed: Allowed, shutdown: CancellationToken) {
             Ok(Some(delivery)) => {
                 let (store, sender) = (store.clone(), sender.clone());
                 under_way.spawn(async move {
-                    let attempt = sender.send(&delivery).await;
+                    let attempt = sender.send(&delivery, store.clock().now()).await;
                     if let Err(error) = store.settle_delivery(&delivery, &attempt).await {
                         tracing::warn!(%error, delivery = %delivery.id, "it will be sent again");
                     }

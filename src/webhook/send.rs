@@ -4,6 +4,7 @@ use std::error::Error;
 use std::sync::Arc;
 use std::time::Duration;
 
+use jiff::Timestamp;
 use reqwest::{Client, Response, StatusCode, redirect};
 use serde_json::json;
 
@@ -58,20 +59,19 @@ impl Sender {
         }
     }
 
-    pub async fn send(&self, delivery: &Delivery) -> Attempt {
-        match self.try_send(delivery).await {
+    pub async fn send(&self, delivery: &Delivery, now: Timestamp) -> Attempt {
+        match self.try_send(delivery, now.as_second()).await {
             Ok(response) => told(delivery, &response),
             Err(fault) => failed(delivery, None, fault),
         }
     }
 
-    async fn try_send(&self, delivery: &Delivery) -> Result<Response, String> {
+    async fn try_send(&self, delivery: &Delivery, now: i64) -> Result<Response, String> {
         // what was allowed when the webhook was made may be so no more
         let url = self.allowed.check(&delivery.url);
         let url = url.map_err(|refused| refused.to_string())?;
         let http = self.http.as_ref().map_err(Clone::clone)?;
         let body = message(delivery);
-        let now = jiff::Timestamp::now().as_second();
         let signatures: Vec<String> = (delivery.secrets.iter())
             .filter_map(|secret| signature(secret, delivery.id, now, &body))
             .collect();

@@ -83,20 +83,21 @@ async fn work_on(store: &Store, claim: &Arc<Claim>, shutdown: &CancellationToken
     }
     let stop = Stop::default();
     let run = async {
-        let maneuvers = load(store, claim).await?;
+        let maneuvers = match load(store, claim).await {
+            Ok(maneuvers) => maneuvers,
+            Err(unanswered) => return (Err(unanswered), Told::default()),
+        };
         let (log, events) = mpsc::channel(LOG_CAPACITY);
         let solver = tokio::task::spawn_blocking({
             let (claim, stop) = (claim.clone(), stop.clone());
             move || solve(&claim.spec, &claim.model, &maneuvers, &stop, &log)
         });
         let told = record(store, claim, events, &stop).await;
-        Ok::<_, Unanswered>((solver.await?, told))
+        let answered = solver.await;
+        (answered.unwrap_or_else(|error| Err(error.into())), told)
     };
     tokio::select! {
-        run = run => match run {
-            Ok((answered, told)) => settle(answered, told, stop.asked()),
-            Err(unanswered) => settle(Err(unanswered), Told::default(), stop.asked()),
-        },
+        (answered, told) = run => settle(answered, told, stop.asked()),
         settled = watch_over(store, claim, &stop, shutdown) => settled,
     }
 }
@@ -254,11 +255,11 @@ async fn end(store: &Store, claim: &Claim, ending: Ending) -> Result<(), StoreEr
         event,
         result,
     } = ending;
-    let finish = || store.finish_behind(claim, before, &events, event.clone(), result.as_ref());
+    let finish = || store.finish(claim, before, &events, event.clone(), result.as_ref());
     match persist("finish", finish).await {
         Err(error) if result.is_some() && !matches!(error, StoreError::LeaseLost) => {
             let event = failed("store of the result", &error).event;
-            (store.finish_behind(claim, before, &events, event, None)).await
+            (store.finish(claim, before, &events, event, None)).await
         }
         written => written,
     }
