@@ -16,7 +16,10 @@ const ROOMS: [(&str, &[&str]); 13] = [
     ),
     ("store", &["job", "estimate", "model", "flight", "ingest"]),
     ("work", &["store", "job", "estimate", "model", "flight"]),
-    ("dashboard", &["job", "diagnose", "estimate", "flight"]),
+    (
+        "dashboard",
+        &["job", "ingest", "diagnose", "estimate", "model", "flight"],
+    ),
     ("webhook", &["store", "job"]),
     (
         "http",

@@ -11,6 +11,7 @@ use super::local::Local;
 use super::watch::{conclude, follow};
 use super::{Failure, table};
 use crate::estimate::Role;
+use crate::ingest::bundled::{AILERON, Bundled, ELEVATOR, RUDDER, UNDECLARED};
 use crate::job::JobSpec;
 use crate::simulate::Scenario;
 
@@ -28,75 +29,25 @@ pub struct Demo {
     stay: bool,
 }
 
-/// A maneuver that comes with Trimtab, and the scenario that made it.
-struct Bundled {
-    name: &'static str,
-    csv: &'static str,
-    scenario: &'static str,
-}
-
-const ELEVATOR: Bundled = Bundled {
-    name: "elevator",
-    csv: include_str!("../../data/elevator.csv"),
-    scenario: include_str!("../../data/elevator.toml"),
-};
-const AILERON: Bundled = Bundled {
-    name: "aileron",
-    csv: include_str!("../../data/aileron.csv"),
-    scenario: include_str!("../../data/aileron.toml"),
-};
-const RUDDER: Bundled = Bundled {
-    name: "rudder",
-    csv: include_str!("../../data/rudder.csv"),
-    scenario: include_str!("../../data/rudder.toml"),
-};
-
 /// The jobs of the demonstration; maneuvers of one job are fitted together.
 const JOBS: [(&str, &[Bundled]); 2] = [
     ("short-period", &[ELEVATOR]),
     ("lateral-directional-4", &[AILERON, RUDDER]),
 ];
 
-/// Flights of an aircraft whose elevator linkage has play, and a model that knows of none.
-const UNDECLARED: [(Role, Bundled); 3] = [
-    (
-        Role::Estimation,
-        Bundled {
-            name: "elevator-backlash-fit",
-            csv: include_str!("../../data/effects/elevator-backlash-fit.csv"),
-            scenario: include_str!("../../data/effects/elevator-backlash-fit.toml"),
-        },
-    ),
-    (
-        Role::Validation,
-        Bundled {
-            name: "elevator-backlash-check",
-            csv: include_str!("../../data/effects/elevator-backlash-check.csv"),
-            scenario: include_str!("../../data/effects/elevator-backlash-check.toml"),
-        },
-    ),
-    (
-        Role::Final,
-        Bundled {
-            name: "elevator-backlash-final",
-            csv: include_str!("../../data/effects/elevator-backlash-final.csv"),
-            scenario: include_str!("../../data/effects/elevator-backlash-final.toml"),
-        },
-    ),
-];
+/// What part the flights with an effect in them take.
+const ROLES: [Role; 3] = [Role::Estimation, Role::Validation, Role::Final];
 
-impl Bundled {
-    fn scenario(&self) -> Result<Scenario, Failure> {
-        toml::from_str(self.scenario)
-            .map_err(|error| Failure::new(format!("{}: {error}", self.name)))
-    }
+fn scenario_of(maneuver: &Bundled) -> Result<Scenario, Failure> {
+    toml::from_str(maneuver.scenario)
+        .map_err(|error| Failure::new(format!("{}: {error}", maneuver.name)))
+}
 
-    /// Uploads it; its id.
-    async fn upload(&self, client: &Client) -> Result<String, Failure> {
-        let file = format!("{}.csv", self.name);
-        let stored = client.upload(self.name, Path::new(&file), None, self.csv.into());
-        Ok(stored.await?.id)
-    }
+/// Uploads it; its id.
+async fn upload(client: &Client, maneuver: &Bundled) -> Result<String, Failure> {
+    let file = format!("{}.csv", maneuver.name);
+    let stored = client.upload(maneuver.name, Path::new(&file), None, maneuver.csv.into());
+    Ok(stored.await?.id)
 }
 
 impl Demo {
@@ -129,9 +80,9 @@ async fn fit(client: &Client, model: &str, maneuvers: &[Bundled]) -> Result<Stri
     let mut uses = Vec::new();
     let mut truth: IndexMap<String, f64> = IndexMap::new();
     for maneuver in maneuvers {
-        let id = maneuver.upload(client).await?;
+        let id = upload(client, maneuver).await?;
         uses.push(json!({"id": id, "label": maneuver.name}));
-        truth.extend(maneuver.scenario()?.truth);
+        truth.extend(scenario_of(maneuver)?.truth);
     }
     let names: Vec<&str> = maneuvers.iter().map(|maneuver| maneuver.name).collect();
     let spec = json!({"name": format!("demo: {model}"), "model": model, "maneuvers": uses});
@@ -146,13 +97,13 @@ async fn fit(client: &Client, model: &str, maneuvers: &[Bundled]) -> Result<Stri
 
 /// Uploads the flights with an effect in them, has the model diagnosed and prints what it lacks; the job's id.
 async fn diagnose(client: &Client) -> Result<String, Failure> {
-    let [(_, first), ..] = &UNDECLARED;
+    let [first, ..] = &UNDECLARED;
     let Scenario {
         model,
         truth,
         effects,
         ..
-    } = first.scenario()?;
+    } = scenario_of(first)?;
     println!("\nwhat does {model} lack?");
     for effect in effects {
         let value = effect.value.unwrap_or_default();
@@ -162,8 +113,8 @@ async fn diagnose(client: &Client) -> Result<String, Failure> {
         );
     }
     let mut uses = Vec::new();
-    for (role, maneuver) in &UNDECLARED {
-        let id = maneuver.upload(client).await?;
+    for (role, maneuver) in ROLES.into_iter().zip(&UNDECLARED) {
+        let id = upload(client, maneuver).await?;
         uses.push(json!({"id": id, "label": maneuver.name, "role": role}));
     }
     let spec = json!({"kind": "diagnose", "name": "demo: what is missing", "model": model, "maneuvers": uses});

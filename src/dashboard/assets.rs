@@ -1,5 +1,9 @@
 //! Files that pages load.
 
+use std::sync::LazyLock;
+
+use crate::ingest::bundled::UNDECLARED;
+
 /// A file as it is served.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Asset {
@@ -7,14 +11,55 @@ pub struct Asset {
     pub content: &'static str,
 }
 
+/// The style sheet, which a report has inside it.
+pub(super) const STYLE: &str = include_str!("assets/style.css");
+
+/// The chart library, out of the package that it comes with.
+static PLOTLY: LazyLock<String> = LazyLock::new(|| {
+    let page = plotly::Plot::offline_js_sources();
+    let at = page.find("plotly.js v").expect("the package holds it");
+    let begin = page[..at].rfind("<script").expect("in an element");
+    let begin = begin + page[begin..].find('>').expect("with an end") + 1;
+    let end = begin + page[begin..].find("</script>").expect("that is closed");
+    page[begin..end].to_string()
+});
+
+const SCRIPT: &str = "text/javascript";
+
 /// The file of that name under `/assets/`.
 pub fn asset(name: &str) -> Option<Asset> {
     let (media_type, content) = match name {
-        "follow.js" => ("text/javascript", include_str!("assets/follow.js")),
-        _ => return None,
+        "style.css" => ("text/css", STYLE),
+        "plotly.js" => (SCRIPT, PLOTLY.as_str()),
+        "examples.js" => (SCRIPT, include_str!("assets/examples.js")),
+        "service.js" => (SCRIPT, include_str!("assets/service.js")),
+        "plot.js" => (SCRIPT, include_str!("assets/plot.js")),
+        "job.js" => (SCRIPT, include_str!("assets/job.js")),
+        "jobs.js" => (SCRIPT, include_str!("assets/jobs.js")),
+        _ => ("text/csv", example(name)?),
     };
     Some(Asset {
         media_type,
         content,
     })
+}
+
+/// A flight that comes with Trimtab, to try the pages with.
+fn example(name: &str) -> Option<&'static str> {
+    let name = name.strip_suffix(".csv")?;
+    let flight = UNDECLARED.iter().find(|flight| flight.name == name)?;
+    Some(flight.csv)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_chart_library_comes_alone() {
+        let library = asset("plotly.js").expect("it is served").content;
+        assert!(library.trim_start().starts_with("/**\n* plotly.js v"));
+        assert!(library.contains("newPlot") && !library.contains("MathJax.js"));
+        assert!(asset("../Cargo.toml").is_none());
+    }
 }

@@ -3,6 +3,7 @@
 
 use plotters::prelude::*;
 
+use super::shown::{Shown, shown_in};
 use super::style::{DECLARED, MEASURED, MODEL};
 use crate::estimate::{OutputSeries, TimeHistory};
 
@@ -42,7 +43,7 @@ fn draw(
     above: &Area<'_>,
     below: &Area<'_>,
 ) -> Result<(), String> {
-    let (scale, unit) = shown_in(&output.unit);
+    let Shown { scale, unit } = shown_in(&output.unit);
     let measured = points(time, &output.measured, scale);
     let model = points(time, &output.model, scale);
     let declared = points(time, &output.declared, scale);
@@ -168,15 +169,6 @@ fn axes<'a, 'b>(
         .y_label_area_size(64)
         .build_cartesian_2d(first..last.max(first + 1e-9), low..high)
         .map_err(|error| error.to_string())
-}
-
-/// How a quantity is shown: degrees for radians.
-fn shown_in(unit: &str) -> (f64, String) {
-    if unit == "rad" || unit.starts_with("rad/") {
-        (1.0_f64.to_degrees(), unit.replacen("rad", "deg", 1))
-    } else {
-        (1.0, unit.to_string())
-    }
 }
 
 fn points(time: &[f64], values: &[f64], scale: f64) -> Vec<(f64, f64)> {

@@ -1,219 +1,237 @@
-//! The page of one job: outcome, parameter table, fit, and time histories.
+//! The page of one job: how it goes while it runs, and what came of it.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, html};
 
-use super::figure::history_svg;
+use super::estimate_tables::{mode_table, output_table, parameter_table, process_noise_table};
+use super::jobs_page::{badge, kind_text, moment};
+use super::layout::{Frame, page};
 use super::study::study_section;
-use super::style::CSS;
+use super::{correlation, diagnosis, eigenvalues};
+use crate::diagnose::Diagnosis;
 use crate::estimate::study::DerivativeStudy;
-use crate::estimate::{
-    Estimate, FilterEstimate, Measure, Mode, OutputFit, Role, TimeHistory, five_digits as number,
-};
+use crate::estimate::{Estimate, Role};
 use crate::flight::Finding;
 use crate::job::{Fault, Status};
 
 /// What the page shows.
-pub struct JobView<'a> {
-    pub id: &'a str,
-    pub name: &'a str,
-    pub model: &'a str,
+pub struct JobView {
+    pub id: String,
+    pub name: String,
+    /// As the API names it.
+    pub kind: String,
+    pub model: NamedModel,
+    pub maneuvers: Vec<UsedManeuver>,
+    pub tags: Vec<String>,
     pub status: Status,
+    /// RFC 3339, UTC.
+    pub created: String,
+    pub attempt: u32,
     /// Why it failed.
-    pub faults: &'a [Fault],
+    pub faults: Vec<Fault>,
     /// What is odd about the data in use.
-    pub findings: &'a [Finding],
-    pub estimate: Option<&'a Estimate>,
+    pub findings: Vec<Finding>,
+    pub estimate: Option<Estimate>,
     /// Of a derivative study.
-    pub study: Option<&'a DerivativeStudy>,
-    pub histories: &'a [TimeHistory],
+    pub study: Option<DerivativeStudy>,
+    /// Of a diagnosis.
+    pub diagnosis: Option<Diagnosis>,
+}
+
+/// The model that a job names, or holds.
+#[derive(Clone)]
+pub struct NamedModel {
+    pub name: String,
+    /// Under `/models/`; absent of one that only the job holds.
+    pub id: Option<String>,
+}
+
+/// A maneuver that a job uses.
+#[derive(Clone)]
+pub struct UsedManeuver {
+    pub id: String,
+    pub label: String,
+    pub role: Role,
+}
+
+impl JobView {
+    pub(super) fn title(&self) -> &str {
+        if self.name.is_empty() {
+            &self.model.name
+        } else {
+            &self.name
+        }
+    }
 }
 
 /// The whole page as HTML.
-pub fn job_page(view: &JobView<'_>) -> String {
-    let title = if view.name.is_empty() {
-        view.model
-    } else {
-        view.name
-    };
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { (title) " - Trimtab" }
-                style { (PreEscaped(CSS)) }
-            }
-            body {
-                h1 { (title) }
-                p.soft { "model " (view.model) ", job " (view.id) }
-                (state(view))
-                @if let Some(estimate) = view.estimate {
-                    h2 { "Parameters" }
-                    div.scroll { (parameter_table(estimate)) }
-                    @if let Some(filter) = &estimate.filter {
-                        h2 { "Process noise" }
-                        div.scroll { (process_noise_table(filter)) }
-                    }
-                    h2 { "Fit" }
-                    div.scroll { (output_table(&estimate.outputs)) }
-                    @if !estimate.modes.is_empty() {
-                        h2 { "Modes" }
-                        div.scroll { (mode_table(&estimate.modes)) }
-                    }
-                    @for prediction in &estimate.prediction {
-                        h2 { "Prediction of segment " (prediction.segment) }
-                        p { (prediction.reason) }
-                        div.scroll { (output_table(&prediction.outputs)) }
-                    }
-                }
-                @if let Some(study) = view.study { (study_section(study)) }
-                @for history in view.histories {
-                    h2 { "Time histories, segment " (history.segment) @if history.role == Role::Validation { " (predicted)" } }
-                    figure role="img" aria-label={ "measured and model outputs of segment " (history.segment) } {
-                        @match history_svg(history) {
-                            Ok(svg) => { (PreEscaped(svg)) }
-                            Err(error) => { p { "The figure could not be drawn: " (error) } }
-                        }
-                    }
-                }
-                (links(view))
-            }
+pub fn job_page(view: &JobView) -> String {
+    let content = html! {
+        div id="job" data-job=(view.id) data-kind=(view.kind) data-over=(view.status.is_over())
+            data-result=(view.estimate.is_some()) {
+            h1 { (view.title()) }
+            (facts(view))
+            (state(view))
+            (actions(view))
+            @if view.status.is_over() { (findings(view)) } @else { (progress()) }
+            @if let Some(diagnosis) = &view.diagnosis { (diagnosis::story(diagnosis)) }
+            @if let Some(estimate) = &view.estimate { (result(estimate)) }
+            @if let Some(study) = &view.study { (study_section(study)) }
+            @if view.estimate.is_some() { (downloads(view)) }
         }
     };
-    page.into_string()
+    let frame = Frame {
+        title: view.title(),
+        under: "/",
+        scripts: &["job.js"],
+    };
+    page(&frame, &content)
 }
 
-fn state(view: &JobView<'_>) -> Markup {
+pub(super) fn facts(view: &JobView) -> Markup {
     html! {
-        @match view.estimate {
-            Some(estimate) => { p role="status" { strong { (view.status.name()) } ": " (estimate.reason) } }
-            None => { p role="status" id="state" data-job=(view.id) { strong { (view.status.name()) } } }
+        dl.facts {
+            dt { "job" } dd { (kind_text(&view.kind)) " " code { (view.id) } }
+            dt { "model" } dd {
+                @match &view.model.id {
+                    Some(id) => { a href={ "/models/" (id) } { (view.model.name) } }
+                    None => { (view.model.name) " (written out in the job)" }
+                }
+            }
+            dt { "maneuvers" } dd {
+                @for (at, maneuver) in view.maneuvers.iter().enumerate() {
+                    @if at > 0 { ", " }
+                    a href={ "/maneuvers/" (maneuver.id) } { (maneuver.label) }
+                    @match maneuver.role {
+                        Role::Estimation => {}
+                        Role::Validation => { " (predicted)" }
+                        Role::Final => { " (kept for the end)" }
+                    }
+                }
+            }
+            dt { "submitted" } dd {
+                (moment(&view.created))
+                @if view.attempt > 1 { ", taken " (view.attempt) " times: a worker was lost or shut down" }
+                @for tag in &view.tags { " " span.soft { "#" (tag) } }
+            }
+        }
+    }
+}
+
+/// How it went, in words.
+pub(super) fn state(view: &JobView) -> Markup {
+    html! {
+        p { (badge(view.status)) " "
+            span id="state" role="status" { @if let Some(estimate) = &view.estimate { (estimate.reason) } }
         }
         @if !view.faults.is_empty() {
-            ul { @for fault in view.faults { li { code { (fault.pointer) } " " (fault.message) } } }
-        }
-        @for remark in view.estimate.map(Estimate::remarks).unwrap_or_default() {
-            p { strong { "Note: " } (remark) }
-        }
-        @for finding in view.findings {
-            p { strong { "Note: " } (finding.message) "; " (finding.remedy) }
-        }
-        @if !view.status.is_over() {
-            // the log says when there is something new to show
-            script src="/assets/follow.js" {}
-        }
-    }
-}
-
-fn parameter_table(estimate: &Estimate) -> Markup {
-    html! {
-        table {
-            thead { tr {
-                th { "parameter" } th { "unit" } th.number { "start" } th.number { "estimate" }
-                th.number { "standard error" } th.number { "if residuals were white" } th { "" }
-            } }
-            tbody {
-                @for parameter in &estimate.parameters {
-                    tr {
-                        td { (parameter.name) @if let Some(segment) = &parameter.segment { " [" (segment) "]" } }
-                        td.soft { (parameter.unit) }
-                        td.number.soft { (number(parameter.start)) }
-                        td.number { (number(parameter.estimate)) }
-                        td.number { @if let Some(error) = parameter.standard_error { (number(error)) } }
-                        td.number.soft { @if let Some(error) = parameter.conventional_standard_error { (number(error)) } }
-                        td.soft { (estimate.remark(parameter)) }
-                    }
-                }
+            div.note {
+                ul { @for fault in &view.faults { li { code { (fault.pointer) } " " (fault.message) } } }
             }
         }
     }
 }
 
-fn process_noise_table(filter: &FilterEstimate) -> Markup {
+fn actions(view: &JobView) -> Markup {
     html! {
-        table {
-            thead { tr {
-                th { "state" } th { "unit" } th.number { "start" } th.number { "intensity" }
-                th.number { "standard error" } th { "" }
-            } }
-            tbody {
-                @for noise in &filter.process_noise {
-                    tr {
-                        td { (noise.state) } td.soft { (noise.unit) }
-                        td.number.soft { (number(noise.start)) } td.number { (number(noise.estimate)) }
-                        td.number { @if let Some(error) = noise.standard_error { (number(error)) } }
-                        td.soft { (noise.remark()) }
-                    }
+        div.row.center.actions {
+            @if view.status.is_over() {
+                @if view.estimate.is_some() {
+                    a.button.main href={ "/jobs/" (view.id) "/report" } { "Report" }
                 }
+                @if view.kind == "estimate" && view.estimate.is_some() {
+                    button type="button" data-act="diagnose" { "Find what the model lacks" }
+                }
+                a.button href={ "/new?like=" (view.id) } { "New job like this" }
+                button type="button" data-act="rerun" { "Run again" }
+            } @else {
+                button type="button" data-act="cancel" { "Cancel" }
             }
+            span id="acted" role="status" {}
         }
-        p.soft { "Outputs are predicted from sample to sample by a Kalman filter; residuals are innovations." }
     }
 }
 
-fn output_table(outputs: &[OutputFit]) -> Markup {
+pub(super) fn findings(view: &JobView) -> Markup {
     html! {
-        table {
-            thead { tr {
-                th { "output" } th { "unit" } th.number { "rms residual" } th.number { "mean residual" }
-                th.number { "R²" } th.number { "Theil" } th.number { "of which bias" } th.number { "variance" } th.number { "covariance" }
-                th.number { "lag-1 autocorrelation" } th.number { "effective samples" }
-            } }
-            tbody {
-                @for output in outputs {
-                    tr {
-                        td { (output.name) } td.soft { (output.unit) }
-                        td.number { (number(output.rms)) } td.number { (number(output.bias)) }
-                        td.number { (format!("{:.4}", output.r_squared)) } td.number { (format!("{:.4}", output.theil)) }
-                        @let shares = output.theil_shares;
-                        @for share in [shares.bias, shares.variance, shares.covariance] {
-                            td.number.soft { (format!("{share:.2}")) }
-                        }
-                        td.number { (format!("{:.2}", output.autocorrelation)) }
-                        td.number { (format!("{:.0}", output.effective_samples)) }
-                    }
-                }
+        @for remark in view.estimate.as_ref().map(Estimate::remarks).unwrap_or_default() {
+            p.note { (remark) }
+        }
+        @if !view.findings.is_empty() {
+            details open[view.findings.len() <= 3] {
+                summary { "What is odd about the data (" (view.findings.len()) ")" }
+                ul { @for finding in &view.findings { li { (finding.message) "; " (finding.remedy) } } }
             }
         }
     }
 }
 
-fn mode_table(modes: &[Mode]) -> Markup {
-    let text = |measure: Option<Measure>| measure.map(|m| m.to_string()).unwrap_or_default();
+fn progress() -> Markup {
     html! {
-        table {
-            thead { tr {
-                th { "mode" } th.number { "eigenvalue, 1/s" } th.number { "frequency, rad/s" } th.number { "damping ratio" }
-                th.number { "period, s" } th.number { "time constant, s" } th.number { "to half, s" } th.number { "to double, s" } th { "" }
-            } }
-            tbody {
-                @for mode in modes {
-                    tr {
-                        td { (mode.label()) } td.number { (mode.eigenvalue()) }
-                        td.number { (text(mode.natural_frequency)) } td.number { (text(mode.damping_ratio)) }
-                        td.number { (text(mode.period)) } td.number { (text(mode.time_constant)) }
-                        td.number { (text(mode.time_to_half)) } td.number { (text(mode.time_to_double)) }
-                        td.soft { (mode.remark) }
-                    }
-                }
+        section aria-labelledby="now" {
+            h2 id="now" { "Now" }
+            p id="connection" role="status" {}
+            div.columns {
+                figure { figcaption { "cost, -ln L" } div.plot id="cost" role="img" aria-label="cost by iteration" {} }
+                figure { figcaption { "change of each parameter since the start, by its largest change" } div.plot id="course" role="img" aria-label="parameters by iteration" {} }
             }
+            ol id="steps" hidden {}
         }
     }
 }
 
-fn links(view: &JobView<'_>) -> Markup {
+fn result(estimate: &Estimate) -> Markup {
+    html! {
+        h2 id="histories" { "Measured and model" }
+        p.soft { "Drag to look closer, double-click for the whole. All plots have one time." }
+        div id="histories-plots" data-loading="true" {}
+        h2 id="parameters" { "Parameters" }
+        div.scroll tabindex="0" role="region" aria-labelledby="parameters" { (parameter_table(estimate)) }
+        @if let Some(filter) = &estimate.filter {
+            h2 id="process-noise" { "Process noise" }
+            div.scroll tabindex="0" role="region" aria-labelledby="process-noise" { (process_noise_table(filter)) }
+        }
+        h2 id="fit" { "Fit" }
+        div.scroll tabindex="0" role="region" aria-labelledby="fit" { (output_table(&estimate.outputs)) }
+        @for prediction in &estimate.prediction {
+            h3 { "Prediction of " (prediction.segment) }
+            p { (prediction.reason) }
+            div.scroll tabindex="0" role="region" aria-label={ "prediction of " (prediction.segment) } { (output_table(&prediction.outputs)) }
+        }
+        h2 { "Residuals" }
+        p.soft { "White residuals leave nothing to explain: no bar beyond the band, and a flat spectrum." }
+        div id="residuals" data-loading="true" {}
+        div.columns {
+            @if !estimate.modes.is_empty() {
+                section { h2 id="modes" { "Modes" } (eigenvalues::plane(&estimate.modes)) }
+            }
+            section { h2 id="correlation" { "Correlation of the estimates" } (correlation::map(estimate)) }
+        }
+        @if !estimate.modes.is_empty() {
+            div.scroll tabindex="0" role="region" aria-labelledby="modes" { (mode_table(&estimate.modes)) }
+        }
+        h2 { "Course of the iterations" }
+        p.soft { (estimate.iterations) " iterations, " (estimate.evaluations) " evaluations with derivatives, " (estimate.simulations) " simulations" }
+        div.columns {
+            figure { figcaption { "cost, -ln L" } div.plot id="cost" role="img" aria-label="cost by iteration" {} }
+            figure { figcaption { "change of each parameter since the start, by its largest change" } div.plot id="course" role="img" aria-label="parameters by iteration" {} }
+        }
+    }
+}
+
+fn downloads(view: &JobView) -> Markup {
     let base = format!("/v1/jobs/{}", view.id);
     html! {
         h2 { "Downloads" }
         ul.links {
             li { a href={ (base) "/parameters?format=csv" } { "parameters (CSV)" } }
             li { a href={ (base) "/time-histories?format=csv" } { "time histories (CSV)" } }
-            li { a href={ (base) "/residual-analysis" } { "residual analysis (JSON)" } }
+            li { a href={ (base) "/residuals?format=csv" } { "residuals (CSV)" } }
+            li { a href={ (base) "/model?format=toml" } { "model as estimated (TOML)" } }
             li { a href={ (base) "/estimate" } { "estimate (JSON)" } }
-            li { a href={ (base) "/model" } { "model" } }
+            li { a href={ (base) "/residual-analysis" } { "residual analysis (JSON)" } }
             @if view.study.is_some() { li { a href={ (base) "/derivative-study" } { "derivative study (JSON)" } } }
-            li { a href="/docs" { "API" } }
+            @if view.diagnosis.is_some() { li { a href={ (base) "/diagnosis" } { "diagnosis (JSON)" } } }
+            li { a href={ (base) "/provenance" } { "provenance (JSON)" } }
         }
     }
 }

@@ -1,16 +1,24 @@
 //! Pages for people, rendered on the server: what a job found, in numbers and pictures.
 //!
 //! Rendering only: what is shown comes in as values, so that a page can be made from a running service, a
-//! file or a test alike.
+//! file or a test alike. Scripts add what moves: live iterations, plots to zoom into, forms.
 
 mod assets;
+mod correlation;
+mod diagnosis;
+mod eigenvalues;
+mod estimate_tables;
 mod figure;
 mod job_page;
+mod jobs_page;
+mod layout;
+mod shown;
 mod study;
 mod study_figure;
 mod style;
 
 pub use assets::{Asset, asset};
 pub use figure::history_svg;
-pub use job_page::{JobView, job_page};
+pub use job_page::{JobView, NamedModel, UsedManeuver, job_page};
+pub use jobs_page::{Chosen, JobRow, JobsView, jobs_page};
 pub use study_figure::{cost_figure, error_figure};

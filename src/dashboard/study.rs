@@ -14,7 +14,7 @@ pub(super) fn study_section(study: &DerivativeStudy) -> Markup {
             (study.size.samples) " samples, " (study.size.states) " states, " (study.size.outputs) " outputs, "
             (study.size.unknowns) " unknowns; one gradient at the start values, and an estimation with each"
         }
-        div.scroll { (techniques(study)) }
+        div.scroll tabindex="0" role="region" aria-label="Table" { (techniques(study)) }
         (figure("error of the gradient against the step", error_figure(&study.error_curves)))
         (figure("cost of a gradient against the number of parameters", cost_figure(&study.costs)))
         p.soft {
@@ -23,13 +23,13 @@ pub(super) fn study_section(study: &DerivativeStudy) -> Markup {
             (count(study.formula.reverse_multiplications + study.formula.reverse_additions)) "."
         }
         h2 { "The same gradient, other optimisers" }
-        div.scroll { (descents(&study.descents)) }
+        div.scroll tabindex="0" role="region" aria-label="Table" { (descents(&study.descents)) }
     }
 }
 
 fn figure(label: &str, svg: Result<String, String>) -> Markup {
     html! {
-        figure role="img" aria-label=(label) {
+        figure.paper role="img" aria-label=(label) {
             @match svg {
                 Ok(svg) => { (PreEscaped(svg)) }
                 Err(error) => { p { "The figure could not be drawn: " (error) } }
@@ -42,9 +42,9 @@ fn techniques(study: &DerivativeStudy) -> Markup {
     html! {
         table {
             thead { tr {
-                th { "technique" } th.number { "error" } th.number { "operations" } th.number { "simulations" }
-                th.number { "CPU" } th.number { "wall" } th.number { "memory" } th.number { "iterations" }
-                th { "outcome" } th.number { "estimation" }
+                th scope="col" { "technique" } th.number scope="col" { "error" } th.number scope="col" { "operations" } th.number scope="col" { "simulations" }
+                th.number scope="col" { "CPU" } th.number scope="col" { "wall" } th.number scope="col" { "memory" } th.number scope="col" { "iterations" }
+                th scope="col" { "outcome" } th.number scope="col" { "estimation" }
             } }
             tbody {
                 @for row in &study.techniques {
@@ -73,8 +73,8 @@ fn descents(descents: &[DescentResult]) -> Markup {
     html! {
         table {
             thead { tr {
-                th { "optimiser" } th { "Hessian at the start" } th.number { "iterations" }
-                th.number { "gradients" } th.number { "above the minimum" } th { "" }
+                th scope="col" { "optimiser" } th scope="col" { "Hessian at the start" } th.number scope="col" { "iterations" }
+                th.number scope="col" { "gradients" } th.number scope="col" { "above the minimum" } th scope="col" { "" }
             } }
             tbody {
                 @for row in descents {

@@ -1,10 +1,37 @@
 //! Fewer rows of long columns, such that a plot of them looks the same.
 
+/// What is wanted of long columns: a stretch of time, and of it about so many rows.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Wanted {
+    /// Seconds of the recording; absent: from the first.
+    pub from: Option<f64>,
+    /// Absent: to the last.
+    pub to: Option<f64>,
+    /// Absent: all.
+    pub most: Option<usize>,
+}
+
+impl Wanted {
+    /// The rows to answer with, of columns over a time that grows.
+    pub fn rows(&self, time: &[f64], columns: &[&[f64]]) -> Vec<usize> {
+        let begin = self
+            .from
+            .map_or(0, |from| time.partition_point(|&t| t < from));
+        let end = self
+            .to
+            .map_or(time.len(), |to| time.partition_point(|&t| t <= to));
+        let end = end.max(begin);
+        let columns: Vec<&[f64]> = columns.iter().map(|column| &column[begin..end]).collect();
+        let kept = rows(&columns, end - begin, self.most.unwrap_or(usize::MAX));
+        kept.into_iter().map(|row| begin + row).collect()
+    }
+}
+
 /// Which rows to keep so that there are about `most`: the first, the last, and in each of a number
 /// of equal stretches those where any of the columns has its least and its greatest value. No value
 /// is made up, and no peak is lost. There are never fewer than two rows for each column and two
 /// more, whatever `most` says.
-pub fn rows(columns: &[&[f64]], length: usize, most: usize) -> Vec<usize> {
+fn rows(columns: &[&[f64]], length: usize, most: usize) -> Vec<usize> {
     if length <= most || length <= 2 {
         return (0..length).collect();
     }
@@ -45,6 +72,21 @@ pub fn pick(values: &[f64], rows: &[usize]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_stretch_of_time_has_its_own_extremes() {
+        let time: Vec<f64> = (0..1000).map(|k| f64::from(k) * 0.1).collect();
+        let mut values = vec![0.0; 1000];
+        (values[100], values[550], values[900]) = (5.0, -1.0, 7.0);
+        let wanted = |from, to, most| Wanted { from, to, most }.rows(&time, &[&values]);
+        let part = wanted(Some(50.0), Some(60.0), Some(10));
+        assert_eq!((part[0], part[part.len() - 1]), (500, 600));
+        assert!(part.contains(&550) && part.len() <= 10, "{part:?}");
+        assert_eq!(wanted(None, Some(0.35), None), [0, 1, 2, 3]);
+        assert_eq!(wanted(Some(99.85), None, None), [999]);
+        assert!(wanted(Some(60.0), Some(50.0), None).is_empty());
+        assert!(wanted(Some(1e9), Some(f64::NAN), None).is_empty());
+    }
 
     #[test]
     fn keeps_ends_and_extremes_within_the_number() {

@@ -9,7 +9,7 @@ use utoipa_axum::routes;
 use uuid::Uuid;
 
 use super::csv::{Csv, header};
-use super::decimate::{pick, rows};
+use super::decimate::{Wanted, pick};
 use super::format::{Format, cacheable, choose};
 use super::problem::{Problem, ProblemDocument};
 use super::query::{JobId, Parameters};
@@ -26,6 +26,12 @@ pub fn router() -> OpenApiRouter<Server> {
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 struct HistoryQuery {
+    /// Seconds of the recording: only samples from here on.
+    #[param(example = 2.0)]
+    from: Option<f64>,
+    /// Seconds of the recording: only samples up to here.
+    #[param(example = 6.5)]
+    to: Option<f64>,
     /// About how many samples of each segment to answer with; absent: all. The first, the last, and
     /// the least and greatest of each series in equal stretches of time are kept, so that a plot looks
     /// the same and no peak is lost; `samples` says how many there are.
@@ -48,7 +54,7 @@ struct SegmentResiduals {
     segment: String,
     /// Whether the model was fitted to it.
     role: Role,
-    /// Samples of the segment, before `max_points`.
+    /// Samples of the segment, before `from`, `to` and `max_points`.
     #[schema(example = 751)]
     samples: usize,
     /// Seconds of the recording.
@@ -64,7 +70,7 @@ pub struct TimeHistories {
 
 #[derive(Serialize, ToSchema)]
 struct SegmentHistory {
-    /// Samples of the segment, before `max_points`.
+    /// Samples of the segment, before `from`, `to` and `max_points`.
     #[schema(example = 751)]
     samples: usize,
     #[serde(flatten)]
@@ -135,14 +141,18 @@ async fn answer(
     as_csv: Write,
 ) -> Result<Response, Problem> {
     let format = choose(query.format, &headers, &[Format::Json, Format::Csv])?;
-    let most = query.max_points.unwrap_or(usize::MAX);
+    let wanted = Wanted {
+        from: query.from,
+        to: query.to,
+        most: query.max_points,
+    };
     let Some(histories) = service.store.histories(id).await? else {
         return Err(results::without_result(&jobs::find(service, id).await?));
     };
     let write = move || {
         let segments = histories
             .into_iter()
-            .map(|history| thinned(history, most))
+            .map(|history| thinned(history, wanted))
             .collect();
         let body = if format == Format::Csv {
             as_csv(segments)
@@ -154,11 +164,8 @@ async fn answer(
     service.compute.run(write).await?
 }
 
-fn thinned(mut history: TimeHistory, most: usize) -> SegmentHistory {
+fn thinned(mut history: TimeHistory, wanted: Wanted) -> SegmentHistory {
     let samples = history.time.len();
-    if samples <= most {
-        return SegmentHistory { samples, history };
-    }
     let inputs = history.inputs.iter().map(|series| series.values.as_slice());
     let outputs = history
         .outputs
@@ -173,7 +180,10 @@ fn thinned(mut history: TimeHistory, most: usize) -> SegmentHistory {
         })
         .filter(|values| !values.is_empty())
         .map(Vec::as_slice);
-    let kept = rows(&inputs.chain(outputs).collect::<Vec<_>>(), samples, most);
+    let kept = wanted.rows(&history.time, &inputs.chain(outputs).collect::<Vec<_>>());
+    if kept.len() == samples {
+        return SegmentHistory { samples, history };
+    }
     let thin = |values: &mut Vec<f64>| *values = pick(values, &kept);
     thin(&mut history.time);
     for input in &mut history.inputs {

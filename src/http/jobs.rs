@@ -13,7 +13,6 @@ use super::code::Code;
 use super::format::{Format, cacheable};
 use super::problem::{Problem, ProblemDocument};
 use super::query::{JobId, Parameters, bad_cursor, page_limit, unknown_job};
-use super::submit::kind_name;
 use super::{Server, Service};
 use crate::estimate::Outcome;
 use crate::job::{EventBody, Fault, JobKind, JobSpec, Status};
@@ -100,7 +99,7 @@ impl JobLinks {
             residual_analysis: under("residual-analysis"),
             time_histories: under("time-histories"),
             model: under("model"),
-            diagnosis: (kind == kind_name(JobKind::Diagnose)).then(|| under("diagnosis")),
+            diagnosis: (kind == JobKind::Diagnose.name()).then(|| under("diagnosis")),
             this,
         }
     }
@@ -192,7 +191,7 @@ async fn list_jobs(
     };
     let filter = JobFilter {
         status: query.status,
-        kind: query.kind.map(|kind| kind_name(kind).to_string()),
+        kind: query.kind.map(|kind| kind.name().to_string()),
         tag: query.tag,
         created_after: query.created_after.map(moment).transpose()?,
     };

@@ -13,10 +13,11 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::code::Code;
+use super::decimate::{Wanted, pick};
 use super::format::{Format, cacheable, choose};
 use super::problem::{Problem, ProblemDocument};
 use super::query::{Id, PageQuery, Parameters, bad_cursor, page_limit};
-use super::{Server, Service, body, decimate, mappings};
+use super::{Server, Service, body, mappings};
 use crate::flight::{Channel, Maneuver};
 use crate::ingest::{self, Summary};
 use crate::job::Fault;
@@ -233,6 +234,12 @@ struct DataQuery {
     /// Names of channels, separated by commas; absent: all.
     #[param(example = "alpha,q")]
     channels: Option<String>,
+    /// Seconds of the recording: only samples from here on.
+    #[param(example = 2.0)]
+    from: Option<f64>,
+    /// Seconds of the recording: only samples up to here.
+    #[param(example = 6.5)]
+    to: Option<f64>,
     /// About how many samples to answer with; absent: all. The first, the last, and the least and
     /// greatest of each channel in equal stretches of time are kept, so that a plot looks the same.
     #[param(example = 500)]
@@ -248,7 +255,7 @@ struct DataQuery {
     responses(
         (status = 200, description = "The samples.", content(
             (ingest::Recording = "application/json"), (String = "text/csv")),
-            headers(("x-trimtab-samples" = usize, description = "Samples of the recording, before `max_points`."))),
+            headers(("x-trimtab-samples" = usize, description = "Samples of the recording, before `from`, `to` and `max_points`."))),
         (status = 304, description = "As the `ETag` in `If-None-Match`."),
         (status = 404, description = "`unknown_maneuver`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
@@ -265,8 +272,13 @@ async fn get_maneuver_data(
         .await?
         .ok_or_else(|| unknown_maneuver(&id))?;
     let samples = maneuver.len();
+    let wanted = Wanted {
+        from: query.from,
+        to: query.to,
+        most: query.max_points,
+    };
     let write = move || {
-        let part = part(&maneuver, query.channels.as_deref(), query.max_points)?;
+        let part = part(&maneuver, query.channels.as_deref(), wanted)?;
         let text = match format {
             Format::Csv => ingest::to_csv(&part, |_| true),
             _ => ingest::to_json(&part)?,
@@ -282,11 +294,7 @@ async fn get_maneuver_data(
 }
 
 /// Some channels and samples of a maneuver.
-fn part(
-    maneuver: &Maneuver,
-    channels: Option<&str>,
-    max_points: Option<usize>,
-) -> Result<Maneuver, Problem> {
+fn part(maneuver: &Maneuver, channels: Option<&str>, wanted: Wanted) -> Result<Maneuver, Problem> {
     let mut chosen: Vec<(&String, &Channel)> = maneuver.channels().iter().collect();
     if let Some(names) = channels {
         let names: Vec<&str> = names.split(',').map(str::trim).collect();
@@ -305,9 +313,9 @@ fn part(
         chosen.retain(|(name, _)| names.contains(&name.as_str()));
     }
     let columns: Vec<&[f64]> = chosen.iter().map(|(_, channel)| &*channel.values).collect();
-    let rows = decimate::rows(&columns, maneuver.len(), max_points.unwrap_or(usize::MAX));
+    let rows = wanted.rows(maneuver.time(), &columns);
     let channels = chosen.iter().map(|(name, channel)| {
-        let values = decimate::pick(&channel.values, &rows);
+        let values = pick(&channel.values, &rows);
         let Channel {
             recorded_unit,
             unit,
@@ -320,9 +328,14 @@ fn part(
         };
         ((*name).clone(), channel)
     });
-    let time = decimate::pick(maneuver.time(), &rows);
+    let time = pick(maneuver.time(), &rows);
     Maneuver::new(time, channels.collect()).map_err(|error| {
-        tracing::error!(%error, "part of a maneuver");
-        Problem::internal()
+        let all = maneuver.time();
+        let detail = format!(
+            "between from and to: {error}; the recording goes from {} s to {} s",
+            all[0],
+            all[all.len() - 1]
+        );
+        Problem::new(Code::InvalidQuery, detail)
     })
 }

@@ -3,8 +3,7 @@
 use axum::Router;
 use axum::http::{HeaderName, HeaderValue, Request};
 use axum::middleware;
-use axum::response::{IntoResponse, Redirect};
-use axum::routing::get;
+use axum::response::IntoResponse;
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::compression::CompressionLayer;
 use tower_http::csrf::{CsrfLayer, ProtectionError};
@@ -62,7 +61,6 @@ pub(super) fn router(server: Server) -> Router {
     api.merge(super::pages::router())
         .with_state(server)
         .merge(docs)
-        .route("/", get(|| async { Redirect::temporary("/docs/") }))
         .fallback(async || problem::unknown_route())
         .method_not_allowed_fallback(async || problem::method_not_allowed())
         // from here on upwards: the last one added is the first to see a request

@@ -19,9 +19,7 @@ use super::problem::{Problem, ProblemDocument};
 use super::query::Parameters;
 use super::{Server, Service, models, prefer};
 use crate::flight::Maneuver;
-use crate::job::{
-    self, Fault, HIGHEST_PRIORITY, JobKind, JobSpec, MOST_MANEUVERS, ModelSource, Prepared,
-};
+use crate::job::{self, Fault, HIGHEST_PRIORITY, JobSpec, MOST_MANEUVERS, ModelSource, Prepared};
 use crate::model::{Model, ModelDocument};
 use crate::store::NewJob;
 
@@ -98,7 +96,7 @@ async fn submit_job(
 /// What is kept of a job that was checked; `text` is its spec as it was sent.
 pub fn new_job(spec: &JobSpec, text: String, model: &ModelDocument) -> Result<NewJob, Problem> {
     Ok(NewJob {
-        kind: kind_name(spec.kind).to_string(),
+        kind: spec.kind.name().to_string(),
         name: spec.name.clone(),
         tags: spec.tags.clone(),
         priority: spec.priority,
@@ -126,14 +124,6 @@ pub async fn room(service: &Service, jobs: usize) -> Result<(), Problem> {
         return refuse("everybody", waiting.all, config.max_queued, "--max-queued");
     }
     Ok(())
-}
-
-pub fn kind_name(kind: JobKind) -> &'static str {
-    match kind {
-        JobKind::Estimate => "estimate",
-        JobKind::DerivativeStudy => "derivative_study",
-        JobKind::Diagnose => "diagnose",
-    }
 }
 
 /// What the job amounts to, and the model that it names or holds; or all that is wrong with it.

@@ -13,6 +13,7 @@
 mod ascii;
 mod assemble;
 mod axis;
+pub mod bundled;
 mod cell;
 mod csv;
 mod export;

@@ -98,6 +98,19 @@ pub enum JobKind {
     Diagnose,
 }
 
+impl JobKind {
+    pub const ALL: [Self; 3] = [Self::Estimate, Self::Diagnose, Self::DerivativeStudy];
+
+    /// As it is written in a job.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Estimate => "estimate",
+            Self::DerivativeStudy => "derivative_study",
+            Self::Diagnose => "diagnose",
+        }
+    }
+}
+
 /// A model by name or id, or written out.
 #[derive(Clone, PartialEq, Debug, Serialize, ToSchema)]
 #[serde(untagged)]
@@ -140,6 +153,14 @@ impl ModelSource {
         match self {
             Self::Reference(name) => name,
             Self::Document(document) => &document.name,
+        }
+    }
+
+    /// The name or id that finds it again; nothing finds a model that only the job holds.
+    pub fn reference(&self) -> Option<&str> {
+        match self {
+            Self::Reference(name) => Some(name),
+            Self::Document(_) => None,
         }
     }
 }

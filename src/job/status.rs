@@ -18,6 +18,15 @@ pub enum Status {
 }
 
 impl Status {
+    pub const ALL: [Self; 6] = [
+        Self::Queued,
+        Self::Running,
+        Self::Cancelling,
+        Self::Succeeded,
+        Self::Failed,
+        Self::Cancelled,
+    ];
+
     /// Status after `event`, given the status before it (`None` before the first).
     pub fn after(before: Option<Self>, event: &EventBody) -> Self {
         match (event, before) {

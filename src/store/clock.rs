@@ -55,6 +55,11 @@ impl Clock {
         seconds(moment, &self.now_text()).unwrap_or(0.0)
     }
 
+    /// The time between two moments of the tables, s.
+    pub fn seconds_between(from: &str, to: &str) -> Option<f64> {
+        seconds(from, to)
+    }
+
     /// A moment that a user wrote (RFC 3339), as it is written in the tables.
     pub fn read(moment: &str) -> Option<String> {
         moment.parse().ok().map(text)

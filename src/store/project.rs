@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use uuid::Uuid;
 
-use super::{Expired, Key, KeyRecord, Listener, NewKey, Rule, Store, StoreError};
+use super::{Clock, Expired, Key, KeyRecord, Listener, NewKey, Rule, Store, StoreError};
 
 /// The project of those who need no key, and of what was stored before there were keys.
 pub const DEFAULT_PROJECT: &str = "default";
@@ -36,6 +36,11 @@ impl Store {
 impl Project {
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// As [`Store::clock`].
+    pub fn clock(&self) -> &Clock {
+        self.store.clock()
     }
 
     /// As [`Store::listen`].

@@ -1,0 +1,97 @@
+//! Eigenvalues of the estimated model in the complex plane, with their error bounds.
+
+use maud::{Markup, html};
+
+use crate::estimate::{Measure, Mode};
+
+const WIDTH: f64 = 420.0;
+const HEIGHT: f64 = 300.0;
+const MARGIN: f64 = 42.0;
+
+/// The upper half of the plane and the real axis, as a picture; lower ones are mirror images.
+pub(super) fn plane(modes: &[Mode]) -> Markup {
+    let shown: Vec<&Mode> = (modes.iter())
+        .filter(|mode| mode.real.value.is_finite() && mode.imaginary.value.is_finite())
+        .collect();
+    let with_bound = |measure: Measure| measure.value.abs() + bound(measure);
+    let furthest = |of: fn(&Mode) -> Measure| {
+        let largest = shown
+            .iter()
+            .map(|mode| with_bound(of(mode)))
+            .fold(0.0, f64::max);
+        if largest > 0.0 { 1.15 * largest } else { 1.0 }
+    };
+    let (most_real, most_imaginary) = (furthest(|mode| mode.real), furthest(|mode| mode.imaginary));
+    // room on the unstable side, too, if something is there
+    let rightmost =
+        (shown.iter().map(|mode| mode.real.value + bound(mode.real))).fold(0.0, f64::max);
+    let right = (1.3 * rightmost).max(0.15 * most_real);
+    let x = |real: f64| MARGIN + (real + most_real) / (most_real + right) * (WIDTH - 1.5 * MARGIN);
+    let y = |imaginary: f64| HEIGHT - MARGIN - imaginary / most_imaginary * (HEIGHT - 1.7 * MARGIN);
+    let words: Vec<String> = (modes.iter())
+        .map(|mode| format!("{} {}", mode.label(), mode.eigenvalue()))
+        .collect();
+    html! {
+        figure {
+            svg.plane viewBox={ "0 0 " (WIDTH) " " (HEIGHT) } role="img" aria-label={ "eigenvalues, 1/s: " (words.join("; ")) }
+                width=(WIDTH) style="max-width: 100%; height: auto" fill="currentColor" font-size="12" {
+                rect x=(x(0.0)) y="8" width=((WIDTH - 0.5 * MARGIN - x(0.0)).max(0.0)) height=(HEIGHT - MARGIN - 8.0)
+                    fill="var(--model)" opacity=".13" {}
+                line x1=(MARGIN) x2=(WIDTH - 0.5 * MARGIN) y1=(y(0.0)) y2=(y(0.0)) stroke="currentColor" {}
+                line x1=(x(0.0)) x2=(x(0.0)) y1="8" y2=(y(0.0)) stroke="currentColor" {}
+                @for tick in ticks(most_real) {
+                    @for at in [-tick, tick] {
+                        @if x(at) < WIDTH - 0.5 * MARGIN {
+                            line x1=(x(at)) x2=(x(at)) y1=(y(0.0)) y2=(y(0.0) + 4.0) stroke="currentColor" {}
+                            text x=(x(at)) y=(y(0.0) + 17.0) text-anchor="middle" { (plain(at)) }
+                        }
+                    }
+                }
+                text x=(x(0.0)) y=(y(0.0) + 17.0) text-anchor="middle" { "0" }
+                @for tick in ticks(most_imaginary) {
+                    line x1=(x(0.0) - 4.0) x2=(x(0.0)) y1=(y(tick)) y2=(y(tick)) stroke="currentColor" {}
+                    text x=(x(0.0) + 5.0) y=(y(tick) + 4.0) { (plain(tick)) }
+                }
+                text x=(WIDTH / 2.0) y=(HEIGHT - 6.0) text-anchor="middle" { "real part, 1/s" }
+                @for mode in &shown {
+                    @let (re, im) = (mode.real, mode.imaginary);
+                    @let (cx, cy) = (x(re.value), y(im.value.abs()));
+                    g stroke="var(--measured)" stroke-width="2" fill="none" {
+                        line x1=(x(re.value - bound(re))) x2=(x(re.value + bound(re))) y1=(cy) y2=(cy) stroke-width="1" {}
+                        line x1=(cx) x2=(cx) y1=(y((im.value.abs() - bound(im)).max(0.0))) y2=(y(im.value.abs() + bound(im))) stroke-width="1" {}
+                        path d={ "M" (cx - 5.0) " " (cy - 5.0) "l10 10m0 -10l-10 10" } {}
+                    }
+                    text x=(cx + 8.0) y=(cy - 8.0) { (mode.label()) }
+                }
+            }
+            figcaption { "Eigenvalues with 2 standard errors; what is right of the axis grows. Imaginary part upwards, rad/s." }
+        }
+    }
+}
+
+/// Two standard errors.
+fn bound(measure: Measure) -> f64 {
+    2.0 * measure
+        .standard_error
+        .filter(|error| error.is_finite())
+        .unwrap_or(0.0)
+}
+
+/// Two or three round numbers up to `most`.
+fn ticks(most: f64) -> Vec<f64> {
+    let power = 10f64.powf((most / 3.0).log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].map(|digit| digit * power).into_iter();
+    let step = step
+        .filter(|step| most / step <= 4.0)
+        .fold(f64::INFINITY, f64::min);
+    (1..=4)
+        .map(|k| f64::from(k) * step)
+        .filter(|tick| *tick <= most)
+        .collect()
+}
+
+fn plain(value: f64) -> String {
+    // what binary fractions leave behind is rounded off
+    let rounded = (value * 1e9).round() / 1e9;
+    format!("{rounded}").replace('-', "\u{2212}")
+}

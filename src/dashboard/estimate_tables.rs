@@ -1,0 +1,104 @@
+//! An estimate in tables: parameters, process noise, fit of each output, modes.
+
+use maud::{Markup, html};
+
+use super::shown::{Shown, shown_in};
+use crate::estimate::{Estimate, FilterEstimate, Measure, Mode, OutputFit, five_digits as number};
+
+pub(super) fn parameter_table(estimate: &Estimate) -> Markup {
+    html! {
+        table {
+            thead { tr {
+                th scope="col" { "parameter" } th scope="col" { "unit" } th.number scope="col" { "start" } th.number scope="col" { "estimate" }
+                th.number scope="col" { "standard error" } th.number scope="col" { "if residuals were white" } th scope="col" { "remark" }
+            } }
+            tbody {
+                @for parameter in &estimate.parameters {
+                    @let Shown { scale, unit } = shown_in(&parameter.unit);
+                    tr {
+                        th scope="row" { (parameter.name) @if let Some(segment) = &parameter.segment { " [" (segment) "]" } }
+                        td.soft { (unit) }
+                        td.number.soft { (number(parameter.start * scale)) }
+                        td.number { (number(parameter.estimate * scale)) }
+                        td.number { @if let Some(error) = parameter.standard_error { (number(error * scale)) } }
+                        td.number.soft { @if let Some(error) = parameter.conventional_standard_error { (number(error * scale)) } }
+                        td.soft { (estimate.remark(parameter)) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+pub(super) fn process_noise_table(filter: &FilterEstimate) -> Markup {
+    html! {
+        table {
+            thead { tr {
+                th scope="col" { "state" } th scope="col" { "unit" } th.number scope="col" { "start" } th.number scope="col" { "intensity" }
+                th.number scope="col" { "standard error" } th scope="col" { "remark" }
+            } }
+            tbody {
+                @for noise in &filter.process_noise {
+                    tr {
+                        th scope="row" { (noise.state) } td.soft { (noise.unit) }
+                        td.number.soft { (number(noise.start)) } td.number { (number(noise.estimate)) }
+                        td.number { @if let Some(error) = noise.standard_error { (number(error)) } }
+                        td.soft { (noise.remark()) }
+                    }
+                }
+            }
+        }
+        p.soft { "Outputs are predicted from sample to sample by a Kalman filter; residuals are innovations." }
+    }
+}
+
+pub(super) fn output_table(outputs: &[OutputFit]) -> Markup {
+    html! {
+        table {
+            thead { tr {
+                th scope="col" { "output" } th scope="col" { "unit" } th.number scope="col" { "rms residual" } th.number scope="col" { "mean residual" }
+                th.number scope="col" { "R²" } th.number scope="col" { "Theil" } th.number scope="col" { "of which bias" } th.number scope="col" { "variance" } th.number scope="col" { "covariance" }
+                th.number scope="col" { "lag-1 autocorrelation" } th.number scope="col" { "effective samples" }
+            } }
+            tbody {
+                @for output in outputs {
+                    @let Shown { scale, unit } = shown_in(&output.unit);
+                    tr {
+                        th scope="row" { (output.name) } td.soft { (unit) }
+                        td.number { (number(output.rms * scale)) } td.number { (number(output.bias * scale)) }
+                        td.number { (format!("{:.4}", output.r_squared)) } td.number { (format!("{:.4}", output.theil)) }
+                        @let shares = output.theil_shares;
+                        @for share in [shares.bias, shares.variance, shares.covariance] {
+                            td.number.soft { (format!("{share:.2}")) }
+                        }
+                        td.number { (format!("{:.2}", output.autocorrelation)) }
+                        td.number { (format!("{:.0}", output.effective_samples)) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+pub(super) fn mode_table(modes: &[Mode]) -> Markup {
+    let text = |measure: Option<Measure>| measure.map(|m| m.to_string()).unwrap_or_default();
+    html! {
+        table {
+            thead { tr {
+                th scope="col" { "mode" } th.number scope="col" { "eigenvalue, 1/s" } th.number scope="col" { "frequency, rad/s" } th.number scope="col" { "damping ratio" }
+                th.number scope="col" { "period, s" } th.number scope="col" { "time constant, s" } th.number scope="col" { "to half, s" } th.number scope="col" { "to double, s" } th scope="col" { "remark" }
+            } }
+            tbody {
+                @for mode in modes {
+                    tr {
+                        th scope="row" { (mode.label()) } td.number { (mode.eigenvalue()) }
+                        td.number { (text(mode.natural_frequency)) } td.number { (text(mode.damping_ratio)) }
+                        td.number { (text(mode.period)) } td.number { (text(mode.time_constant)) }
+                        td.number { (text(mode.time_to_half)) } td.number { (text(mode.time_to_double)) }
+                        td.soft { (mode.remark) }
+                    }
+                }
+            }
+        }
+    }
+}

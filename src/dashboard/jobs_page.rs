@@ -1,0 +1,175 @@
+//! The page of all jobs: what waits, what runs, and what came of the rest.
+
+use maud::{Markup, html};
+
+use super::layout::{Frame, page};
+use crate::job::{JobKind, Status};
+
+/// What the page shows.
+pub struct JobsView {
+    /// Newest first.
+    pub jobs: Vec<JobRow>,
+    pub chosen: Chosen,
+    /// The address of the page of older ones.
+    pub older: Option<String>,
+}
+
+/// A job in a line.
+pub struct JobRow {
+    pub id: String,
+    pub name: String,
+    /// As the API names it.
+    pub kind: String,
+    pub tags: Vec<String>,
+    pub status: Status,
+    /// RFC 3339, UTC.
+    pub created: String,
+    /// Seconds from the first claim to the end, or to now.
+    pub seconds: Option<f64>,
+    /// Why the solver stopped, or what failed.
+    pub reason: String,
+}
+
+/// Which jobs are shown.
+#[derive(Default)]
+pub struct Chosen {
+    pub status: Option<Status>,
+    pub kind: Option<JobKind>,
+    pub tag: String,
+    /// Not the newest: reached by way of `older`.
+    pub is_later_page: bool,
+}
+
+impl Chosen {
+    fn is_everything(&self) -> bool {
+        self.status.is_none() && self.kind.is_none() && self.tag.is_empty() && !self.is_later_page
+    }
+}
+
+/// The whole page as HTML.
+pub fn jobs_page(view: &JobsView) -> String {
+    let content = html! {
+        div.row.center {
+            h1 { "Jobs" }
+            a.button.main href="/new" { "New job" }
+        }
+        @if view.jobs.is_empty() && view.chosen.is_everything() {
+            (first_visit())
+        } @else {
+            (filters(&view.chosen))
+            p.soft id="live" role="status" {}
+            div id="jobs" data-live=(!view.chosen.is_later_page) { (table(view)) }
+        }
+    };
+    let frame = Frame {
+        title: "Jobs",
+        under: "/",
+        scripts: &["jobs.js"],
+    };
+    page(&frame, &content)
+}
+
+fn first_visit() -> Markup {
+    html! {
+        p { "Nothing has been estimated here yet. A job fits a model of the aircraft to recorded maneuvers by the output-error method, and can find what the model lacks." }
+        ol {
+            li { "Upload a recorded maneuver, as CSV, MAT or JSON." }
+            li { "Choose a model, and submit." }
+            li { "Look at the parameters, the fit, and what is left over." }
+        }
+        div.row {
+            a.button.main href="/maneuvers" { "Upload a maneuver" }
+            button type="button" id="examples" { "Try it with flights that come with Trimtab" }
+        }
+        p.soft id="live" role="status" {}
+    }
+}
+
+fn filters(chosen: &Chosen) -> Markup {
+    html! {
+        form.row method="get" action="/" role="search" aria-label="Filter jobs" {
+            label { "Status"
+                select name="status" {
+                    option value="" { "any" }
+                    @for status in Status::ALL {
+                        option value=(status.name()) selected[chosen.status == Some(status)] { (status.name()) }
+                    }
+                }
+            }
+            label { "Kind"
+                select name="kind" {
+                    option value="" { "any" }
+                    @for kind in JobKind::ALL {
+                        option value=(kind.name()) selected[chosen.kind == Some(kind)] { (kind_text(kind.name())) }
+                    }
+                }
+            }
+            label { "Tag" input name="tag" value=(chosen.tag) autocomplete="off"; }
+            button { "Filter" }
+            @if !chosen.is_everything() { a href="/" { "Show all" } }
+        }
+    }
+}
+
+fn table(view: &JobsView) -> Markup {
+    html! {
+        @if view.jobs.is_empty() {
+            p { "No job is like that." }
+        } @else {
+            div.scroll tabindex="0" role="region" aria-label="Jobs" {
+                table {
+                    thead { tr {
+                        th scope="col" { "job" } th scope="col" { "kind" } th scope="col" { "state" }
+                        th scope="col" { "submitted" } th.number scope="col" { "time, s" } th scope="col" { "outcome" }
+                    } }
+                    tbody {
+                        @for job in &view.jobs {
+                            tr {
+                                th scope="row" {
+                                    a href={ "/jobs/" (job.id) } { @if job.name.is_empty() { (job.id) } @else { (job.name) } }
+                                    @for tag in &job.tags { " " span.soft { "#" (tag) } }
+                                }
+                                td { (kind_text(&job.kind)) }
+                                td { (badge(job.status)) }
+                                td { (moment(&job.created)) }
+                                td.number { @if let Some(seconds) = job.seconds { (duration(seconds)) } }
+                                td.soft { (job.reason) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        @if let Some(older) = &view.older { p { a href=(older) rel="next" { "Older jobs" } } }
+    }
+}
+
+/// A kind in a word for people.
+pub(super) fn kind_text(kind: &str) -> &str {
+    match kind {
+        "diagnose" => "diagnosis",
+        "derivative_study" => "derivative study",
+        _ => kind,
+    }
+}
+
+/// A job's status, told by word and colour.
+pub(super) fn badge(status: Status) -> Markup {
+    html! { span class={ "state " (status.name()) } { (status.name()) } }
+}
+
+/// A moment, which the browser may show in the reader's own time.
+pub(super) fn moment(text: &str) -> Markup {
+    let plain = text.replace('T', " ");
+    let plain = plain.split('.').next().unwrap_or_default();
+    html! { time datetime=(text) { (plain) } }
+}
+
+/// Seconds with as many digits as matter.
+fn duration(seconds: f64) -> String {
+    if seconds < 10.0 {
+        format!("{seconds:.2}")
+    } else {
+        format!("{seconds:.0}")
+    }
+}

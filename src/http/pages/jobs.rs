@@ -1,0 +1,96 @@
+//! `/`: the page of all jobs.
+
+use axum::Router;
+use axum::response::Html;
+use axum::routing::get;
+use serde::Deserialize;
+
+use crate::dashboard::{Chosen, JobRow, JobsView, jobs_page};
+use crate::http::problem::Problem;
+use crate::http::query::{Parameters, bad_cursor};
+use crate::http::{Server, Service};
+use crate::job::{EventBody, JobKind, Status};
+use crate::store::{Clock, JobFilter, JobRecord};
+
+pub fn router() -> Router<Server> {
+    Router::new().route("/", get(get_jobs_page))
+}
+
+/// Jobs of a page.
+const JOBS: usize = 100;
+
+/// As a form sends it: what is not chosen is empty.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Query {
+    #[serde(default)]
+    status: String,
+    #[serde(default)]
+    kind: String,
+    #[serde(default)]
+    tag: String,
+    cursor: Option<String>,
+}
+
+async fn get_jobs_page(
+    service: Service,
+    Parameters(query): Parameters<Query>,
+) -> Result<Html<String>, Problem> {
+    let status = Status::ALL
+        .into_iter()
+        .find(|status| status.name() == query.status);
+    let kind = JobKind::ALL
+        .into_iter()
+        .find(|kind| kind.name() == query.kind);
+    let filter = JobFilter {
+        status,
+        kind: kind.map(|kind| kind.name().to_string()),
+        tag: (!query.tag.is_empty()).then(|| query.tag.clone()),
+        created_after: None,
+    };
+    let cursor = query.cursor.as_deref();
+    let page = service.store.jobs(&filter, cursor, JOBS).await?;
+    let page = page.map_err(bad_cursor)?;
+    let now = service.store.clock().now_text();
+    let older = page.next_cursor.map(|cursor| {
+        let mut form = form_urlencoded::Serializer::new(String::from("/?"));
+        form.append_pair("status", &query.status);
+        form.append_pair("kind", &query.kind);
+        form.append_pair("tag", &query.tag);
+        form.append_pair("cursor", &cursor);
+        form.finish()
+    });
+    let view = JobsView {
+        jobs: page.entries.into_iter().map(|job| row(job, &now)).collect(),
+        chosen: Chosen {
+            status,
+            kind,
+            is_later_page: query.cursor.is_some(),
+            tag: query.tag,
+        },
+        older,
+    };
+    Ok(Html(service.compute.run(move || jobs_page(&view)).await?))
+}
+
+fn row(job: JobRecord, now: &str) -> JobRow {
+    let until = job.finished.as_deref().unwrap_or(now);
+    let started = job.started.as_deref();
+    JobRow {
+        id: job.id.to_string(),
+        seconds: started.and_then(|started| Clock::seconds_between(started, until)),
+        name: job.name,
+        kind: job.kind,
+        tags: job.tags,
+        status: job.status,
+        created: job.created,
+        reason: match job.ending {
+            Some(EventBody::Succeeded { reason, .. }) => reason,
+            Some(EventBody::Failed { faults }) => faults
+                .first()
+                .map(|fault| fault.message.clone())
+                .unwrap_or_default(),
+            _ => String::new(),
+        },
+    }
+}

@@ -1,0 +1,30 @@
+//! Pages for people, one file for each, and `/assets/{name}`: what they load.
+//!
+//! A page is put together here from what the store has, and rendered in the room `dashboard`.
+
+mod job;
+mod jobs;
+
+use axum::Router;
+use axum::http::{HeaderMap, HeaderValue};
+use axum::response::Response;
+use axum::routing::get;
+
+use super::Server;
+use super::format::cacheable_as;
+use super::problem::{Problem, unknown_route};
+use super::query::Id;
+use crate::dashboard::asset;
+
+pub fn router() -> Router<Server> {
+    Router::new()
+        .merge(jobs::router())
+        .merge(job::router())
+        .route("/assets/{name}", get(get_asset))
+}
+
+async fn get_asset(Id(name): Id, headers: HeaderMap) -> Result<Response, Problem> {
+    let asset = asset(&name).ok_or_else(unknown_route)?;
+    let media_type = HeaderValue::from_static(asset.media_type);
+    Ok(cacheable_as(&headers, media_type, asset.content))
+}
