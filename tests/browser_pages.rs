@@ -92,6 +92,8 @@ async fn the_first_visit_says_what_to_do_and_has_flights_to_try() {
             .await;
         browser.picture("empty").await;
         browser.click("#examples").await;
+        // that page is yet to come
+        browser.expect_error("/new?");
         browser.until("location.pathname === '/new'").await;
         let address = browser.address().await;
         let given: Vec<(String, String)> = address.query_pairs().into_owned().collect();
@@ -205,7 +207,7 @@ async fn a_running_job_is_seen_to_run_and_turns_into_its_result() {
         go(browser, &server, &format!("/jobs/{id}")).await;
         browser.says("#state", "waits for a worker").await;
         let _work = work(&server);
-        let points = "document.querySelector('#job[data-over=false] #cost.js-plotly-plot')?.data[0].x.length ?? 0";
+        let points = "document.querySelector('#job[data-over=false] #cost.js-plotly-plot')?.data[0].x.length";
         let first = browser.until(&format!("({points} > 1 && {points})")).await;
         browser.picture("under way").await;
         browser.until(&format!("{points} > {first}")).await;

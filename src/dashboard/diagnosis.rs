@@ -183,7 +183,7 @@ fn candidates(effects: &[&RefusedEffect]) -> Markup {
     html! {
         div.scroll tabindex="0" role="region" aria-label="Candidates" {
             table {
-                thead { tr { th scope="col" { "candidate" } th.number scope="col" { "likelihood ratio" } th scope="col" { "refused because" } th scope="col" { "" } } }
+                thead { tr { th scope="col" { "candidate" } th.number scope="col" { "likelihood ratio" } th scope="col" { "refused because" } th scope="col" { "in full" } } }
                 tbody {
                     @for effect in effects {
                         tr {

@@ -104,10 +104,12 @@ async function drawHistories() {
     const lines = (name, values, tint, width = 2) => ({
       name, values, style: () => ({ mode: 'lines', line: { color: colour(tint), width } }),
     });
+    // of a diagnosis only
+    const isDeclared = output => output.declared !== undefined;
     const outputs = segment.outputs.map(output => of(output, scale => [
       { name: 'measured', values: scaled(output.measured, scale), style: () => ({ mode: 'markers', marker: { color: colour('measured'), size: 3 } }) },
-      ...(output.declared.length > 0 ? [lines('declared model', scaled(output.declared, scale), 'declared')] : []),
-      lines(output.declared.length > 0 ? 'model with the effects' : 'model', scaled(output.model, scale), 'model'),
+      ...(isDeclared(output) ? [lines('declared model', scaled(output.declared, scale), 'declared')] : []),
+      lines(isDeclared(output) ? 'model with the effects' : 'model', scaled(output.model, scale), 'model'),
     ]));
     const inputs = segment.inputs.map(input => of(input, scale => [lines('input', scaled(input.values, scale), 'soft', 1.5)]));
     return [...outputs, ...inputs];
