@@ -66,8 +66,7 @@ export async function plot(element, make) {
     hoverlabel: { bgcolor: colour('raised'), bordercolor: colour('line'), font: { color: colour('ink') } },
     dragmode: 'zoom', ...layout,
   }, {
-    responsive: true, displaylogo: false, doubleClick: 'reset',
-    modeBarButtonsToRemove: ['select2d', 'lasso2d', 'autoScale2d'],
+    responsive: true, displayModeBar: false, doubleClick: 'reset',
   });
   return plotly;
 }
