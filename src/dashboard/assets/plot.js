@@ -87,7 +87,7 @@ export async function timePlot(element, load) {
     const traces = [];
     const layout = {
       height: 60 + height * rows.length, hovermode: 'x unified', hoversubplots: 'axis', showlegend: true,
-      xaxis: axis('time, s', { anchor: `y${rows.length}`, showspikes: true, spikemode: 'across', spikethickness: 1, spikedash: 'solid', spikecolor: colour('soft'), range: data.range }),
+      xaxis: axis('time, s', { anchor: `y${rows.length}`, showspikes: true, spikemode: 'across', spikethickness: 1, spikedash: 'solid', spikecolor: colour('soft'), range: data.range ?? [time[0], time.at(-1)] }),
       uirevision: 'kept',
     };
     rows.forEach((row, at) => {
