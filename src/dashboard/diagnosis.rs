@@ -192,7 +192,7 @@ fn candidates(effects: &[&RefusedEffect]) -> Markup {
                             th scope="row" { (effect.effect.name()) }
                             td.number { @if let Some(ratio) = effect.likelihood_ratio { (format!("{ratio:.1}")) } }
                             td { (because(effect.reason)) }
-                            td.soft { (effect.sentence) }
+                            td.soft.words { (effect.sentence) }
                         }
                     }
                 }
