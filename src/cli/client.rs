@@ -15,7 +15,7 @@ use super::Failure;
 use super::mapping::format_of;
 use super::server::Server;
 use crate::diagnose::Diagnosis;
-use crate::estimate::Estimate;
+use crate::estimate::{Estimate, TimeHistory};
 use crate::job::{Event, JobSpec};
 
 pub struct Client {
@@ -117,6 +117,17 @@ impl Client {
     pub async fn diagnosis(&self, job: &str) -> Result<Diagnosis, Failure> {
         let url = self.url(&format!("/v1/jobs/{job}/diagnosis"))?;
         json(self.send(self.http.get(url)).await?).await
+    }
+
+    /// Inputs and outputs over time, of each flight about so many samples.
+    pub async fn histories(&self, job: &str, most: usize) -> Result<Vec<TimeHistory>, Failure> {
+        #[derive(serde::Deserialize)]
+        struct Histories {
+            segments: Vec<TimeHistory>,
+        }
+        let url = self.url(&format!("/v1/jobs/{job}/time-histories?max_points={most}"))?;
+        let histories: Histories = json(self.send(self.http.get(url)).await?).await?;
+        Ok(histories.segments)
     }
 
     pub async fn spec(&self, job: &str) -> Result<JobSpec, Failure> {

@@ -9,7 +9,7 @@ use serde_json::json;
 use super::client::Client;
 use super::local::Local;
 use super::watch::{conclude, follow};
-use super::{Failure, table};
+use super::{Failure, plots, table};
 use crate::estimate::Role;
 use crate::ingest::bundled::{AILERON, Bundled, ELEVATOR, RUDDER, UNDECLARED};
 use crate::job::JobSpec;
@@ -92,6 +92,7 @@ async fn fit(client: &Client, model: &str, maneuvers: &[Bundled]) -> Result<Stri
     let job = client.submit(&spec).await?.id;
     let estimate = follow(client, &job).await?;
     println!("{}", table::result(&estimate, Some(&truth)));
+    plots::show(client, &job).await?;
     Ok(job)
 }
 

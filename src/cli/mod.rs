@@ -13,6 +13,7 @@ mod key;
 mod local;
 mod mapping;
 mod model;
+mod plots;
 mod process;
 mod progress;
 mod request;

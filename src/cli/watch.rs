@@ -3,7 +3,7 @@
 use super::client::Client;
 use super::progress::Progress;
 use super::server::Server;
-use super::{Failure, diagnose, table};
+use super::{Failure, diagnose, plots, table};
 use crate::estimate::{Estimate, Outcome};
 use crate::job::{EventBody, JobKind};
 
@@ -25,8 +25,9 @@ impl Watch {
     }
 }
 
-/// Prints what a diagnosis comes to; nothing of other jobs, nor of one that was stopped before its conclusion.
+/// Shows the flights, and prints what a diagnosis comes to, unless it was stopped before its conclusion.
 pub async fn conclude(client: &Client, job: &str, estimate: &Estimate) -> Result<(), Failure> {
+    plots::show(client, job).await?;
     let is_diagnosis = client.spec(job).await?.kind == JobKind::Diagnose;
     if is_diagnosis && estimate.outcome != Outcome::Cancelled {
         let diagnosis = client.diagnosis(job).await?;

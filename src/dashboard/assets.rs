@@ -34,6 +34,7 @@ pub fn asset(name: &str) -> Option<Asset> {
         "plotly.js" => (SCRIPT, PLOTLY.as_str()),
         "examples.js" => (SCRIPT, include_str!("assets/examples.js")),
         "service.js" => (SCRIPT, include_str!("assets/service.js")),
+        "new_job.js" => (SCRIPT, include_str!("assets/new_job.js")),
         "plot.js" => (SCRIPT, include_str!("assets/plot.js")),
         "job.js" => (SCRIPT, include_str!("assets/job.js")),
         "jobs.js" => (SCRIPT, include_str!("assets/jobs.js")),

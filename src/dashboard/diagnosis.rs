@@ -164,16 +164,18 @@ fn refused(effects: &[RefusedEffect]) -> Markup {
     let mut sorted: Vec<&RefusedEffect> = effects.iter().collect();
     let ratio = |effect: &RefusedEffect| effect.likelihood_ratio.unwrap_or(f64::NEG_INFINITY);
     sorted.sort_by(|a, b| ratio(b).total_cmp(&ratio(a)));
-    let (tried, seen): (Vec<_>, Vec<_>) =
-        (sorted.into_iter()).partition(|effect| effect.likelihood_ratio.is_some());
+    let stood_out = |effect: &&RefusedEffect| {
+        !matches!(effect.reason, Refusal::Invisible | Refusal::NotSignificant)
+    };
+    let (rivals, others): (Vec<_>, Vec<_>) = sorted.into_iter().partition(stood_out);
     html! {
         h3 { "What was tried and refused" }
-        @if tried.is_empty() { p { "No other candidate stood out enough to be tried." } }
-        @else { (candidates(&tried)) }
-        @if !seen.is_empty() {
+        @if rivals.is_empty() { p { "No other candidate stood out from the noise." } }
+        @else { (candidates(&rivals)) }
+        @if !others.is_empty() {
             details {
-                summary { "Candidates that the residual gave no reason to try, or that these data cannot show (" (seen.len()) ")" }
-                (candidates(&seen))
+                summary { "Candidates that explain no more than noise, or that these data cannot show (" (others.len()) ")" }
+                (candidates(&others))
             }
         }
     }
@@ -190,7 +192,7 @@ fn candidates(effects: &[&RefusedEffect]) -> Markup {
                             th scope="row" { (effect.effect.name()) }
                             td.number { @if let Some(ratio) = effect.likelihood_ratio { (format!("{ratio:.1}")) } }
                             td { (because(effect.reason)) }
-                            td.soft { (effect.sentence) }
+                            td.soft.words { (effect.sentence) }
                         }
                     }
                 }

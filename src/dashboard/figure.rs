@@ -1,16 +1,20 @@
-//! Time histories as a picture: measured against model, and the residual below, for each output; of a diagnosis with the
-//! declared model beside the one that has its effects in it.
+//! Time histories as a picture: measured against model, and the residual below, for each output, and the inputs; of a
+//! diagnosis with the declared model beside the one that has its effects in it.
 
 use plotters::prelude::*;
 
 use super::shown::{Shown, shown_in};
 use super::style::{DECLARED, MEASURED, MODEL};
-use crate::estimate::{OutputSeries, TimeHistory};
+use crate::estimate::{OutputSeries, Series, TimeHistory};
 
 const WIDTH: u32 = 900;
 /// Height of one output's panel, residual included.
 const PANEL: u32 = 230;
 const RESIDUAL: u32 = 80;
+/// Height of one input's panel.
+const INPUT: u32 = 110;
+/// Height of the line that says what is what.
+const LEGEND: u32 = 24;
 
 /// Points drawn of a series; of more, the least and the greatest of each bucket are kept.
 const MOST_POINTS: usize = 1_600;
@@ -22,17 +26,74 @@ const MOST_POINTS: usize = 1_600;
 pub fn history_svg(history: &TimeHistory) -> Result<String, String> {
     let mut svg = String::new();
     {
-        let height = PANEL * history.outputs.len().max(1) as u32;
+        let outputs = history.outputs.len() as u32;
+        let inputs = history.inputs.len() as u32;
+        let height = LEGEND + PANEL * outputs + INPUT * inputs;
         let area = SVGBackend::with_string(&mut svg, (WIDTH, height)).into_drawing_area();
         area.fill(&WHITE).map_err(|error| error.to_string())?;
-        let panels = area.split_evenly((history.outputs.len().max(1), 1));
-        for (output, panel) in history.outputs.iter().zip(&panels) {
-            let (above, below) = panel.split_vertically(PANEL - RESIDUAL);
-            draw(&history.time, output, &above, &below)?;
+        let (legend, mut rest) = area.split_vertically(LEGEND);
+        key(history, &legend)?;
+        for output in &history.outputs {
+            let (panel, below) = rest.split_vertically(PANEL);
+            let (above, residual) = panel.split_vertically(PANEL - RESIDUAL);
+            draw(&history.time, output, &above, &residual)?;
+            rest = below;
+        }
+        for input in &history.inputs {
+            let (panel, below) = rest.split_vertically(INPUT);
+            draw_input(&history.time, input, &panel)?;
+            rest = below;
         }
         area.present().map_err(|error| error.to_string())?;
     }
     Ok(svg)
+}
+
+/// What is what, once for all panels and above them, where it hides nothing.
+fn key(history: &TimeHistory, area: &Area<'_>) -> Result<(), String> {
+    let is_diagnosed = (history.outputs.iter()).any(|output| !output.declared.is_empty());
+    let mut entries = vec![("measured", MEASURED, 0)];
+    if is_diagnosed {
+        entries.push(("declared model", DECLARED, 2));
+    }
+    let model = if is_diagnosed {
+        "with its effects"
+    } else {
+        "model"
+    };
+    entries.push((model, MODEL, 2));
+    let middle = LEGEND as i32 / 2 + 2;
+    for (at, (text, colour, width)) in entries.into_iter().enumerate() {
+        let x = 80 + 150 * at as i32;
+        if width == 0 {
+            area.draw(&Circle::new((x + 8, middle), 3, colour.filled()))
+        } else {
+            let line = vec![(x, middle), (x + 18, middle)];
+            area.draw(&PathElement::new(line, colour.stroke_width(width)))
+        }
+        .map_err(|error| error.to_string())?;
+        let text = Text::new(text, (x + 24, middle - 6), ("sans-serif", 12));
+        area.draw(&text).map_err(|error| error.to_string())?;
+    }
+    Ok(())
+}
+
+fn draw_input(time: &[f64], input: &Series, area: &Area<'_>) -> Result<(), String> {
+    let Shown { scale, unit } = shown_in(&input.unit);
+    let values = points(time, &input.values, scale);
+    let mut chart = axes(area, time, range_of(values.iter()))?;
+    let mut mesh = chart.configure_mesh();
+    mesh.light_line_style(TRANSPARENT)
+        .bold_line_style(BLACK.mix(0.12))
+        .y_labels(3);
+    mesh.x_desc("t [s]")
+        .y_desc(format!("{} [{unit}]", input.name))
+        .label_style(("sans-serif", 12))
+        .draw()
+        .map_err(|error| error.to_string())?;
+    let line = LineSeries::new(values, BLACK.mix(0.7).stroke_width(1));
+    chart.draw_series(line).map_err(|error| error.to_string())?;
+    Ok(())
 }
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
@@ -61,39 +122,14 @@ fn draw(
         .label_style(("sans-serif", 13))
         .draw()
         .map_err(|error| error.to_string())?;
-    chart
-        .draw_series(
-            measured
-                .iter()
-                .map(|&point| Circle::new(point, 1, MEASURED.filled())),
-        )
-        .map_err(|error| error.to_string())?
-        .label("measured")
-        .legend(|(x, y)| Circle::new((x + 8, y), 3, MEASURED.filled()));
-    if !declared.is_empty() {
-        chart
-            .draw_series(LineSeries::new(declared, DECLARED.stroke_width(2)))
-            .map_err(|error| error.to_string())?
-            .label("declared model")
-            .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], DECLARED.stroke_width(2)));
+    let dots = measured
+        .iter()
+        .map(|&at| Circle::new(at, 1, MEASURED.filled()));
+    chart.draw_series(dots).map_err(|error| error.to_string())?;
+    for (points, colour) in [(declared, DECLARED), (model, MODEL)] {
+        let line = LineSeries::new(points, colour.stroke_width(2));
+        chart.draw_series(line).map_err(|error| error.to_string())?;
     }
-    let name = if output.declared.is_empty() {
-        "model"
-    } else {
-        "with its effects"
-    };
-    chart
-        .draw_series(LineSeries::new(model, MODEL.stroke_width(2)))
-        .map_err(|error| error.to_string())?
-        .label(name)
-        .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], MODEL.stroke_width(2)));
-    let mut legend = chart.configure_series_labels();
-    legend
-        .position(emptiest(&measured, time, range))
-        .background_style(WHITE.mix(0.8))
-        .label_font(("sans-serif", 12));
-    legend.draw().map_err(|error| error.to_string())?;
-
     let before = output.measured.iter().zip(&output.declared);
     let before: Vec<f64> = before.map(|(z, y)| z - y).collect();
     let before = points(time, &before, scale);
@@ -120,31 +156,6 @@ fn draw(
         .map_err(|error| error.to_string())?;
     }
     Ok(())
-}
-
-/// The corner in which a legend, a fifth as wide as the picture and half as high, hides the fewest samples.
-fn emptiest(measured: &[(f64, f64)], time: &[f64], (low, high): (f64, f64)) -> SeriesLabelPosition {
-    let (first, last) = (
-        time.first().copied().unwrap_or(0.0),
-        time.last().copied().unwrap_or(1.0),
-    );
-    let hidden = |(right, lower): (bool, bool)| {
-        let within = |(t, v): &&(f64, f64)| {
-            let (x, y) = ((t - first) / (last - first), (v - low) / (high - low));
-            (if right { x > 0.8 } else { x < 0.2 }) && (if lower { y < 0.5 } else { y > 0.5 })
-        };
-        measured.iter().filter(within).count()
-    };
-    let corners = [
-        ((true, false), SeriesLabelPosition::UpperRight),
-        ((false, false), SeriesLabelPosition::UpperLeft),
-        ((true, true), SeriesLabelPosition::LowerRight),
-        ((false, true), SeriesLabelPosition::LowerLeft),
-    ];
-    let best = corners
-        .into_iter()
-        .min_by_key(|(corner, _)| hidden(*corner));
-    best.map_or(SeriesLabelPosition::UpperRight, |(_, position)| position)
 }
 
 type Chart<'a, 'b> = ChartContext<

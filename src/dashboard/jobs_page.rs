@@ -133,7 +133,7 @@ fn table(view: &JobsView) -> Markup {
                                 td { (badge(job.status)) }
                                 td { (moment(&job.created)) }
                                 td.number { @if let Some(seconds) = job.seconds { (duration(seconds)) } }
-                                td.soft { (job.reason) }
+                                td.soft.words { (job.reason) }
                             }
                         }
                     }

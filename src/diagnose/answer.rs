@@ -16,9 +16,10 @@ use super::screen::Screen;
 use super::stack::Layout;
 use super::{Conclusion, sentence};
 use crate::estimate::{
-    Estimate, OutputFit, ParameterEstimate, Problem, Role, Solution, TimeHistory, estimate, predict,
+    Estimate, OutputFit, ParameterEstimate, Problem, Role, Solution, TimeHistory, estimate,
+    five_digits, predict,
 };
-use crate::flight::Unit;
+use crate::flight::{Shown, Unit, shown_in};
 use crate::model::{Model, ModelDocument, Start};
 
 /// Noise alone makes a residual look coherent with an input once in so many diagnoses.
@@ -233,9 +234,12 @@ fn remarks(case: &Case, fits: &[FitChange]) -> Vec<String> {
         .filter(|fit| fit.role != Role::Estimation && fit.after.rms > 1.02 * fit.before.rms)
     {
         let segment = fit.segment.as_deref().unwrap_or_default();
+        let Shown { scale, unit } = shown_in(&fit.after.unit);
         remarks.push(format!(
-            "{} of {segment} is predicted worse than before: RMS error {:.3e} instead of {:.3e} {}",
-            fit.after.name, fit.after.rms, fit.before.rms, fit.after.unit
+            "{} of {segment} is predicted worse than before: RMS error {} instead of {} {unit}",
+            fit.after.name,
+            five_digits(fit.after.rms * scale),
+            five_digits(fit.before.rms * scale)
         ));
     }
     remarks
@@ -320,10 +324,10 @@ fn conclusion(
             .find(|role| fits.iter().any(|fit| fit.role == *role))?;
         let of: Vec<String> = (fits.iter().filter(|fit| fit.role == role))
             .map(|fit| {
-                format!(
-                    "{} {:.3e} to {:.3e} {}",
-                    fit.before.name, fit.before.rms, fit.after.rms, fit.after.unit
-                )
+                let Shown { scale, unit } = shown_in(&fit.after.unit);
+                let [before, after] =
+                    [&fit.before, &fit.after].map(|fit| five_digits(fit.rms * scale));
+                format!("{} {before} to {after} {unit}", fit.before.name)
             })
             .collect();
         let on = match role {

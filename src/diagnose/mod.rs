@@ -38,7 +38,7 @@ pub use report::{
     Diagnosis, DocumentChange, EffectParameter, Evidence, FitChange, Member, NamedEffect,
     OutputGain, ParameterChange, Refusal, RefusedEffect, Step, Verdict,
 };
-pub use residual::{ResidualAnalysis, analyse};
+pub use residual::{ResidualAnalysis, SpectralLine, analyse};
 pub use round::Watcher;
 
 use answer::answer;

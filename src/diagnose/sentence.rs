@@ -2,27 +2,26 @@
 
 use super::effect::{Effect, EffectKind, Treatment};
 use crate::estimate::{Estimate, ParameterEstimate, five_digits};
+use crate::flight::{Shown, shown_in};
 use crate::model::EditKind;
 
-/// What an effect is, with its size.
+/// What an effect is, with its size; angles in degrees.
 pub fn of(effect: &Effect, added: &[String], with: &Estimate) -> String {
     let added: Vec<&ParameterEstimate> = (with.parameters.iter())
         .filter(|row| !row.fixed && added.contains(&row.name))
         .collect();
     let size = |row: &ParameterEstimate| {
-        let unit = if row.unit == "-" {
-            ""
-        } else {
-            row.unit.as_str()
-        };
+        let Shown { scale, unit } = shown_in(&row.unit);
+        let unit = if unit == "-" { "" } else { &unit };
         let error = row
             .standard_error
-            .map_or(String::new(), |e| format!(" ± {}", five_digits(e)));
+            .map_or(String::new(), |e| format!(" ± {}", five_digits(e * scale)));
         let segment = row
             .segment
             .as_ref()
             .map_or(String::new(), |s| format!(" in {s}"));
-        format!("{} = {}{error} {unit}", row.name, five_digits(row.estimate))
+        let estimate = five_digits(row.estimate * scale);
+        format!("{} = {estimate}{error} {unit}", row.name)
             .trim_end()
             .to_string()
             + &segment

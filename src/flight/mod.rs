@@ -11,6 +11,7 @@ mod fault;
 mod finding;
 mod maneuver;
 mod sampling;
+mod shown;
 mod si_name;
 mod unit;
 
@@ -22,4 +23,5 @@ pub use fault::{Fault, escape};
 pub use finding::{Finding, Severity};
 pub use maneuver::{Channel, Maneuver, ManeuverError};
 pub use sampling::{GAP_FACTOR, Gap, Sampling};
+pub use shown::{Shown, shown_in};
 pub use unit::{Unit, UnitError};

@@ -104,12 +104,10 @@ async function drawHistories() {
     const lines = (name, values, tint, width = 2) => ({
       name, values, style: () => ({ mode: 'lines', line: { color: colour(tint), width } }),
     });
-    // of a diagnosis only
-    const isDeclared = output => output.declared !== undefined;
-    const outputs = segment.outputs.map(output => of(output, scale => [
+    const outputs = segment.outputs.map(({ declared = [], ...output }) => of(output, scale => [
       { name: 'measured', values: scaled(output.measured, scale), style: () => ({ mode: 'markers', marker: { color: colour('measured'), size: 3 } }) },
-      ...(isDeclared(output) ? [lines('declared model', scaled(output.declared, scale), 'declared')] : []),
-      lines(isDeclared(output) ? 'model with the effects' : 'model', scaled(output.model, scale), 'model'),
+      ...(declared.length > 0 ? [lines('declared model', scaled(declared, scale), 'declared')] : []),
+      lines(declared.length > 0 ? 'model with the effects' : 'model', scaled(output.model, scale), 'model'),
     ]));
     const inputs = segment.inputs.map(input => of(input, scale => [lines('input', scaled(input.values, scale), 'soft', 1.5)]));
     return [...outputs, ...inputs];
@@ -145,7 +143,7 @@ async function drawResiduals() {
       : 'as white noise would be';
     place.append(
       element('h3', {}, output.output),
-      element('p', { class: 'soft' }, `rms ${(output.rms * scale).toPrecision(4)} ${unit}; ${whiteness} (Ljung and Box, p = ${output.portmanteau.probability.toPrecision(2)})`),
+      element('p', { class: 'soft' }, `rms ${(output.rms * scale).toPrecision(4)} ${unit}; ${whiteness} (Ljung and Box, p ${output.portmanteau.probability < 0.001 ? '< 0.001' : `= ${output.portmanteau.probability.toPrecision(2)}`})`),
       element('div', { class: 'columns' }, ...plots));
     const lags = output.autocorrelation.map((_, lag) => lag);
     await plot(plots[0], () => ({

@@ -66,8 +66,7 @@ export async function plot(element, make) {
     hoverlabel: { bgcolor: colour('raised'), bordercolor: colour('line'), font: { color: colour('ink') } },
     dragmode: 'zoom', ...layout,
   }, {
-    responsive: true, displaylogo: false, doubleClick: 'reset',
-    modeBarButtonsToRemove: ['select2d', 'lasso2d', 'autoScale2d'],
+    responsive: true, displayModeBar: false, doubleClick: 'reset',
   });
   return plotly;
 }
@@ -88,7 +87,7 @@ export async function timePlot(element, load) {
     const traces = [];
     const layout = {
       height: 60 + height * rows.length, hovermode: 'x unified', hoversubplots: 'axis', showlegend: true,
-      xaxis: axis('time, s', { anchor: `y${rows.length}`, showspikes: true, spikemode: 'across', spikethickness: 1, spikedash: 'solid', spikecolor: colour('soft'), range: data.range }),
+      xaxis: axis('time, s', { anchor: `y${rows.length}`, showspikes: true, spikemode: 'across', spikethickness: 1, spikedash: 'solid', spikecolor: colour('soft'), range: data.range ?? [time[0], time.at(-1)] }),
       uirevision: 'kept',
     };
     rows.forEach((row, at) => {

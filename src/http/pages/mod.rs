@@ -4,6 +4,8 @@
 
 mod job;
 mod jobs;
+mod new_job;
+mod report;
 
 use axum::Router;
 use axum::http::{HeaderMap, HeaderValue};
@@ -20,6 +22,8 @@ pub fn router() -> Router<Server> {
     Router::new()
         .merge(jobs::router())
         .merge(job::router())
+        .merge(report::router())
+        .merge(new_job::router())
         .route("/assets/{name}", get(get_asset))
 }
 

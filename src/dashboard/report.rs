@@ -1,0 +1,138 @@
+//! The report of a job: one file with everything in it, to be printed, signed and kept.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::assets::STYLE;
+use super::estimate_tables::{mode_table, output_table, parameter_table, process_noise_table};
+use super::figure::history_svg;
+use super::job_page::{JobView, facts, findings, state};
+use super::layout::head;
+use super::residual_figures::residual_figures;
+use super::study::study_section;
+use super::tolerances::tolerances;
+use super::{correlation, diagnosis, eigenvalues};
+use crate::diagnose::ResidualAnalysis;
+use crate::estimate::{Estimate, Role, TimeHistory};
+use crate::job::Maker;
+
+/// What the report tells.
+pub struct ReportView {
+    pub job: JobView,
+    pub histories: Vec<TimeHistory>,
+    /// Of the flights that were fitted.
+    pub residuals: Vec<ResidualAnalysis>,
+    /// Absent of a result that was made before it was recorded.
+    pub made_by: Option<Maker>,
+    /// Of the service, so that links lead somewhere when the file is elsewhere.
+    pub origin: String,
+    /// When the report was written, RFC 3339.
+    pub written: String,
+}
+
+/// The whole file as HTML.
+pub fn report(view: &ReportView) -> String {
+    let job = &view.job;
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                (head(&format!("Report: {}", job.title())))
+                base href=(view.origin);
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                main {
+                    p.soft { "Parameter estimation report, Trimtab" }
+                    h1 { (job.title()) }
+                    (facts(job))
+                    (state(job))
+                    p.row.actions {
+                        a href={ "/jobs/" (job.id) } { "The job's page" }
+                        a href={ "/jobs/" (job.id) "/report" } download={ "trimtab-" (job.id) ".html" } { "Save as a file" }
+                    }
+                    (findings(job))
+                    @if let Some(found) = &job.diagnosis { (diagnosis::story(found)) }
+                    @if let Some(estimate) = &job.estimate { (result(view, estimate)) }
+                    @if let Some(study) = &job.study { (study_section(study)) }
+                    (provenance(view))
+                    (signatures())
+                }
+            }
+        }
+    };
+    page.into_string()
+}
+
+fn result(view: &ReportView, estimate: &Estimate) -> Markup {
+    html! {
+        h2 id="parameters" { "Parameters" }
+        (source(view, "parameters"))
+        div.scroll tabindex="0" role="region" aria-labelledby="parameters" { (parameter_table(estimate)) }
+        @if let Some(filter) = &estimate.filter {
+            h2 id="process-noise" { "Process noise" }
+            div.scroll tabindex="0" role="region" aria-labelledby="process-noise" { (process_noise_table(filter)) }
+        }
+        h2 id="fit" { "Fit" }
+        (source(view, "estimate"))
+        div.scroll tabindex="0" role="region" aria-labelledby="fit" { (output_table(&estimate.outputs)) }
+        @for prediction in &estimate.prediction {
+            h3 { "Prediction of " (prediction.segment) }
+            p { (prediction.reason) }
+            div.scroll tabindex="0" role="region" aria-label={ "prediction of " (prediction.segment) } { (output_table(&prediction.outputs)) }
+        }
+        (tolerances(&view.histories))
+        @for history in &view.histories {
+            h2 { "Measured and model: " (history.segment) @if history.role != Role::Estimation { " (took no part in the fit)" } }
+            (source(view, "time-histories"))
+            figure.paper role="img" aria-label={ "measured and model outputs of " (history.segment) } {
+                @match history_svg(history) {
+                    Ok(svg) => { (PreEscaped(svg)) }
+                    Err(error) => { p { "The figure could not be drawn: " (error) } }
+                }
+            }
+        }
+        h2 { "Residuals" }
+        (source(view, "residual-analysis"))
+        (residual_figures(&view.residuals))
+        @if !estimate.modes.is_empty() {
+            h2 id="modes" { "Modes" }
+            (eigenvalues::plane(&estimate.modes))
+            div.scroll tabindex="0" role="region" aria-labelledby="modes" { (mode_table(&estimate.modes)) }
+        }
+        h2 { "Correlation of the estimates" }
+        (correlation::map(estimate))
+    }
+}
+
+/// Where the numbers that follow come from.
+fn source(view: &ReportView, resource: &str) -> Markup {
+    let path = format!("/v1/jobs/{}/{resource}", view.job.id);
+    html! { p.soft { "From " a href=(path) { (path) } } }
+}
+
+fn provenance(view: &ReportView) -> Markup {
+    html! {
+        h2 { "Provenance" }
+        (source(view, "provenance"))
+        dl.facts {
+            @for maneuver in &view.job.maneuvers {
+                dt { (maneuver.label) } dd { "SHA-256 " code { (maneuver.id) } }
+            }
+            @if let Some(maker) = &view.made_by {
+                dt { "program" } dd { "Trimtab " (maker.version) ", SHA-256 " code { (maker.program) } }
+                dt { "processor" } dd { (maker.architecture) ", " (maker.vector_instructions) }
+            }
+            dt { "written" } dd { (view.written) }
+        }
+    }
+}
+
+fn signatures() -> Markup {
+    html! {
+        div.columns style="margin-top: 4rem" {
+            @for who in ["Prepared by", "Checked by"] {
+                p style="border-top: 1px solid currentColor; padding-top: .25rem" { (who) ", date" }
+            }
+        }
+    }
+}

@@ -1,0 +1,12 @@
+//! `/new`: the page where a job is made.
+
+use axum::Router;
+use axum::response::Html;
+use axum::routing::get;
+
+use crate::dashboard::new_job_page;
+use crate::http::Server;
+
+pub fn router() -> Router<Server> {
+    Router::new().route("/new", get(async || Html(new_job_page())))
+}
