@@ -72,9 +72,9 @@ pub fn job_page(view: &JobView) -> String {
             (facts(view))
             (state(view))
             (actions(view))
-            @if view.status.is_over() { (findings(view)) } @else { (progress()) }
+            @if view.status.is_over() { (findings(view)) } @else { (progress(view)) }
             @if let Some(diagnosis) = &view.diagnosis { (diagnosis::story(diagnosis)) }
-            @if let Some(estimate) = &view.estimate { (result(estimate)) }
+            @if let Some(estimate) = &view.estimate { (result(estimate, has_course(view))) }
             @if let Some(study) = &view.study { (study_section(study)) }
             @if view.estimate.is_some() { (downloads(view)) }
         }
@@ -165,21 +165,18 @@ pub(super) fn findings(view: &JobView) -> Markup {
     }
 }
 
-fn progress() -> Markup {
+fn progress(view: &JobView) -> Markup {
     html! {
         section aria-labelledby="now" {
             h2 id="now" { "Now" }
             p id="connection" role="status" {}
-            div.columns {
-                figure { figcaption { "cost, -ln L" } div.plot id="cost" role="img" aria-label="cost by iteration" {} }
-                figure { figcaption { "change of each parameter since the start, by its largest change" } div.plot id="course" role="img" aria-label="parameters by iteration" {} }
-            }
+            @if has_course(view) { (course()) }
             ol id="steps" hidden {}
         }
     }
 }
 
-fn result(estimate: &Estimate) -> Markup {
+fn result(estimate: &Estimate, has_course: bool) -> Markup {
     html! {
         h2 id="histories" { "Measured and model" }
         p.soft { "Drag to look closer, double-click for the whole. All plots have one time." }
@@ -211,6 +208,17 @@ fn result(estimate: &Estimate) -> Markup {
         }
         h2 { "Course of the iterations" }
         p.soft { (estimate.iterations) " iterations, " (estimate.evaluations) " evaluations with derivatives, " (estimate.simulations) " simulations" }
+        @if has_course { (course()) }
+    }
+}
+
+/// A diagnosis is told by its steps: the iterations of its many fits are not kept.
+fn has_course(view: &JobView) -> bool {
+    view.kind != "diagnose"
+}
+
+fn course() -> Markup {
+    html! {
         div.columns {
             figure { figcaption { "cost, -ln L" } div.plot id="cost" role="img" aria-label="cost by iteration" {} }
             figure { figcaption { "change of each parameter since the start, by its largest change" } div.plot id="course" role="img" aria-label="parameters by iteration" {} }

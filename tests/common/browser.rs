@@ -4,7 +4,6 @@ use std::cell::{Cell, RefCell};
 use std::os::unix::fs::MetadataExt;
 use std::panic::{AssertUnwindSafe, resume_unwind};
 use std::path::Path;
-use std::str::FromStr;
 use std::time::{Duration, Instant};
 
 use base64::Engine;
@@ -14,13 +13,14 @@ use fantoccini::actions::{
 };
 use fantoccini::elements::Element;
 use fantoccini::key::Key;
-use fantoccini::wd::WebDriverCompatibleCommand;
 use fantoccini::{Client, ClientBuilder, Locator};
 use futures_util::FutureExt;
 use hyper_util::client::legacy::connect::HttpConnector;
-use reqwest::{Method, Url};
+use reqwest::Url;
 use serde_json::{Value, json};
 use tokio::time::sleep;
+
+use super::chromedriver::Post;
 
 /// How long a page may take on a busy machine before it counts as stuck.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -391,20 +391,5 @@ impl Browser {
         let body = json!({"cmd": command, "params": parameters});
         let answer = self.client.issue_cmd(Post("goog/cdp/execute", body)).await;
         answer.unwrap_or_else(|error| panic!("{command}: {error}"))
-    }
-}
-
-/// A command of chromedriver's own: its path within the session, and what is posted there.
-#[derive(Debug)]
-struct Post(&'static str, Value);
-
-impl WebDriverCompatibleCommand for Post {
-    fn endpoint(&self, base: &Url, session: Option<&str>) -> Result<Url, <Url as FromStr>::Err> {
-        let session = session.unwrap_or_default();
-        base.join(&format!("session/{session}/{}", self.0))
-    }
-
-    fn method_and_body(&self, _: &Url) -> (Method, Option<String>) {
-        (Method::POST, Some(self.1.to_string()))
     }
 }

@@ -3,6 +3,7 @@
 
 pub mod browser;
 pub mod chaos;
+pub mod chromedriver;
 pub mod database;
 pub mod estimation;
 pub mod filter_case;

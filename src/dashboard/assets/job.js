@@ -35,6 +35,11 @@ function follow() {
   let last = 0;
   let timer;
   const say = text => { byId('state').textContent = text; };
+  const badge = document.querySelector('.state');
+  const status = name => {
+    badge.className = `state ${name}`;
+    badge.textContent = name;
+  };
   const connection = text => { byId('connection').textContent = text; };
   const drawSoon = () => { timer ??= setTimeout(() => { timer = undefined; drawCourse(iterations, names); }, 200); };
   const step = text => {
@@ -43,8 +48,14 @@ function follow() {
   };
   const told = {
     queued: () => say('waits for a worker'),
-    claimed: event => say(event.attempt > 1 ? `taken over, attempt ${event.attempt}` : 'a worker has it'),
-    released: event => say(event.reason),
+    claimed: event => {
+      status('running');
+      say(event.attempt > 1 ? `taken over, attempt ${event.attempt}` : 'a worker has it');
+    },
+    released: event => {
+      status('queued');
+      say(event.reason);
+    },
     prepared: event => { names = event.parameters; say(`${event.samples} samples, ${names.length} free parameters`); },
     start: event => say(event.text),
     iteration: event => {
@@ -63,7 +74,10 @@ function follow() {
       }[event.step];
       if (text) step(text());
     },
-    cancel_requested: () => say('asked to stop'),
+    cancel_requested: () => {
+      status('cancelling');
+      say('asked to stop');
+    },
   };
   const open = () => {
     const log = new EventSource(`${base}/events?after=${last}`);
@@ -204,5 +218,5 @@ if (page.dataset.over === 'false') {
   const failed = place => error => { place.textContent = error.message; };
   drawHistories().catch(failed(byId('histories-plots')))
     .then(drawResiduals).catch(failed(byId('residuals')))
-    .then(drawIterations).catch(failed(byId('cost')));
+    .then(() => byId('cost') && drawIterations()).catch(failed(byId('cost')));
 }
