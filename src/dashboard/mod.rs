@@ -12,13 +12,18 @@ mod figure;
 mod job_page;
 mod jobs_page;
 mod layout;
+mod maneuver_page;
+mod maneuvers_page;
 mod shown;
 mod study;
 mod study_figure;
 mod style;
+mod unit_list;
 
 pub use assets::{Asset, asset};
 pub use figure::history_svg;
 pub use job_page::{JobView, NamedModel, UsedManeuver, job_page};
 pub use jobs_page::{Chosen, JobRow, JobsView, jobs_page};
+pub use maneuver_page::{ManeuverView, maneuver_page};
+pub use maneuvers_page::{ManeuverRow, ManeuversView, maneuvers_page};
 pub use study_figure::{cost_figure, error_figure};

@@ -4,6 +4,8 @@
 
 mod job;
 mod jobs;
+mod maneuver;
+mod maneuvers;
 
 use axum::Router;
 use axum::http::{HeaderMap, HeaderValue};
@@ -20,6 +22,8 @@ pub fn router() -> Router<Server> {
     Router::new()
         .merge(jobs::router())
         .merge(job::router())
+        .merge(maneuvers::router())
+        .merge(maneuver::router())
         .route("/assets/{name}", get(get_asset))
 }
 
