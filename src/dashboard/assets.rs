@@ -37,6 +37,11 @@ pub fn asset(name: &str) -> Option<Asset> {
         "plot.js" => (SCRIPT, include_str!("assets/plot.js")),
         "job.js" => (SCRIPT, include_str!("assets/job.js")),
         "jobs.js" => (SCRIPT, include_str!("assets/jobs.js")),
+        "maneuver.js" => (SCRIPT, include_str!("assets/maneuver.js")),
+        "maneuvers.js" => (SCRIPT, include_str!("assets/maneuvers.js")),
+        "recording.js" => (SCRIPT, include_str!("assets/recording.js")),
+        "columns.js" => (SCRIPT, include_str!("assets/columns.js")),
+        "upload.js" => (SCRIPT, include_str!("assets/upload.js")),
         _ => ("text/csv", example(name)?),
     };
     Some(Asset {

@@ -4,6 +4,8 @@
 
 mod job;
 mod jobs;
+mod maneuver;
+mod maneuvers;
 mod new_job;
 mod report;
 
@@ -24,6 +26,8 @@ pub fn router() -> Router<Server> {
         .merge(job::router())
         .merge(report::router())
         .merge(new_job::router())
+        .merge(maneuvers::router())
+        .merge(maneuver::router())
         .route("/assets/{name}", get(get_asset))
 }
 
