@@ -4,6 +4,8 @@
 
 mod job;
 mod jobs;
+mod model;
+mod models;
 mod new_job;
 mod report;
 
@@ -24,6 +26,8 @@ pub fn router() -> Router<Server> {
         .merge(job::router())
         .merge(report::router())
         .merge(new_job::router())
+        .merge(models::router())
+        .merge(model::router())
         .route("/assets/{name}", get(get_asset))
 }
 
