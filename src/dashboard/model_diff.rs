@@ -9,12 +9,13 @@ use super::model_tables::number;
 use super::notation::Notation;
 use super::shown::{Shown, shown_in};
 use crate::diagnose::DocumentChange;
+use crate::flight::escape;
 use crate::model::ModelDocument;
 
 /// What the other model has that `document` has not, equations first.
 pub(super) fn comparison(document: &ModelDocument, against: &Comparison) -> Markup {
     let (before, after) = (Notation::of(document), Notation::of(&against.document));
-    let mut changes: Vec<&DocumentChange> = against.changes.iter().collect();
+    let mut changes: Vec<DocumentChange> = against.changes.iter().flat_map(by_entry).collect();
     // the sort keeps the order of the document within each section
     changes.sort_by_key(|change| rank(&change.pointer));
     html! {
@@ -30,10 +31,10 @@ pub(super) fn comparison(document: &ModelDocument, against: &Comparison) -> Mark
                             th scope="col" { "place" } th scope="col" { "" } th scope="col" { (document.name) } th scope="col" { (against.name) }
                         } }
                         tbody {
-                            @for change in changes {
+                            @for change in &changes {
                                 tr {
                                     th scope="row" { (place(&change.pointer)) }
-                                    td { (word(change)) }
+                                    td class=(word(change)) { (word(change)) }
                                     td { @if let Some(value) = &change.before { (side(&before, document, &change.pointer, value)) } }
                                     td { @if let Some(value) = &change.after { (side(&after, &against.document, &change.pointer, value)) } }
                                 }
@@ -43,6 +44,27 @@ pub(super) fn comparison(document: &ModelDocument, against: &Comparison) -> Mark
                 }
             }
         }
+    }
+}
+
+/// A change of a whole section, which only one of the documents has, as one of each of its entries.
+pub(super) fn by_entry(change: &DocumentChange) -> Vec<DocumentChange> {
+    let (before, after) = (change.before.as_ref(), change.after.as_ref());
+    let is_section = change.pointer.matches('/').count() == 1;
+    match (before, after) {
+        (None, Some(Value::Object(entries))) | (Some(Value::Object(entries)), None)
+            if is_section =>
+        {
+            let entries = entries.iter();
+            entries
+                .map(|(name, entry)| DocumentChange {
+                    pointer: format!("{}/{}", change.pointer, escape(name)),
+                    before: before.map(|_| entry.clone()),
+                    after: after.map(|_| entry.clone()),
+                })
+                .collect()
+        }
+        _ => vec![change.clone()],
     }
 }
 
@@ -83,12 +105,7 @@ fn side(notation: &Notation, document: &ModelDocument, pointer: &str, value: &Va
     let equations = equations_at(notation, pointer, value);
     if let Value::Object(members) = value {
         let steps = steps(pointer);
-        let shown = shown_in(
-            members
-                .get("unit")
-                .and_then(Value::as_str)
-                .unwrap_or_default(),
-        );
+        let shown = unit_at(document, pointer);
         let is_equation = |key: &str| {
             !equations.is_empty() && ["derivative", "initial", "equation", "delay"].contains(&key)
         };
@@ -97,11 +114,11 @@ fn side(notation: &Notation, document: &ModelDocument, pointer: &str, value: &Va
             @if steps.len() == 2 {
                 dl.facts.small {
                     @for (key, member) in members.iter().filter(|(key, _)| !is_equation(key)) {
-                        dt { (key) } dd { @if key == "unit" { (shown.unit) } @else { (plain(member, &shown)) } }
+                        dt { (key) } dd { @if key == "unit" && !shown.unit.is_empty() { (shown.unit) } @else { (plain(member, &shown)) } }
                     }
                 }
             } @else {
-                code { (value) }
+                (plain(value, &shown))
             }
         };
     }
@@ -163,7 +180,7 @@ fn rank(pointer: &str) -> usize {
     at.unwrap_or(ORDER.len())
 }
 
-fn in_numbers(changes: &[&DocumentChange]) -> String {
+fn in_numbers(changes: &[DocumentChange]) -> String {
     let count = |word_of: &str| {
         changes
             .iter()
@@ -230,6 +247,20 @@ mod tests {
         );
         assert_eq!(count("/parameters/a/start", json!("first(q)")), 0);
         assert_eq!(count("", json!(null)) + count("/a/b/c/d", json!("x")), 0);
+    }
+
+    #[test]
+    fn a_section_that_is_new_is_told_by_its_entries() {
+        let change = DocumentChange {
+            pointer: "/definitions".into(),
+            before: None,
+            after: Some(json!({"a": {"equation": "b"}, "c/d": {"equation": "e"}})),
+        };
+        let entries = by_entry(&change);
+        let places: Vec<&str> = entries.iter().map(|one| one.pointer.as_str()).collect();
+        assert_eq!(places, ["/definitions/a", "/definitions/c~1d"]);
+        assert!(entries.iter().all(|one| one.before.is_none()));
+        assert_eq!(by_entry(&entries[0]), entries[..1]);
     }
 
     #[test]

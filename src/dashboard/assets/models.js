@@ -9,6 +9,7 @@ const said = document.getElementById('said');
 const faults = document.getElementById('faults');
 
 const LARGEST = 4e6;
+const LONGEST_QUOTE = 300;
 
 const SECTIONS = {
   constants: 'constant', inputs: 'input', parameters: 'parameter', definitions: 'definition', states: 'state', outputs: 'output',
@@ -42,7 +43,9 @@ function lineOf(pointer) {
   if (!found) return undefined;
   const start = text.value.lastIndexOf('\n', at - 1) + 1;
   const end = text.value.indexOf('\n', at);
-  return { start, end: end < 0 ? text.value.length : end };
+  const line = { start, end: end < 0 ? text.value.length : end };
+  // a document may be one long line
+  return line.end - line.start > LONGEST_QUOTE ? { start: at, end: Math.min(line.end, at + LONGEST_QUOTE) } : line;
 }
 
 /** The line of the text, counted from 1. */
@@ -67,7 +70,7 @@ function entry(title, message, range) {
     const number = text.value.slice(0, range.start).split('\n').length;
     const go = element('button', { type: 'button' }, `Go to line ${number}`);
     go.addEventListener('click', () => show(range));
-    item.append(element('pre', {}, text.value.slice(range.start, range.end).trim().slice(0, 400)), go);
+    item.append(element('pre', {}, text.value.slice(range.start, range.end).trim()), go);
   }
   return item;
 }
