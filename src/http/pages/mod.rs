@@ -6,6 +6,8 @@ mod job;
 mod jobs;
 mod maneuver;
 mod maneuvers;
+mod model;
+mod models;
 mod new_job;
 mod report;
 
@@ -28,6 +30,8 @@ pub fn router() -> Router<Server> {
         .merge(new_job::router())
         .merge(maneuvers::router())
         .merge(maneuver::router())
+        .merge(models::router())
+        .merge(model::router())
         .route("/assets/{name}", get(get_asset))
 }
 
