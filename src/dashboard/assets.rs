@@ -30,6 +30,7 @@ const SCRIPT: &str = "text/javascript";
 pub fn asset(name: &str) -> Option<Asset> {
     let (media_type, content) = match name {
         "style.css" => ("text/css", STYLE),
+        "mark.svg" => ("image/svg+xml", include_str!("assets/mark.svg")),
         "plotly.js" => (SCRIPT, PLOTLY.as_str()),
         "examples.js" => (SCRIPT, include_str!("assets/examples.js")),
         "service.js" => (SCRIPT, include_str!("assets/service.js")),

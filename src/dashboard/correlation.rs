@@ -29,7 +29,7 @@ pub(super) fn map(estimate: &Estimate) -> Markup {
             @if rows.len() <= MOST {
                 div.scroll tabindex="0" role="region" aria-label="Correlation of the estimates" {
                     table.map {
-                        thead { tr { th {} @for parameter in &free { th scope="col" { (label(parameter)) } } } }
+                        thead { tr { td {} @for parameter in &free { th scope="col" { (label(parameter)) } } } }
                         tbody {
                             @for (at, (parameter, row)) in free.iter().zip(rows).enumerate() {
                                 tr {

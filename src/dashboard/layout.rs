@@ -28,6 +28,7 @@ pub(super) fn page(frame: &Frame<'_>, content: &Markup) -> String {
         html lang="en" {
             head {
                 (head(frame.title))
+                link rel="icon" type="image/svg+xml" href="/assets/mark.svg";
                 link rel="stylesheet" href="/assets/style.css";
                 @for script in frame.scripts {
                     script type="module" src={ "/assets/" (script) } {}

@@ -1,6 +1,7 @@
 //! What integration tests share. Each test program uses a part of it.
 #![allow(dead_code)]
 
+pub mod browser;
 pub mod chaos;
 pub mod database;
 pub mod estimation;
