@@ -108,11 +108,6 @@ async function drawHistories() {
       { name: 'measured', values: scaled(output.measured, scale), style: () => ({ mode: 'markers', marker: { color: colour('measured'), size: 3 } }) },
       ...(declared.length > 0 ? [lines('declared model', scaled(declared, scale), 'declared')] : []),
       lines(declared.length > 0 ? 'model with the effects' : 'model', scaled(output.model, scale), 'model'),
-    // of a diagnosis only
-    const isDeclared = output => output.declared !== undefined;
-    const outputs = segment.outputs.map(output => of(output, scale => [
-      ...(isDeclared(output) ? [lines('declared model', scaled(output.declared, scale), 'declared')] : []),
-      lines(isDeclared(output) ? 'model with the effects' : 'model', scaled(output.model, scale), 'model'),
     ]));
     const inputs = segment.inputs.map(input => of(input, scale => [lines('input', scaled(input.values, scale), 'soft', 1.5)]));
     return [...outputs, ...inputs];
