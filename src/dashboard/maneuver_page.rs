@@ -5,9 +5,9 @@ use maud::{Markup, html};
 use super::jobs_page::moment;
 use super::layout::{Frame, page};
 use super::maneuvers_page::title;
-use super::shown::{Shown, shown_in};
 use crate::estimate::five_digits as number;
 use crate::flight::{Finding, Severity};
+use crate::flight::{Shown, shown_in};
 use crate::ingest::{ChannelSummary, Summary};
 
 /// What the page shows.

@@ -25,7 +25,6 @@ mod new_job_page;
 mod notation;
 mod report;
 mod residual_figures;
-mod shown;
 mod study;
 mod study_figure;
 mod style;

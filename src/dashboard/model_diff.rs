@@ -7,38 +7,48 @@ use super::mathml::{Left, equation};
 use super::model_page::Comparison;
 use super::model_tables::number;
 use super::notation::Notation;
-use super::shown::{Shown, shown_in};
 use crate::diagnose::DocumentChange;
 use crate::flight::escape;
+use crate::flight::{Shown, shown_in};
 use crate::model::ModelDocument;
 
 /// What the other model has that `document` has not, equations first.
 pub(super) fn comparison(document: &ModelDocument, against: &Comparison) -> Markup {
-    let (before, after) = (Notation::of(document), Notation::of(&against.document));
-    let mut changes: Vec<DocumentChange> = against.changes.iter().flat_map(by_entry).collect();
-    // the sort keeps the order of the document within each section
-    changes.sort_by_key(|change| rank(&change.pointer));
     html! {
         section aria-labelledby="difference" {
             h2 id="difference" { "What " a href=(against.address) { (against.name) } " has otherwise" }
-            @if changes.is_empty() {
+            @if against.changes.is_empty() {
                 p { "Nothing: the two documents are the same." }
             } @else {
-                p { (in_numbers(&changes)) }
-                div.scroll tabindex="0" role="region" aria-labelledby="difference" {
-                    table.difference {
-                        thead { tr {
-                            th scope="col" { "place" } th scope="col" { "" } th scope="col" { (document.name) } th scope="col" { (against.name) }
-                        } }
-                        tbody {
-                            @for change in &changes {
-                                tr {
-                                    th scope="row" { (place(&change.pointer)) }
-                                    td class=(word(change)) { (word(change)) }
-                                    td { @if let Some(value) = &change.before { (side(&before, document, &change.pointer, value)) } }
-                                    td { @if let Some(value) = &change.after { (side(&after, &against.document, &change.pointer, value)) } }
-                                }
-                            }
+                (changes([(document, &document.name), (&against.document, &against.name)], &against.changes))
+            }
+        }
+    }
+}
+
+/// Changes from one document to another, each with what it is called in the heading.
+pub(super) fn changes(
+    [before, after]: [(&ModelDocument, &str); 2],
+    changes: &[DocumentChange],
+) -> Markup {
+    let mut changes: Vec<DocumentChange> = changes.iter().flat_map(by_entry).collect();
+    // the sort keeps the order of the document within each section
+    changes.sort_by_key(|change| rank(&change.pointer));
+    let [of_before, of_after] = [before, after].map(|(document, _)| Notation::of(document));
+    html! {
+        p { (in_numbers(&changes)) }
+        div.scroll tabindex="0" role="region" aria-label="Changes of the model" {
+            table.difference {
+                thead { tr {
+                    th scope="col" { "place" } th scope="col" { "change" } th scope="col" { (before.1) } th scope="col" { (after.1) }
+                } }
+                tbody {
+                    @for change in &changes {
+                        tr {
+                            th scope="row" { (place(&change.pointer)) }
+                            td class=(word(change)) { (word(change)) }
+                            td { @if let Some(value) = &change.before { (side(&of_before, before.0, &change.pointer, value)) } }
+                            td { @if let Some(value) = &change.after { (side(&of_after, after.0, &change.pointer, value)) } }
                         }
                     }
                 }

@@ -4,8 +4,8 @@ use maud::{Markup, html};
 
 use super::mathml;
 use super::notation::Notation;
-use super::shown::{Shown, shown_in};
 use crate::estimate::five_digits;
+use crate::flight::{Shown, shown_in};
 use crate::model::{ModelDocument, Parameter, Per, Start};
 
 pub(super) fn parameters(document: &ModelDocument, notation: &Notation) -> Markup {

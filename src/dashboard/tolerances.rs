@@ -4,8 +4,8 @@
 
 use maud::{Markup, html};
 
-use super::shown::{Shown, shown_in};
 use crate::estimate::{OutputSeries, Role, TimeHistory, five_digits as number};
+use crate::flight::{Shown, shown_in};
 
 /// What a response may deviate by.
 struct Tolerance {

@@ -2,8 +2,8 @@
 
 use maud::{Markup, html};
 
-use super::shown::shown_in;
 use crate::flight::Unit;
+use crate::flight::shown_in;
 
 /// Those that recordings have; a form takes others, too.
 const UNITS: [&str; 60] = [
