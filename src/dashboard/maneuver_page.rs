@@ -104,11 +104,26 @@ fn findings(findings: &[Finding]) -> Markup {
                         (severity(finding.severity)) " "
                         @if let Some(channel) = &finding.channel { strong { (channel) } ": " }
                         (finding.message)
-                        div.soft { (finding.remedy) }
+                        div.soft { (finding.remedy) (rows(finding)) }
                     }
                 }
             }
         }
+    }
+}
+
+/// Where it is, as far as that is listed.
+fn rows(finding: &Finding) -> String {
+    let rows: Vec<String> = finding.rows.iter().map(ToString::to_string).collect();
+    let more = if finding.count > rows.len() {
+        ", ..."
+    } else {
+        ""
+    };
+    match rows.as_slice() {
+        [] => String::new(),
+        [row] if more.is_empty() => format!(" (row {row})"),
+        rows => format!(" (rows {}{more})", rows.join(", ")),
     }
 }
 

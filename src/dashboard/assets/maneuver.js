@@ -38,7 +38,7 @@ async function draw() {
     // what was chosen meanwhile is drawn instead
     if (mine !== drawing) return;
     const before = byId('plot').querySelector('.plot');
-    const stretch = before?.layout?.xaxis.autorange === false ? before.layout.xaxis.range : undefined;
+    const stretch = before?.layout && before.layout.xaxis.autorange !== true ? before.layout.xaxis.range : undefined;
     before?.remove();
     byId('plotted').textContent = data ? extent(data) : 'No channel is chosen.';
     if (!data) return;

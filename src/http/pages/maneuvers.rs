@@ -32,9 +32,9 @@ async fn get_maneuvers_page(
     let page = service.store.maneuvers(cursor, MANEUVERS).await?;
     let page = page.map_err(bad_cursor)?;
     let older = page.next_cursor.map(|cursor| {
-        let mut form = form_urlencoded::Serializer::new(String::from("/maneuvers?"));
-        form.append_pair("cursor", &cursor);
-        form.finish()
+        let mut query = form_urlencoded::Serializer::new(String::new());
+        query.append_pair("cursor", &cursor);
+        format!("/maneuvers?{}", query.finish())
     });
     let mappings = mappings::all(&service).await?.into_iter();
     let mappings = mappings.map(|mapping| (mapping.name, mapping.about));
