@@ -16,7 +16,7 @@ use crate::model::ModelDocument;
 pub(super) fn comparison(document: &ModelDocument, against: &Comparison) -> Markup {
     html! {
         section aria-labelledby="difference" {
-            h2 id="difference" { "What " a href=(against.address) { (against.name) } " has otherwise" }
+            h2 id="difference" { "Compared with " a href=(against.address) { (against.name) } }
             @if against.changes.is_empty() {
                 p { "Nothing: the two documents are the same." }
             } @else {
@@ -122,11 +122,13 @@ fn side(notation: &Notation, document: &ModelDocument, pointer: &str, value: &Va
         return html! {
             @for equation in &equations { div { (equation) } }
             @if steps.len() == 2 {
-                dl.facts.small {
-                    @for (key, member) in members.iter().filter(|(key, _)| !is_equation(key)) {
-                        dt { (key) } dd { @if key == "unit" && !shown.unit.is_empty() { (shown.unit) } @else { (plain(member, &shown)) } }
-                    }
+                @let listed = members.iter().filter(|(key, _)| *key != "description" && !is_equation(key));
+                @for (at, (key, member)) in listed.enumerate() {
+                    @if at > 0 { ", " }
+                    span.soft { (key) } " "
+                    @if key == "unit" && !shown.unit.is_empty() { (shown.unit) } @else { (plain(member, &shown)) }
                 }
+                @if let Some(description) = members.get("description") { div.soft { (plain(description, &shown)) } }
             } @else {
                 (plain(value, &shown))
             }

@@ -23,7 +23,6 @@ pub struct ModelView {
 pub struct OtherModel {
     pub reference: String,
     pub name: String,
-    pub title: String,
     /// RFC 3339, UTC; absent of a catalog model.
     pub created: Option<String>,
 }
@@ -103,10 +102,10 @@ fn equations(document: &ModelDocument, notation: &Notation) -> Markup {
     html! {
         p.soft { "Point at a symbol for the name that it has in the document." }
         (list("State equations", notation, dynamics))
+        (list("Initial values", notation, initial))
         (list("Definitions", notation, definitions))
         (list("Output equations", notation, outputs))
         (list("Delays", notation, delays.into_iter()))
-        (list("Initial values", notation, initial))
     }
 }
 
@@ -185,7 +184,6 @@ fn choice(view: &ModelView) -> Markup {
                         option value=(other.reference) selected[chosen == Some(other.reference.as_str())] {
                             (other.name)
                             @if let Some(created) = &other.created { ", stored " (created.split('.').next().unwrap_or_default().replace('T', " ")) }
-                            @else if !other.title.is_empty() { " - " (other.title) }
                         }
                     }
                 }

@@ -14,7 +14,7 @@ pub(super) fn parameters(document: &ModelDocument, notation: &Notation) -> Marku
         table {
             thead { tr {
                 th scope="col" { "parameter" } th scope="col" { "symbol" } th scope="col" { "unit" } th.number scope="col" { "start" }
-                th.number scope="col" { "lower" } th.number scope="col" { "upper" } th scope="col" { "estimated" }
+                th.number scope="col" { "lower" } th.number scope="col" { "upper" } th scope="col" { "free or fixed" }
                 @if has_priors { th.number scope="col" { "prior" } }
                 th scope="col" { "description" }
             } }
@@ -29,7 +29,7 @@ pub(super) fn parameters(document: &ModelDocument, notation: &Notation) -> Marku
                         } }
                         td.number.soft { @if let Some(bound) = parameter.lower { (number(bound, scale)) } }
                         td.number.soft { @if let Some(bound) = parameter.upper { (number(bound, scale)) } }
-                        td { (estimated(parameter)) }
+                        td { (freedom(parameter)) }
                         @if has_priors {
                             td.number { @if let Some(prior) = parameter.prior { (number(prior.mean, scale)) " ± " (number(prior.sd, scale)) } }
                         }
@@ -42,12 +42,12 @@ pub(super) fn parameters(document: &ModelDocument, notation: &Notation) -> Marku
 }
 
 /// Whether a parameter is free, and how many values it has.
-fn estimated(parameter: &Parameter) -> &'static str {
+fn freedom(parameter: &Parameter) -> &'static str {
     match (parameter.fixed, parameter.per) {
         (true, Per::Job) => "fixed",
-        (true, Per::Maneuver) => "fixed, in each maneuver",
-        (false, Per::Job) => "once",
-        (false, Per::Maneuver) => "in each maneuver",
+        (true, Per::Maneuver) => "fixed in each maneuver",
+        (false, Per::Job) => "free",
+        (false, Per::Maneuver) => "free in each maneuver",
     }
 }
 

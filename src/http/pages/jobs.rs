@@ -53,12 +53,12 @@ async fn get_jobs_page(
     let page = page.map_err(bad_cursor)?;
     let now = service.store.clock().now_text();
     let older = page.next_cursor.map(|cursor| {
-        let mut form = form_urlencoded::Serializer::new(String::from("/?"));
+        let mut form = form_urlencoded::Serializer::new(String::new());
         form.append_pair("status", &query.status);
         form.append_pair("kind", &query.kind);
         form.append_pair("tag", &query.tag);
         form.append_pair("cursor", &cursor);
-        form.finish()
+        format!("/?{}", form.finish())
     });
     let view = JobsView {
         jobs: page.entries.into_iter().map(|job| row(job, &now)).collect(),

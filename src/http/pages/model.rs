@@ -44,7 +44,6 @@ async fn get_model_page(
         .map(|model| OtherModel {
             reference: model.id,
             name: model.document.name,
-            title: model.document.title,
             created: model.created,
         });
     let others = others.collect();
