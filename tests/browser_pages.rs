@@ -75,6 +75,13 @@ async fn is_drawn(browser: &Browser) {
     browser.until(drawn).await;
 }
 
+/// Waits until a job is over, and its page, which is open, has turned into its result.
+async fn over(browser: &Browser, server: &Server, id: &str) {
+    server.wait(id).await;
+    browser.find("#job[data-over=true]").await;
+    is_drawn(browser).await;
+}
+
 /// What the row of a job says in the list.
 fn row(name: &str) -> String {
     format!(
@@ -83,17 +90,15 @@ fn row(name: &str) -> String {
 }
 
 #[tokio::test]
-async fn the_first_visit_says_what_to_do_and_has_flights_to_try() {
+async fn the_first_visit_leads_from_flights_to_try_to_a_job() {
     browse("first visit", async |browser| {
-        let server = idle().await;
+        let server = Server::start().await;
         go(browser, &server, "/").await;
         browser
             .says("main", "Nothing has been estimated here yet")
             .await;
         browser.picture("empty").await;
         browser.click("#examples").await;
-        // that page is yet to come
-        browser.expect_error("/new?");
         browser.until("location.pathname === '/new'").await;
         let address = browser.address().await;
         let given: Vec<(String, String)> = address.query_pairs().into_owned().collect();
@@ -105,6 +110,57 @@ async fn the_first_visit_says_what_to_do_and_has_flights_to_try() {
         for role in ["estimation", "validation", "final"] {
             assert!(stored.iter().any(|it| it["id"] == of(role)), "{role}");
         }
+
+        // all is chosen, and what it comes to can be asked before it is submitted
+        browser
+            .until("document.querySelectorAll('#maneuvers tbody tr').length === 3")
+            .await;
+        browser.picture("new").await;
+        browser.click("#check").await;
+        browser.says("#said", "Good: 626 samples").await;
+        browser.click("#form button.main").await;
+        browser.find("#job").await;
+        let id = browser.text("#job .facts code").await;
+        let spec = server.get(&format!("/v1/jobs/{id}/spec")).await.json();
+        assert_eq!(spec["maneuvers"].as_array().unwrap().len(), 3);
+        over(browser, &server, &id).await;
+        browser.click(".actions a.main").await;
+        browser.until("location.pathname.endsWith('/report')").await;
+        let report = browser.text("main").await;
+        for part in ["My first job", "Mde", &id] {
+            assert!(report.contains(part), "{part}: {report}");
+        }
+        browser.picture("report").await;
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn a_new_job_says_what_is_wrong_with_it_and_where() {
+    browse("new job", async |browser| {
+        let server = idle().await;
+        let maneuver = server.upload(&elevator()).await;
+        go(browser, &server, &format!("/new?estimation={maneuver}")).await;
+        browser.find("#maneuvers tbody tr").await;
+        browser.click("#form button.main").await;
+        browser.says("#said", "Choose a model").await;
+        go(
+            browser,
+            &server,
+            &format!("/new?model=short-period&estimation={maneuver}"),
+        )
+        .await;
+        browser.find("#maneuvers tbody tr").await;
+        browser.click("details:has(#parameters) summary").await;
+        // a lower bound above the start value
+        browser
+            .fill("#parameters [aria-label$='of Mde'][aria-label*='low']", "5")
+            .await;
+        browser.expect_error("422");
+        browser.click("#check").await;
+        browser.says("#faults", "/parameters/Mde").await;
+        browser.is_accessible().await;
+        browser.picture("fault").await;
     })
     .await;
 }
@@ -177,6 +233,8 @@ async fn a_finished_job_is_told_in_tables_and_plots_that_zoom_together() {
         assert_eq!(browser.until(&axes).await, 1, "all rows have one time");
         let rows = format!("{plot}._fullLayout._subplots.cartesian.length");
         assert_eq!(browser.until(&rows).await, 3, "two outputs and an input");
+        let cut = "[...document.querySelectorAll('.plot')].every(plot => plot.scrollHeight <= plot.clientHeight + 2)";
+        assert_eq!(browser.run(&format!("return {cut}")).await, true, "nothing is cut off");
         let whole = shown().await;
         assert!(whole > 199.0, "{whole}");
         browser
@@ -200,10 +258,10 @@ async fn a_finished_job_is_told_in_tables_and_plots_that_zoom_together() {
 }
 
 #[tokio::test]
-async fn a_running_job_is_seen_to_run_and_turns_into_its_result() {
+async fn a_job_is_seen_to_run_and_stopped_by_its_button() {
     browse("running job", async |browser| {
         let server = idle().await;
-        let id = submit_long(&server, 60).await;
+        let id = submit_long(&server, 1000).await;
         go(browser, &server, &format!("/jobs/{id}")).await;
         browser.says("#state", "waits for a worker").await;
         let _work = work(&server);
@@ -212,10 +270,13 @@ async fn a_running_job_is_seen_to_run_and_turns_into_its_result() {
         browser.picture("under way").await;
         browser.until(&format!("{points} > {first}")).await;
         browser.says("#state", "iteration").await;
-        browser.find("#job[data-over=true]").await;
-        is_drawn(browser).await;
-        browser.says(".state", "succeeded").await;
+        browser.click("[data-act=cancel]").await;
+        over(browser, &server, &id).await;
+        browser.says(".state", "cancelled").await;
+        browser.says(".state + *", "stopped on request").await;
+        // what it had by then is its result
         assert_eq!(browser.count("[aria-labelledby=parameters] table").await, 1);
+        browser.picture("result").await;
     })
     .await;
 }
@@ -256,23 +317,6 @@ async fn a_page_outlives_the_server_and_is_completed_by_the_next() {
 }
 
 #[tokio::test]
-async fn a_job_is_cancelled_by_its_button_and_keeps_what_it_has() {
-    browse("cancelled job", async |browser| {
-        let server = Server::start().await;
-        let id = submit_long(&server, 1000).await;
-        go(browser, &server, &format!("/jobs/{id}")).await;
-        browser.says("#state", "iteration").await;
-        browser.click("[data-act=cancel]").await;
-        browser.find("#job[data-over=true]").await;
-        is_drawn(browser).await;
-        browser.says(".state", "cancelled").await;
-        assert_eq!(server.wait(&id).await["status"], "cancelled");
-        browser.picture("result").await;
-    })
-    .await;
-}
-
-#[tokio::test]
 async fn a_diagnosis_is_told_as_a_story() {
     browse("diagnosis", async |browser| {
         let server = Server::start().await;
@@ -280,8 +324,7 @@ async fn a_diagnosis_is_told_as_a_story() {
         let spec = json!({"kind": "diagnose", "model": "short-period", "maneuvers": uses});
         let id = server.submit(&spec).await;
         go(browser, &server, &format!("/jobs/{id}")).await;
-        browser.find("#job[data-over=true]").await;
-        is_drawn(browser).await;
+        over(browser, &server, &id).await;
         let verdict = browser.text(".verdict").await;
         assert!(verdict.to_lowercase().contains("backlash"), "{verdict}");
         let story = browser.text("[aria-labelledby=diagnosis]").await;
@@ -398,7 +441,8 @@ async fn pages_are_accessible_in_light_and_dark_and_fit_a_narrow_screen() {
         server.wait(&stopped).await;
         drop(working);
         let waiting = server.submit(&job(&server.upload(&elevator()).await)).await;
-        pages.extend([over, stopped, waiting].map(|id| format!("/jobs/{id}")));
+        pages.extend([&over, &stopped, &waiting].map(|id| format!("/jobs/{id}")));
+        pages.extend([format!("/jobs/{over}/report"), format!("/new?like={over}")]);
         look(&pages).await;
     })
     .await;

@@ -74,6 +74,6 @@ fn colour(value: f64) -> String {
     } else {
         "--model"
     };
-    let share = (value.abs().min(1.0).powi(2) * 55.0).round();
+    let share = (value.abs().min(1.0).powi(2) * 45.0).round();
     format!("background: color-mix(in srgb, var({side}) {share}%, transparent)")
 }

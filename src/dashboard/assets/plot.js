@@ -59,6 +59,8 @@ export async function plot(element, make) {
   const plotly = await loaded();
   drawn.set(element, make);
   const { traces, layout } = make();
+  // the library fills what is there, and leaves no room of itself
+  element.style.height = `${layout.height + 2}px`;
   await plotly.react(element, traces, {
     paper_bgcolor: 'rgba(0,0,0,0)', plot_bgcolor: 'rgba(0,0,0,0)',
     font: { family: 'system-ui, sans-serif', size: 12, color: colour('ink') },

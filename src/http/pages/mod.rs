@@ -33,10 +33,20 @@ pub fn router() -> Router<Server> {
         .merge(models::router())
         .merge(model::router())
         .route("/assets/{name}", get(get_asset))
+        .route("/favicon.ico", get(get_mark))
 }
 
 async fn get_asset(Id(name): Id, headers: HeaderMap) -> Result<Response, Problem> {
-    let asset = asset(&name).ok_or_else(unknown_route)?;
+    answer(&name, &headers)
+}
+
+/// Where browsers look for it of what names none: a report, an answer in JSON.
+async fn get_mark(headers: HeaderMap) -> Result<Response, Problem> {
+    answer("mark.svg", &headers)
+}
+
+fn answer(name: &str, headers: &HeaderMap) -> Result<Response, Problem> {
+    let asset = asset(name).ok_or_else(unknown_route)?;
     let media_type = HeaderValue::from_static(asset.media_type);
-    Ok(cacheable_as(&headers, media_type, asset.content))
+    Ok(cacheable_as(headers, media_type, asset.content))
 }
