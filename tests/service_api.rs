@@ -109,13 +109,15 @@ async fn health_and_documentation_are_there_offline() {
     for path in ["/health/live", "/health/ready"] {
         assert_eq!(server.get(path).await.json()["status"], "ok");
     }
-    let page = server.get("/").await;
-    assert_eq!(page.status, 200);
-    assert!(page.text().contains("swagger-ui"));
-    assert!(
-        !page.text().contains("https://"),
-        "nothing is fetched from elsewhere"
-    );
+    for path in ["/", "/docs/"] {
+        let page = server.get(path).await;
+        assert_eq!(page.status, 200);
+        assert!(
+            !page.text().contains("https://"),
+            "nothing is fetched from elsewhere"
+        );
+    }
+    assert!(server.get("/docs/").await.text().contains("swagger-ui"));
     assert!(server.get("/docs/swagger-ui-bundle.js").await.bytes.len() > 100_000);
     assert_eq!(server.get("/openapi.json").await.json()["openapi"], "3.1.0");
 }

@@ -497,5 +497,5 @@ async fn a_validation_maneuver_has_its_prediction_and_its_histories() {
         assert_eq!(roles, [&json!("estimation"), &json!("validation")]);
     }
     let page = server.get(&format!("/jobs/{id}")).await.text();
-    assert!(page.contains("Prediction of segment predicted"), "{page}");
+    assert!(page.contains("Prediction of predicted"), "{page}");
 }

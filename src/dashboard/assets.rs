@@ -37,7 +37,13 @@ pub fn asset(name: &str) -> Option<Asset> {
         "new_job.js" => (SCRIPT, include_str!("assets/new_job.js")),
         "plot.js" => (SCRIPT, include_str!("assets/plot.js")),
         "job.js" => (SCRIPT, include_str!("assets/job.js")),
+        "models.js" => (SCRIPT, include_str!("assets/models.js")),
         "jobs.js" => (SCRIPT, include_str!("assets/jobs.js")),
+        "maneuver.js" => (SCRIPT, include_str!("assets/maneuver.js")),
+        "maneuvers.js" => (SCRIPT, include_str!("assets/maneuvers.js")),
+        "recording.js" => (SCRIPT, include_str!("assets/recording.js")),
+        "columns.js" => (SCRIPT, include_str!("assets/columns.js")),
+        "upload.js" => (SCRIPT, include_str!("assets/upload.js")),
         _ => ("text/csv", example(name)?),
     };
     Some(Asset {

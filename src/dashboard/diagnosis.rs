@@ -2,11 +2,10 @@
 
 use maud::{Markup, html};
 
-use super::shown::{Shown, shown_in};
-use crate::diagnose::{
-    Diagnosis, DocumentChange, FitChange, NamedEffect, Refusal, RefusedEffect, Verdict,
-};
+use super::model_diff;
+use crate::diagnose::{Diagnosis, FitChange, NamedEffect, Refusal, RefusedEffect, Verdict};
 use crate::estimate::{Role, five_digits as number};
+use crate::flight::{Shown, shown_in};
 
 /// The whole story.
 pub(super) fn story(diagnosis: &Diagnosis) -> Markup {
@@ -20,7 +19,7 @@ pub(super) fn story(diagnosis: &Diagnosis) -> Markup {
             @for (at, effect) in diagnosis.effects.iter().enumerate() { (named(at + 1, effect)) }
             @if !diagnosis.diff.is_empty() {
                 h3 { "What was added to the model" }
-                (diff(&diagnosis.diff))
+                (model_diff::changes([(&diagnosis.model, "declared model"), (&diagnosis.model, "with the effects")], &diagnosis.diff))
                 h3 { "What that did to the declared parameters" }
                 (parameters(diagnosis))
             }
@@ -118,18 +117,6 @@ fn named(at: usize, effect: &NamedEffect) -> Markup {
         @if effect.group.len() > 1 {
             p { "The data cannot tell it from these; weights by likelihood:" }
             ul { @for member in &effect.group { li { (member.effect.name()) ", " (format!("{:.0} %", 100.0 * member.weight)) } } }
-        }
-    }
-}
-
-fn diff(changes: &[DocumentChange]) -> Markup {
-    html! {
-        pre aria-label="Changes of the model document" tabindex="0" {
-            @for change in changes {
-                (change.pointer) "\n"
-                @if let Some(before) = &change.before { del { "- " (before) } "\n" }
-                @if let Some(after) = &change.after { ins { "+ " (after) } "\n" }
-            }
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use maud::{Markup, html};
 
-use super::shown::{Shown, shown_in};
 use crate::estimate::{Estimate, FilterEstimate, Measure, Mode, OutputFit, five_digits as number};
+use crate::flight::{Shown, shown_in};
 
 pub(super) fn parameter_table(estimate: &Estimate) -> Markup {
     html! {

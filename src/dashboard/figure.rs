@@ -3,9 +3,9 @@
 
 use plotters::prelude::*;
 
-use super::shown::{Shown, shown_in};
 use super::style::{DECLARED, MEASURED, MODEL};
 use crate::estimate::{OutputSeries, Series, TimeHistory};
+use crate::flight::{Shown, shown_in};
 
 const WIDTH: u32 = 900;
 /// Height of one output's panel, residual included.

@@ -2,9 +2,9 @@
 
 use maud::{Markup, html};
 
-use super::shown::{Shown, shown_in};
 use crate::diagnose::{ResidualAnalysis, SpectralLine};
 use crate::estimate::five_digits as number;
+use crate::flight::{Shown, shown_in};
 
 const WIDTH: f64 = 420.0;
 const HEIGHT: f64 = 150.0;

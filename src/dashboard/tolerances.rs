@@ -4,8 +4,8 @@
 
 use maud::{Markup, html};
 
-use super::shown::{Shown, shown_in};
 use crate::estimate::{OutputSeries, Role, TimeHistory, five_digits as number};
+use crate::flight::{Shown, shown_in};
 
 /// What a response may deviate by.
 struct Tolerance {
@@ -147,7 +147,7 @@ mod tests {
         let held = held(&output, &TOLERANCES[3]);
         assert_eq!(held.largest, 0.2);
         assert!((held.share - 2.0 / 3.0).abs() < 1e-12);
-        let html = tolerances(&[history.clone()]).into_string();
+        let html = tolerances(std::slice::from_ref(&history)).into_string();
         assert!(
             html.contains("66.7 %") && html.contains("roll &lt;1&gt;"),
             "{html}"

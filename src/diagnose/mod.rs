@@ -32,6 +32,7 @@ mod trial;
 
 pub use case::{Case, Unfit};
 pub use catalogue::candidates;
+pub use difference::difference;
 pub use effect::{Effect, EffectKind, Treatment};
 pub use flight::Flight;
 pub use report::{

@@ -316,9 +316,17 @@ mod tests {
         }
     }
 
+    fn most(rows: usize) -> Wanted {
+        Wanted {
+            from: None,
+            to: None,
+            most: Some(rows),
+        }
+    }
+
     #[test]
     fn csv_has_a_row_for_each_sample() {
-        let segments = vec![thinned(history(), 10)];
+        let segments = vec![thinned(history(), most(10))];
         let csv = String::from_utf8(histories_as_csv(segments).unwrap()).unwrap();
         let expected = "segment,t[s],de[rad],q_measured[rad/s],q_model[rad/s],q_residual[rad/s]\n\
                         a,0.0,0.0,1.0,1.0,0.0\na,0.1,0.0,,2.0,\na,0.2,0.0,3.0,2.0,1.0\n";
@@ -339,7 +347,7 @@ mod tests {
         for values in [measured, model, residual] {
             *values = (0..100).map(|k| f64::from(k).sin()).collect();
         }
-        let json = residuals_as_json(vec![thinned(history, 20)]).unwrap();
+        let json = residuals_as_json(vec![thinned(history, most(20))]).unwrap();
         let json: serde_json::Value = serde_json::from_slice(&json).unwrap();
         assert_eq!(json["segments"][0]["samples"], 100);
         let kept = json["segments"][0]["time"].as_array().unwrap().len();

@@ -84,10 +84,11 @@ struct UploadQuery {
     /// For people; at most 200 characters.
     #[param(example = "ATTAS elevator 3-2-1-1")]
     name: Option<String>,
-    /// Where a MAT file or an ASCII matrix has time and channels, and in which units: the name of a mapping
-    /// that is bundled (`fvsysid-attas`, `fvsysid-hfb320`, `sidpac`) or kept under `/v1/mappings`, or a JSON document. Sources are variables
+    /// Where a MAT file or an ASCII matrix has time and channels, and in which units; for a CSV file, what it says otherwise than
+    /// is meant. The name of a mapping that is bundled (`fvsysid-attas`, `fvsysid-hfb320`, `sidpac`) or kept under `/v1/mappings`, or a JSON document. Sources are variables
     /// (`alpha`), fields of structs (`rec.alpha`), columns (`data(:,2)`) or rows (`data(2,:)`) of either, or
-    /// columns of the only matrix of a file (`(:,2)`).
+    /// columns of the only matrix of a file (`(:,2)`). Of a CSV file they are names of columns without their units (`alpha`), or
+    /// columns (`(:,2)`); its other columns are left out.
     #[param(
         example = "{\"time\": {\"from\": \"data(:,1)\", \"unit\": \"s\"}, \"channels\": {\"alpha\": {\"from\": \"data(:,2)\", \"unit\": \"deg\"}}}"
     )]
@@ -104,7 +105,7 @@ struct MatFile(Vec<u8>);
 ///
 /// CSV with a header of `name[unit]` cells, one of them `t[s]` or `time[s]`, or with a row of units below the header;
 /// separated by commas, semicolons or tabs, with decimal points or (between the latter two) commas; time in a unit or as
-/// time stamps. Or JSON. Or, with a `mapping`, a MAT file (`-v7` or older, not 7.3) or an ASCII matrix. Values are
+/// time stamps; with a `mapping`, other names and units than it states. Or JSON. Or, with a `mapping`, a MAT file (`-v7` or older, not 7.3) or an ASCII matrix. Values are
 /// converted to SI. Content that is here already answers 200 with the maneuver it was first uploaded as.
 #[utoipa::path(post, path = "/v1/maneuvers", tag = "Maneuvers", operation_id = "uploadManeuver",
     params(UploadQuery),

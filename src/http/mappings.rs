@@ -1,4 +1,4 @@
-//! `/v1/mappings`: where MAT files and matrices have their channels. An upload names one of them.
+//! `/v1/mappings`: where files have their channels, if they do not say it themselves. An upload names one of them.
 
 use axum::Json;
 use axum::http::{HeaderMap, StatusCode, header};
@@ -36,11 +36,11 @@ struct NameQuery {
 /// A mapping as lists show it.
 #[derive(Serialize, ToSchema)]
 #[schema(as = MappingEntry)]
-struct MappingResource {
+pub struct MappingResource {
     #[schema(example = "lab-logger-3")]
-    name: String,
+    pub name: String,
     /// Which recordings it is for.
-    about: String,
+    pub about: String,
     /// When it was stored; one that comes with Trimtab has no such time.
     created: Option<String>,
 }
@@ -54,6 +54,12 @@ struct MappingList {
 #[utoipa::path(get, path = "/v1/mappings", tag = "Maneuvers", operation_id = "listMappings",
     responses((status = 200, description = "All of them.", body = MappingList)))]
 async fn list_mappings(service: Service) -> Result<Json<MappingList>, Problem> {
+    let mappings = all(&service).await?;
+    Ok(Json(MappingList { mappings }))
+}
+
+/// Those that come with Trimtab, and then the project's own.
+pub async fn all(service: &Service) -> Result<Vec<MappingResource>, Problem> {
     let about = |mapping: &Mapping| mapping.about().to_string();
     let mut mappings = Vec::new();
     for name in Mapping::names() {
@@ -72,7 +78,7 @@ async fn list_mappings(service: Service) -> Result<Json<MappingList>, Problem> {
             created: Some(record.created),
         });
     }
-    Ok(Json(MappingList { mappings }))
+    Ok(mappings)
 }
 
 /// Keep a mapping, for uploads to name.

@@ -66,35 +66,52 @@ struct ModelLinks {
     this: String,
 }
 
-impl ModelResource {
-    fn new(id: String, origin: Origin, created: Option<String>, document: &ModelDocument) -> Self {
+/// A model of the list, whole.
+pub struct Listed {
+    /// A catalog name, or the id of a stored model.
+    pub id: String,
+    /// When it was stored; absent of a catalog model.
+    pub created: Option<String>,
+    pub document: ModelDocument,
+}
+
+impl Listed {
+    fn stored(record: ModelRecord) -> Self {
         Self {
-            links: ModelLinks {
-                this: format!("/v1/models/{id}"),
-            },
-            id,
-            origin,
-            name: document.name.clone(),
-            title: document.title.clone(),
-            created,
-            inputs: document.inputs.keys().cloned().collect(),
-            outputs: document.outputs.keys().cloned().collect(),
-            parameters: document.parameters.keys().cloned().collect(),
+            id: record.id.to_string(),
+            created: Some(record.created),
+            document: record.document,
         }
     }
 
-    fn stored(record: &ModelRecord) -> Self {
-        let created = Some(record.created.clone());
-        Self::new(
-            record.id.to_string(),
-            Origin::Stored,
-            created,
-            &record.document,
-        )
-    }
-
     fn of_catalog(document: &ModelDocument) -> Self {
-        Self::new(document.name.clone(), Origin::Catalog, None, document)
+        Self {
+            id: document.name.clone(),
+            created: None,
+            document: document.clone(),
+        }
+    }
+}
+
+impl From<Listed> for ModelResource {
+    fn from(model: Listed) -> Self {
+        let document = model.document;
+        Self {
+            links: ModelLinks {
+                this: format!("/v1/models/{}", model.id),
+            },
+            id: model.id,
+            origin: match model.created {
+                Some(_) => Origin::Stored,
+                None => Origin::Catalog,
+            },
+            created: model.created,
+            inputs: document.inputs.into_keys().collect(),
+            outputs: document.outputs.into_keys().collect(),
+            parameters: document.parameters.into_keys().collect(),
+            name: document.name,
+            title: document.title,
+        }
     }
 }
 
@@ -143,7 +160,7 @@ async fn add_model(
     };
     let document = service.compute.run(check).await??;
     let record = service.store.add_model(id, document).await?;
-    let model = ModelResource::stored(&record);
+    let model = ModelResource::from(Listed::stored(record));
     let location = [(header::LOCATION, model.links.this.clone())];
     Ok((StatusCode::CREATED, location, Json(model)).into_response())
 }
@@ -171,17 +188,17 @@ async fn list_models(
         .await?
         .map_err(bad_cursor)?;
     Ok(Json(ModelPage {
-        models: page.entries,
+        models: page.entries.into_iter().map(ModelResource::from).collect(),
         next_cursor: page.next_cursor,
     }))
 }
 
-/// The cursor of a catalog model is its name, that of a stored one its id.
-async fn page(
+/// The catalog, then what was stored. The cursor of a catalog model is its name, that of a stored one its id.
+pub async fn page(
     service: &Service,
     cursor: Option<&str>,
     limit: usize,
-) -> Result<Result<Page<ModelResource>, BadCursor>, StoreError> {
+) -> Result<Result<Page<Listed>, BadCursor>, StoreError> {
     let catalog = catalog::all();
     let behind_name = |name| {
         catalog
@@ -197,17 +214,14 @@ async fn page(
             (None, Err(_)) => return Ok(Err(BadCursor)),
         },
     };
-    let mut models: Vec<_> = catalog[from..]
-        .iter()
-        .map(ModelResource::of_catalog)
-        .collect();
+    let mut models: Vec<_> = catalog[from..].iter().map(Listed::of_catalog).collect();
     if models.len() <= limit {
         // one more than fits tells whether there is another page
         let stored = service
             .store
             .models(before, limit + 1 - models.len())
             .await?;
-        models.extend(stored.entries.iter().map(ModelResource::stored));
+        models.extend(stored.entries.into_iter().map(Listed::stored));
     }
     Ok(Ok(Page::new(models, limit, |model| model.id.clone())))
 }
@@ -240,14 +254,17 @@ async fn get_model(
         // as it was written, comments and all
         return Ok(cacheable(&headers, format, text));
     }
-    let document = find(&service, &id).await?.ok_or_else(|| {
-        let id: String = id.chars().take(80).collect();
-        let detail = format!(
-            "there is no model '{id}'; the catalog goes by name, stored models by their id"
-        );
-        Problem::new(Code::UnknownModel, detail)
-    })?;
+    let document = find(&service, &id)
+        .await?
+        .ok_or_else(|| unknown_model(&id))?;
     document_as(format, &headers, &document)
+}
+
+pub fn unknown_model(id: &str) -> Problem {
+    let id: String = id.chars().take(80).collect();
+    let detail =
+        format!("there is no model '{id}'; the catalog goes by name, stored models by their id");
+    Problem::new(Code::UnknownModel, detail)
 }
 
 /// A model by its catalog name or its id.

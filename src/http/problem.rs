@@ -12,6 +12,7 @@ use tower_http::request_id::RequestId;
 use utoipa::ToSchema;
 
 use super::code::Code;
+use crate::dashboard::{ProblemView, problem_page};
 use crate::ingest::IngestError;
 use crate::job::Fault;
 use crate::store::StoreError;
@@ -45,6 +46,17 @@ pub struct ProblemDocument {
     /// The header `x-request-id`; the service's log has it too.
     #[schema(example = "0193518e-6b6f-7d3c-9c53-b1cbb2b7a1f4")]
     pub request_id: String,
+}
+
+impl ProblemDocument {
+    fn page(&self) -> String {
+        problem_page(&ProblemView {
+            title: &self.title,
+            detail: &self.detail,
+            faults: &self.errors,
+            request: &self.request_id,
+        })
+    }
 }
 
 /// A problem on its way out; [`render`] makes a [`ProblemDocument`] of it.
@@ -179,6 +191,7 @@ pub async fn render(request: Request, next: Next) -> Response {
         .and_then(|id| id.header_value().to_str().ok())
         .unwrap_or_default()
         .to_string();
+    let is_page = wants_page(&request);
     let mut response = next.run(request).await;
     let problem = match response.extensions_mut().remove::<Problem>() {
         Some(problem) => problem,
@@ -186,13 +199,27 @@ pub async fn render(request: Request, next: Next) -> Response {
         None => return response,
     };
     let document = problem.document(id);
-    let body = serde_json::to_vec(&document).unwrap_or_default();
+    let (media_type, body) = if is_page {
+        ("text/html; charset=utf-8", document.page().into_bytes())
+    } else {
+        let json = serde_json::to_vec(&document).unwrap_or_default();
+        (MEDIA_TYPE, json)
+    };
     let headers = response.headers_mut();
     headers.remove(header::CONTENT_LENGTH);
-    headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(MEDIA_TYPE));
+    headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(media_type));
     headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
     *response.body_mut() = Body::from(body);
     response
+}
+
+/// Whether a browser asks for something to show to people.
+fn wants_page(request: &Request) -> bool {
+    let accepts = request.headers().get_all(header::ACCEPT).iter();
+    let accepts_page = accepts
+        .filter_map(|accept| accept.to_str().ok())
+        .any(|accept| accept.contains("text/html"));
+    accepts_page && !request.uri().path().starts_with("/v1/")
 }
 
 fn is_bare_failure(response: &Response) -> bool {

@@ -159,7 +159,7 @@ pub mod code {
         ),
         (
             MAPPING_NOT_USED,
-            "The file says names and units itself; a mapping could contradict it.",
+            "The file says names and units itself, in a format for which there is no mapping.",
         ),
         (INVALID_MAPPING, "The mapping is unknown, or no mapping."),
         (

@@ -20,8 +20,8 @@ pub(super) struct Header {
     pub(super) time: usize,
     /// Time is written as time stamps; the unit of its column is then the second.
     pub(super) has_stamps: bool,
-    /// All columns, time included.
-    pub(super) columns: Vec<Column>,
+    /// All columns, time included; without a value those that are left out.
+    pub(super) columns: Vec<Option<Column>>,
 }
 
 pub(super) struct Column {
@@ -105,10 +105,10 @@ impl Header {
                 report(why);
             }
             match unit {
-                Ok(unit) => columns.push(Column {
+                Ok(unit) => columns.push(Some(Column {
                     name: label.name.to_string(),
                     unit,
-                }),
+                })),
                 Err(why) => report(why),
             }
         }
@@ -169,6 +169,10 @@ mod tests {
         Header::parse(&titles, &Limits::default())
     }
 
+    fn column(header: &Header, at: usize) -> &Column {
+        header.columns[at].as_ref().unwrap()
+    }
+
     fn faults(line: &str) -> Vec<String> {
         places(parse(line))
     }
@@ -180,9 +184,9 @@ mod tests {
         assert_eq!(time("a, Time [ms] ,b"), 1);
         assert_eq!(time("T[K],t[s],a"), 1, "the first is a temperature");
         let header = parse("a [deg],TIME[min],mach").unwrap();
-        assert_eq!(header.columns[1].unit.unit().scale, 60.0);
-        assert_eq!(header.columns[0].name, "a");
-        assert_eq!(header.columns[2].unit.unit(), Unit::NONE);
+        assert_eq!(column(&header, 1).unit.unit().scale, 60.0);
+        assert_eq!(column(&header, 0).name, "a");
+        assert_eq!(column(&header, 2).unit.unit(), Unit::NONE);
     }
 
     #[test]
@@ -234,15 +238,15 @@ mod tests {
             Header::parse(&titles, &Limits::default())
         };
         let header = titled("t;alpha;mach", "ms;deg;", "0;1;2").unwrap();
-        assert_eq!(header.columns[0].unit.unit().scale, 1e-3);
-        assert_eq!(header.columns[1].unit, RecordedUnit::parse("deg").unwrap());
+        assert_eq!(column(&header, 0).unit.unit().scale, 1e-3);
+        assert_eq!(column(&header, 1).unit, RecordedUnit::parse("deg").unwrap());
         assert!(!header.has_stamps);
         let conflict = places(titled("t;alpha[rad]", "s;deg", "0;1"));
         assert_eq!(conflict, ["unit_conflict /columns/alpha"]);
 
         let header = titled("T[K];time;a", "", "300;12:00:00.5;1").unwrap();
         assert_eq!((header.time, header.has_stamps), (1, true));
-        assert_eq!(header.columns[1].unit.unit(), Unit::parse("s").unwrap());
+        assert_eq!(column(&header, 1).unit.unit(), Unit::parse("s").unwrap());
         let header = titled("timestamp;a", "UTC;deg", "2026-11-21T12:00:00Z;1").unwrap();
         assert!(header.has_stamps);
         let kelvin = places(titled("t[K];a", "", "12:00:00;1"));

@@ -5,7 +5,8 @@
 //! Its memory is bounded by [`Limits`] *before* it is used: every format is surveyed in one cheap pass
 //! before anything is built from it.
 //!
-//! CSV and JSON say names and units themselves. MAT files and ASCII matrices do not: a [`Mapping`] says them.
+//! CSV and JSON say names and units themselves. MAT files and ASCII matrices do not: a [`Mapping`] says them. It can do so
+//! for CSV, too, where what the file says is not what is meant.
 //!
 //! What is readable may still be poor: [`quality`] finds gaps, missing values, stuck sensors and spikes,
 //! and [`summary`] is what a user sees of a maneuver without downloading it.
@@ -106,7 +107,7 @@ pub fn read(bytes: &[u8], format: Format, limits: &Limits) -> Result<Maneuver, I
     read_mapped(bytes, format, None, limits)
 }
 
-/// Reads a recording, with a mapping where its format has no names and units.
+/// Reads a recording, with a mapping where its format has no names and units, or a CSV file has the wrong ones.
 ///
 /// # Errors
 /// All faults that can be found at once: every fault of a header or a mapping, the first 20 of
@@ -118,7 +119,7 @@ pub fn read_mapped(
     limits: &Limits,
 ) -> Result<Maneuver, IngestError> {
     match (format, mapping) {
-        (Format::Csv, None) => csv::read(bytes, limits),
+        (Format::Csv, _) => csv::read(bytes, mapping, limits),
         (Format::Json, None) => json::read(bytes, limits),
         (Format::Mat, _) => mat::read(bytes, mapping, limits),
         (Format::Ascii, _) => ascii::read(bytes, mapping, limits),
@@ -149,7 +150,7 @@ mod tests {
     fn a_mapping_is_for_files_that_need_one() {
         let mapping = Mapping::named_or_json("sidpac").unwrap();
         let limits = Limits::default();
-        let unused = read_mapped(b"t[s],a\n0,1\n1,2\n", Format::Csv, Some(&mapping), &limits);
+        let unused = read_mapped(b"{}", Format::Json, Some(&mapping), &limits);
         assert_eq!(fault::places(unused), ["mapping_not_used "]);
         for extension in ["csv", "JSON", "mat", "asc"] {
             assert!(Format::from_extension(extension).is_some());

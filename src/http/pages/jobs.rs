@@ -6,6 +6,7 @@ use axum::routing::get;
 use serde::Deserialize;
 
 use crate::dashboard::{Chosen, JobRow, JobsView, jobs_page};
+use crate::http::code::Code;
 use crate::http::problem::Problem;
 use crate::http::query::{Parameters, bad_cursor};
 use crate::http::{Server, Service};
@@ -36,12 +37,8 @@ async fn get_jobs_page(
     service: Service,
     Parameters(query): Parameters<Query>,
 ) -> Result<Html<String>, Problem> {
-    let status = Status::ALL
-        .into_iter()
-        .find(|status| status.name() == query.status);
-    let kind = JobKind::ALL
-        .into_iter()
-        .find(|kind| kind.name() == query.kind);
+    let status = chosen(&query.status, Status::ALL, Status::name)?;
+    let kind = chosen(&query.kind, JobKind::ALL, JobKind::name)?;
     let filter = JobFilter {
         status,
         kind: kind.map(|kind| kind.name().to_string()),
@@ -53,12 +50,12 @@ async fn get_jobs_page(
     let page = page.map_err(bad_cursor)?;
     let now = service.store.clock().now_text();
     let older = page.next_cursor.map(|cursor| {
-        let mut form = form_urlencoded::Serializer::new(String::from("/?"));
+        let mut form = form_urlencoded::Serializer::new(String::new());
         form.append_pair("status", &query.status);
         form.append_pair("kind", &query.kind);
         form.append_pair("tag", &query.tag);
         form.append_pair("cursor", &cursor);
-        form.finish()
+        format!("/?{}", form.finish())
     });
     let view = JobsView {
         jobs: page.entries.into_iter().map(|job| row(job, &now)).collect(),
@@ -71,6 +68,23 @@ async fn get_jobs_page(
         older,
     };
     Ok(Html(service.compute.run(move || jobs_page(&view)).await?))
+}
+
+/// What a name stands for; nothing where nothing was chosen.
+fn chosen<T: Copy, const N: usize>(
+    text: &str,
+    all: [T; N],
+    name: fn(T) -> &'static str,
+) -> Result<Option<T>, Problem> {
+    if text.is_empty() {
+        return Ok(None);
+    }
+    let found = all.into_iter().find(|one| name(*one) == text);
+    found.map(Some).ok_or_else(|| {
+        let names = all.map(name).join(", ");
+        let detail = format!("there is no '{text}'; there are {names}");
+        Problem::new(Code::InvalidQuery, detail)
+    })
 }
 
 fn row(job: JobRecord, now: &str) -> JobRow {

@@ -4,6 +4,10 @@
 
 mod job;
 mod jobs;
+mod maneuver;
+mod maneuvers;
+mod model;
+mod models;
 mod new_job;
 mod report;
 
@@ -24,6 +28,10 @@ pub fn router() -> Router<Server> {
         .merge(job::router())
         .merge(report::router())
         .merge(new_job::router())
+        .merge(maneuvers::router())
+        .merge(maneuver::router())
+        .merge(models::router())
+        .merge(model::router())
         .route("/assets/{name}", get(get_asset))
         .route("/favicon.ico", get(get_mark))
 }

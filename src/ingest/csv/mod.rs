@@ -6,6 +6,7 @@
 
 mod decimal;
 mod delimiter;
+mod mapped;
 mod rows;
 mod unit_row;
 
@@ -18,17 +19,22 @@ use super::{
     fault::{of_file, pointer},
     header::{Header, Titles},
     lines::{Line, Lines},
+    mapping::Mapping,
     text::decode,
 };
 
-/// Reads a CSV recording.
+/// Reads a CSV recording, as its header says or as a mapping does.
 ///
 /// Empty cells and the usual words (nan, na, null, inf in any case) are missing values.
 ///
 /// # Errors
 /// What separates the cells, or a decimal mark, is not clear; else every fault of the header; else the first 20 faults
 /// of rows and cells.
-pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Maneuver, IngestError> {
+pub(super) fn read(
+    bytes: &[u8],
+    mapping: Option<&Mapping>,
+    limits: &Limits,
+) -> Result<Maneuver, IngestError> {
     let mut rows = Lines::of(decode(bytes)?);
     let (header, delimiter) = header_line(&mut rows)?;
     let ends_with_delimiter = header.text.trim_end_matches(' ').ends_with(delimiter);
@@ -54,14 +60,15 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Maneuver, IngestErro
         rows.next();
     }
     let first = dialect.first_row(rows.clone(), width);
-    let header = Header::parse(
-        &Titles {
-            names,
-            units,
-            first,
-        },
-        limits,
-    )?;
+    let titles = Titles {
+        names,
+        units,
+        first,
+    };
+    let header = match mapping {
+        Some(mapping) => mapped::header(mapping, &titles, limits)?,
+        None => Header::parse(&titles, limits)?,
+    };
     let values = Extent::of(rows.clone(), &dialect).values(limits, width)?;
     rows::read(rows, &dialect, &header, values / width)
 }
@@ -159,7 +166,7 @@ mod tests {
     use super::*;
 
     fn read_text(text: &str) -> Result<Maneuver, IngestError> {
-        read(text.as_bytes(), &Limits::default())
+        read(text.as_bytes(), None, &Limits::default())
     }
 
     fn faults(text: &str) -> Vec<String> {
@@ -207,6 +214,7 @@ mod tests {
         assert_eq!(faults("a,b\n1,2\n1,2\n"), ["no_time_column "]);
         let cut = read(
             "t[s],a\n0,1\n1,\u{b0}".as_bytes().split_last().unwrap().1,
+            None,
             &Limits::default(),
         );
         let fault = &cut.unwrap_err().into_faults()[0];
@@ -259,7 +267,7 @@ mod tests {
             max_name_length: 5,
         };
         let refused = |text: &str, code: &str, bound: &str| {
-            let error = read(text.as_bytes(), &limits).unwrap_err();
+            let error = read(text.as_bytes(), None, &limits).unwrap_err();
             assert_eq!(error.faults()[0].code, code);
             assert!(error.to_string().contains(bound), "{error}");
         };

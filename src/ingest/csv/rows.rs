@@ -27,15 +27,18 @@ pub(super) fn read(
     header: &Header,
     capacity: usize,
 ) -> Result<Maneuver, IngestError> {
-    let columns = &header.columns;
+    let columns = header.columns.iter();
+    let Some(time) = header.columns.get(header.time).and_then(Option::as_ref) else {
+        return Err(of_file(code::NO_TIME_COLUMN, "there is no column of time").into());
+    };
     let mut table = Table {
         dialect,
         header,
-        axis: TimeAxis::new(columns[header.time].unit.unit(), capacity),
+        axis: TimeAxis::new(time.unit.unit(), capacity),
         watch: Stopwatch::default(),
+        time,
         values: columns
-            .iter()
-            .map(|_| Vec::with_capacity(capacity))
+            .map(|column| Vec::with_capacity(column.as_ref().map_or(0, |_| capacity)))
             .collect(),
         faults: Vec::new(),
     };
@@ -52,9 +55,10 @@ pub(super) fn read(
 struct Table<'a> {
     dialect: &'a Dialect,
     header: &'a Header,
+    time: &'a Column,
     axis: TimeAxis,
     watch: Stopwatch,
-    /// One list a column; that of time stays empty.
+    /// One list a column; that of time stays empty, and so do those that are left out.
     values: Vec<Vec<f64>>,
     faults: Vec<Fault>,
 }
@@ -72,17 +76,19 @@ impl Table<'_> {
                 self.push_time(row, line, cell);
                 continue;
             }
+            let Some(column) = &self.header.columns[at] else {
+                continue;
+            };
             let value = number(cell, self.dialect.decimal);
             self.values[at].push(value.unwrap_or(f64::NAN));
             if value.is_none() {
-                self.faults
-                    .push(not_a_number(row, line, &self.header.columns[at], cell));
+                self.faults.push(not_a_number(row, line, column, cell));
             }
         }
     }
 
     fn push_time(&mut self, row: usize, line: Line, cell: &str) {
-        let column = &self.header.columns[self.header.time];
+        let column = self.time;
         let time = if self.header.has_stamps {
             self.stamp(cell)
         } else {
@@ -119,7 +125,9 @@ impl Table<'_> {
         IngestError::refuse(self.faults)?;
         let mut channels = IndexMap::with_capacity(self.values.len());
         for (at, (column, values)) in self.header.columns.iter().zip(self.values).enumerate() {
-            if at != self.header.time {
+            if let Some(column) = column
+                && at != self.header.time
+            {
                 channels.insert(column.name.clone(), column.unit.channel(values));
             }
         }

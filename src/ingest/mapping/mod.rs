@@ -1,4 +1,5 @@
-//! Mapping documents: which values of a file without names and units are time and channels, and in which units.
+//! Mapping documents: which values of a file without names and units, or with others, are time and channels, and in which
+//! units.
 //!
 //! A mapping has the shape of a JSON recording, with `from` where that has `values`. In TOML:
 //!
@@ -16,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 pub(super) use apply::Archive;
-use source::{Part, Source};
+pub(super) use source::{Part, Source};
 
 use super::{
     code,
@@ -25,7 +26,7 @@ use super::{
 };
 use crate::flight::Fault;
 
-/// Says where time and channels are in a MAT file or an ASCII matrix.
+/// Says where time and channels are in a MAT file or an ASCII matrix, or which columns of a CSV file they are.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Mapping {

@@ -1,0 +1,29 @@
+//! `/maneuvers/{id}`: the page of a maneuver.
+
+use axum::Router;
+use axum::response::Html;
+use axum::routing::get;
+
+use crate::dashboard::{ManeuverView, maneuver_page};
+use crate::http::maneuvers::unknown_maneuver;
+use crate::http::problem::Problem;
+use crate::http::query::Id;
+use crate::http::{Server, Service};
+
+pub fn router() -> Router<Server> {
+    Router::new().route("/maneuvers/{id}", get(get_maneuver_page))
+}
+
+async fn get_maneuver_page(service: Service, Id(id): Id) -> Result<Html<String>, Problem> {
+    let record = service.store.maneuver(&id).await?;
+    let record = record.ok_or_else(|| unknown_maneuver(&id))?;
+    let render = move || {
+        Ok::<_, Problem>(maneuver_page(&ManeuverView {
+            summary: serde_json::from_str(&record.summary)?,
+            id: record.id,
+            name: record.name,
+            created: record.created,
+        }))
+    };
+    Ok(Html(service.compute.run(render).await??))
+}

@@ -1,0 +1,61 @@
+//! `/maneuvers`: the page of all maneuvers, and of uploads.
+
+use axum::Router;
+use axum::response::Html;
+use axum::routing::get;
+use serde::Deserialize;
+
+use crate::dashboard::{ManeuverRow, ManeuversView, maneuvers_page};
+use crate::http::problem::Problem;
+use crate::http::query::{Parameters, bad_cursor};
+use crate::http::{Server, Service, mappings};
+use crate::store::ManeuverRecord;
+
+pub fn router() -> Router<Server> {
+    Router::new().route("/maneuvers", get(get_maneuvers_page))
+}
+
+/// Maneuvers of a page.
+const MANEUVERS: usize = 50;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Query {
+    cursor: Option<String>,
+}
+
+async fn get_maneuvers_page(
+    service: Service,
+    Parameters(query): Parameters<Query>,
+) -> Result<Html<String>, Problem> {
+    let cursor = query.cursor.as_deref();
+    let page = service.store.maneuvers(cursor, MANEUVERS).await?;
+    let page = page.map_err(bad_cursor)?;
+    let older = page.next_cursor.map(|cursor| {
+        let mut query = form_urlencoded::Serializer::new(String::new());
+        query.append_pair("cursor", &cursor);
+        format!("/maneuvers?{}", query.finish())
+    });
+    let mappings = mappings::all(&service).await?.into_iter();
+    let mappings = mappings.map(|mapping| (mapping.name, mapping.about));
+    let mappings = mappings.collect();
+    let render = move || {
+        let maneuvers = page.entries.into_iter().map(row);
+        Ok::<_, Problem>(maneuvers_page(&ManeuversView {
+            maneuvers: maneuvers.collect::<Result<_, _>>()?,
+            mappings,
+            is_later_page: query.cursor.is_some(),
+            older,
+        }))
+    };
+    Ok(Html(service.compute.run(render).await??))
+}
+
+fn row(record: ManeuverRecord) -> Result<ManeuverRow, Problem> {
+    Ok(ManeuverRow {
+        summary: serde_json::from_str(&record.summary)?,
+        id: record.id,
+        name: record.name,
+        created: record.created,
+    })
+}
