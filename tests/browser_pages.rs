@@ -167,6 +167,49 @@ async fn a_new_job_says_what_is_wrong_with_it_and_where() {
 }
 
 #[tokio::test]
+async fn a_recording_is_corrected_before_it_is_stored() {
+    browse("upload", async |browser| {
+        let server = idle().await;
+        let file = server.directory.path().join("first flight.csv");
+        let csv = elevator();
+        assert!(csv.lines().next().unwrap().contains("q[rad/s]"));
+        std::fs::write(&file, csv.replacen("q[rad/s]", "q[rda/s]", 1)).unwrap();
+        go(browser, &server, "/maneuvers").await;
+        browser.fill("#choose", file.to_str().unwrap()).await;
+        let row = "document.querySelector('section.file tbody tr:nth-child(4)')";
+        browser
+            .until(&format!("{row}?.textContent.includes('rda/s')"))
+            .await;
+        browser.expect_error("422");
+        browser.click("section.file [data-part=send]").await;
+        browser.says("section.file", "It was not stored").await;
+        browser.picture("fault").await;
+        browser.is_accessible().await;
+        assert_eq!(
+            server.get("/v1/maneuvers").await.json()["maneuvers"],
+            json!([])
+        );
+        let unit = "section.file tbody tr:nth-child(4) input[list=units]";
+        browser.correct(unit, "rad/s").await;
+        browser.click("section.file [data-part=send]").await;
+        browser.says("section.file", "Stored as").await;
+        browser.picture("stored").await;
+        browser.click("#maneuvers tbody a").await;
+        browser.find("#maneuver .plot .main-svg").await;
+        is_drawn(browser).await;
+        for dark in [false, true] {
+            browser.dark(dark).await;
+            browser.is_accessible().await;
+            browser.picture("maneuver").await;
+        }
+        browser.resize(360, 800).await;
+        is_drawn(browser).await;
+        browser.fits().await;
+    })
+    .await;
+}
+
+#[tokio::test]
 async fn the_list_follows_jobs_and_is_filtered() {
     browse("list of jobs", async |browser| {
         let server = idle().await;
@@ -443,6 +486,7 @@ async fn pages_are_accessible_in_light_and_dark_and_fit_a_narrow_screen() {
         let waiting = server.submit(&job(&server.upload(&elevator()).await)).await;
         pages.extend([&over, &stopped, &waiting].map(|id| format!("/jobs/{id}")));
         pages.extend([format!("/jobs/{over}/report"), format!("/new?like={over}")]);
+        pages.extend(["/maneuvers", "/models", "/models/short-period"].map(String::from));
         look(&pages).await;
     })
     .await;

@@ -209,6 +209,13 @@ impl Browser {
         filled.unwrap_or_else(|error| panic!("{selector}: {error}"));
     }
 
+    /// Writes into a field in place of what is there.
+    pub async fn correct(&self, selector: &str, text: &str) {
+        let cleared = self.find(selector).await.clear().await;
+        cleared.unwrap_or_else(|error| panic!("{selector}: {error}"));
+        self.fill(selector, text).await;
+    }
+
     /// Presses a key where the focus is.
     pub async fn press(&self, key: Key) {
         let value = char::from(key);

@@ -136,7 +136,7 @@ export function columnTable(head, onChange) {
       element('td', { class: 'number' }, range), parts.shown, parts.remarks);
   }
   rows.forEach(show);
-  const titles = ['use as', 'column', 'unit in the file', 'channel', 'unit', 'first values', 'range', 'range as shown', ''];
+  const titles = ['use as', 'column', 'unit in the file', 'channel', 'unit', 'first values', 'range', 'range as shown', 'remarks'];
   const isNumber = title => title.startsWith('range');
   const node = element('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Columns' },
     element('table', {},
