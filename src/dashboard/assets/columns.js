@@ -6,6 +6,8 @@ const MOST = { rad: 7, 'rad/s': 20 };
 
 const isName = text => /^[A-Za-z_][A-Za-z0-9_]*$/.test(text) && text !== 't';
 const short = value => String(Number(value.toPrecision(4)));
+/** A cell with no more digits than can be taken in. */
+const inShort = cell => (cell.length > 8 && Number.isFinite(Number(cell)) ? short(Number(cell)) : cell);
 const GREEK = { α: 'alpha', β: 'beta', γ: 'gamma', δ: 'delta', θ: 'theta', Θ: 'theta', φ: 'phi', Φ: 'phi', ψ: 'psi', ρ: 'rho' };
 
 /** A channel's name close to what stands over the column. */
@@ -131,12 +133,12 @@ export function columnTable(head, onChange) {
       element('td', {}, parts.as),
       element('th', { scope: 'row' }, column.name || `(column ${column.at + 1})`),
       element('td', { class: 'soft' }, column.unit),
-      element('td', {}, parts.name), element('td', {}, parts.unit),
-      element('td', { class: 'soft' }, column.first.join('; ')),
-      element('td', { class: 'number' }, range), parts.shown, parts.remarks);
+      element('td', {}, parts.name), element('td', {}, parts.unit), parts.remarks,
+      element('td', { class: 'number' }, range), parts.shown,
+      element('td', { class: 'soft' }, column.first.map(inShort).join('; ')));
   }
   rows.forEach(show);
-  const titles = ['use as', 'column', 'unit in the file', 'channel', 'unit', 'first values', 'range', 'range as shown', 'remarks'];
+  const titles = ['use as', 'column', 'unit in the file', 'channel', 'unit', 'remarks', 'range', 'range as shown', 'first values'];
   const isNumber = title => title.startsWith('range');
   const node = element('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Columns' },
     element('table', {},

@@ -3,6 +3,7 @@ import { localTimes } from './service.js';
 import { uploadExamples } from './examples.js';
 
 const EVERY_MS = 2000;
+const LOST = 'The service does not answer; trying again.';
 const list = document.getElementById('jobs');
 const live = document.getElementById('live');
 
@@ -13,7 +14,9 @@ async function refresh() {
     if (!answer.ok) throw new Error();
     const page = new DOMParser().parseFromString(await answer.text(), 'text/html');
     const fresh = page.getElementById('jobs');
-    if (fresh && fresh.innerHTML !== refresh.last) {
+    // the first job of all came by the API
+    if (fresh && !list) location.reload();
+    else if (fresh && fresh.innerHTML !== refresh.last) {
       refresh.last = fresh.innerHTML;
       // who is at a link by keyboard stays there
       const focused = list.contains(document.activeElement) ? document.activeElement.getAttribute('href') : null;
@@ -21,14 +24,14 @@ async function refresh() {
       localTimes(list);
       if (focused) list.querySelector(`a[href="${CSS.escape(focused)}"]`)?.focus();
     }
-    live.textContent = '';
+    if (live.textContent === LOST) live.textContent = '';
   } catch {
-    live.textContent = 'The service does not answer; trying again.';
+    live.textContent = LOST;
   }
 }
 
 localTimes();
-if (list?.dataset.live === 'true') setInterval(refresh, EVERY_MS);
+if (!list || list.dataset.live === 'true') setInterval(refresh, EVERY_MS);
 
 const examples = document.getElementById('examples');
 examples?.addEventListener('click', async () => {
