@@ -118,13 +118,14 @@ async fn the_first_visit_leads_from_flights_to_try_to_a_job() {
             .await;
         browser.picture("new").await;
         browser.click("#check").await;
-        browser.says("#said", "Good: 626 samples").await;
+        browser.says("#said", "It can run: 626 samples").await;
         browser.click("#form button.main").await;
         browser.find("#job").await;
         let id = browser.text("#job .facts code").await;
         let spec = server.get(&format!("/v1/jobs/{id}/spec")).await.json();
         assert_eq!(spec["maneuvers"].as_array().unwrap().len(), 3);
         over(browser, &server, &id).await;
+        browser.says(".verdict", "backlash").await;
         browser.click(".actions a.main").await;
         browser.until("location.pathname.endsWith('/report')").await;
         let report = browser.text("main").await;
@@ -144,7 +145,7 @@ async fn a_new_job_says_what_is_wrong_with_it_and_where() {
         go(browser, &server, &format!("/new?estimation={maneuver}")).await;
         browser.find("#maneuvers tbody tr").await;
         browser.click("#form button.main").await;
-        browser.says("#said", "Choose a model").await;
+        browser.says("#faults", "Choose a model").await;
         go(
             browser,
             &server,
@@ -160,6 +161,12 @@ async fn a_new_job_says_what_is_wrong_with_it_and_where() {
         browser.expect_error("422");
         browser.click("#check").await;
         browser.says("#faults", "/parameters/Mde").await;
+        // a job that cannot be read is not sent as it was before
+        browser.click("details:has(#json) summary").await;
+        browser.fill("#json", "oops").await;
+        browser.click("#form button.main").await;
+        browser.says("#faults", "nothing was sent").await;
+        assert_eq!(server.get("/v1/jobs").await.json()["jobs"], json!([]));
         browser.is_accessible().await;
         browser.picture("fault").await;
     })
@@ -374,7 +381,7 @@ async fn a_diagnosis_is_told_as_a_story() {
         for part in [
             "Before and after",
             "de_backlash",
-            "took no part at all",
+            "kept for the end",
             "refused",
         ] {
             assert!(story.contains(part), "{part}: {story}");

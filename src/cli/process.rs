@@ -62,7 +62,7 @@ pub struct Process {
         long,
         env = "TRIMTAB_LOG",
         value_name = "FILTER",
-        default_value = "info"
+        default_value = "info,cranelift_jit=warn"
     )]
     log: String,
 

@@ -77,7 +77,7 @@ fn part(role: Role) -> &'static str {
     match role {
         Role::Estimation => "fitted",
         Role::Validation => "checked on",
-        Role::Final => "took no part at all",
+        Role::Final => "kept for the end",
     }
 }
 

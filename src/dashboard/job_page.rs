@@ -10,7 +10,7 @@ use super::{correlation, diagnosis, eigenvalues};
 use crate::diagnose::Diagnosis;
 use crate::estimate::study::DerivativeStudy;
 use crate::estimate::{Estimate, Role};
-use crate::flight::Finding;
+use crate::flight::{Finding, Severity};
 use crate::job::{Fault, Status};
 
 /// What the page shows.
@@ -103,7 +103,7 @@ pub(super) fn facts(view: &JobView) -> Markup {
                     a href={ "/maneuvers/" (maneuver.id) } { (maneuver.label) }
                     @match maneuver.role {
                         Role::Estimation => {}
-                        Role::Validation => { " (predicted)" }
+                        Role::Validation => { " (checked on)" }
                         Role::Final => { " (kept for the end)" }
                     }
                 }
@@ -152,14 +152,25 @@ fn actions(view: &JobView) -> Markup {
 }
 
 pub(super) fn findings(view: &JobView) -> Markup {
+    let unfinished = (view.estimate.as_ref()).filter(|estimate| !estimate.outcome.is_minimum());
     html! {
+        @if unfinished.is_some() {
+            p.note { strong { "These numbers are no estimate yet" } ": the best that was reached before the solver stopped, short of a minimum. Standard errors mean little there." }
+        }
         @for remark in view.estimate.as_ref().map(Estimate::remarks).unwrap_or_default() {
             p.note { (remark) }
         }
-        @if !view.findings.is_empty() {
-            details open[view.findings.len() <= 3] {
-                summary { "What is odd about the data (" (view.findings.len()) ")" }
-                ul { @for finding in &view.findings { li { (finding.message) "; " (finding.remedy) } } }
+        @for finding in view.findings.iter().filter(|finding| finding.severity == Severity::Warning) {
+            p.note { strong { "The data: " } (finding.message) "; " (finding.remedy) }
+        }
+        @if view.findings.iter().any(|finding| finding.severity == Severity::Note) {
+            details {
+                summary { "What else is odd about the data" }
+                ul {
+                    @for finding in view.findings.iter().filter(|finding| finding.severity == Severity::Note) {
+                        li { (finding.message) "; " (finding.remedy) }
+                    }
+                }
             }
         }
     }

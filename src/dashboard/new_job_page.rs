@@ -92,7 +92,7 @@ pub fn new_job_page() -> String {
         form id="form" novalidate {
             fieldset {
                 legend { "1. Maneuvers" }
-                p.soft { "Fitted together; those that are predicted or kept for the end take no part in the fit. "
+                p.soft { "Those that are fitted are fitted together. What is checked on decides whether an effect that was found is real; what is kept for the end takes part in no decision. "
                     a href="/maneuvers" { "Upload a maneuver" } }
                 div id="maneuvers" { p.soft { "Asking the service ..." } }
             }
@@ -106,7 +106,7 @@ pub fn new_job_page() -> String {
                 legend { "3. What to find" }
                 div.row role="radiogroup" aria-label="Kind" {
                     (kind("estimate", "Parameters", true))
-                    (kind("diagnose", "Parameters, and what the model lacks", false))
+                    (kind("diagnose", "Parameters, and what the model lacks (takes longer: hundreds of fits)", false))
                     (kind("derivative_study", "Parameters, and derivative techniques compared", false))
                 }
                 details {

@@ -82,12 +82,14 @@ fn result(view: &ReportView, estimate: &Estimate) -> Markup {
         }
         (tolerances(&view.histories))
         @for history in &view.histories {
-            h2 { "Measured and model: " (history.segment) @if history.role != Role::Estimation { " (took no part in the fit)" } }
-            (source(view, "time-histories"))
-            figure.paper role="img" aria-label={ "measured and model outputs of " (history.segment) } {
-                @match history_svg(history) {
-                    Ok(svg) => { (PreEscaped(svg)) }
-                    Err(error) => { p { "The figure could not be drawn: " (error) } }
+            section.whole {
+                h2 { "Measured and model: " (history.segment) @if history.role != Role::Estimation { " (took no part in the fit)" } }
+                (source(view, "time-histories"))
+                figure.paper role="img" aria-label={ "measured and model outputs of " (history.segment) } {
+                    @match history_svg(history) {
+                        Ok(svg) => { (PreEscaped(svg)) }
+                        Err(error) => { p { "The figure could not be drawn: " (error) } }
+                    }
                 }
             }
         }

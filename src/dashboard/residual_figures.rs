@@ -19,16 +19,18 @@ pub(super) fn residual_figures(outputs: &[ResidualAnalysis]) -> Markup {
     html! {
         @for output in outputs {
             @let Shown { scale, unit } = shown_in(&output.unit);
-            h3 { (output.output) }
-            p.soft {
-                "rms " (number(output.rms * scale)) " " (unit) "; "
-                @if output.portmanteau.probability < RARE { "not white: noise alone would hardly be like this" }
-                @else { "as white noise would be" }
-                " (Ljung and Box, p = " (format!("{:.2e}", output.portmanteau.probability)) ")"
-            }
-            div.columns {
-                figure.paper { (autocorrelation(output)) }
-                figure.paper { (spectrum(output, scale, &unit)) }
+            section.whole {
+                h3 { (output.output) }
+                p.soft {
+                    "rms " (number(output.rms * scale)) " " (unit) "; "
+                    @if output.portmanteau.probability < RARE { "not white: noise alone would hardly be like this" }
+                    @else { "as white noise would be" }
+                    " (Ljung and Box, p = " (format!("{:.2e}", output.portmanteau.probability)) ")"
+                }
+                div.columns {
+                    figure.paper { (autocorrelation(output)) }
+                    figure.paper { (spectrum(output, scale, &unit)) }
+                }
             }
         }
     }

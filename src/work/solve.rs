@@ -85,7 +85,12 @@ pub fn solve(
     };
     let result = result.map_err(Unanswered::Refused)?;
     let parts = ResultParts::encode(&result, this_program())?;
-    let (outcome, reason) = (result.estimate.outcome, result.estimate.reason);
+    let outcome = result.estimate.outcome;
+    // what a diagnosis comes to is more than that its last fit ended well
+    let reason = match result.diagnosis {
+        Some(diagnosis) => diagnosis.sentence,
+        None => result.estimate.reason,
+    };
     Ok(Answer {
         outcome,
         reason,

@@ -1,8 +1,15 @@
 // The columns of a file as they were recorded, and the channels that they become: to be checked and corrected before anything is stored.
 import { element } from './service.js';
 
-/** Beyond these an angle or a rate in radians is hardly one: about a turn, and as the service has it (src/job/plausible.rs). */
-const MOST = { rad: 7, 'rad/s': 20 };
+/** Beyond it a value is hardly in radians: no vane and no surface gets to 69 deg, little flies that turns faster, and other angles
+ * are within a turn (as the service has it of jobs, src/job/plausible.rs). Without a bound, undefined. */
+function most(name, unit) {
+  if (unit === 'rad/s') return 20;
+  if (unit !== 'rad') return undefined;
+  const isVane = /^(alpha|beta|alfa|aoa|aos)(?!.*dot)/.test(name);
+  const isSurface = /^(delta|d(?!.*dt).)/.test(name);
+  return isVane || isSurface ? 1.2 : 7;
+}
 
 const isName = text => /^[A-Za-z_][A-Za-z0-9_]*$/.test(text) && text !== 't';
 const short = value => String(Number(value.toPrecision(4)));
@@ -88,11 +95,11 @@ export function columnTable(head, onChange) {
       remarks.push({ text: 'Another channel has this name.', isBad: true });
     }
     if (column.hasWords) remarks.push({ text: 'Some of its cells are no numbers.', isBad: true });
-    const most = MOST[unit];
-    if (most !== undefined && Math.max(...row.range.map(Math.abs)) > most && column.values.length > 0) {
+    const bound = most(name, unit);
+    if (bound !== undefined && Math.max(...row.range.map(Math.abs)) > bound && column.values.length > 0) {
       const degrees = unit.replace('rad', 'deg');
       remarks.push({
-        text: `Beyond ${most} ${unit}: degrees, probably.`, isBad: true,
+        text: `Beyond ${bound} ${unit}: degrees, probably.`, isBad: true,
         act: { text: `It is ${degrees}`, run: () => { row.unit = degrees; } },
       });
     }

@@ -123,7 +123,7 @@ async function drawHistories() {
       ...(declared.length > 0 ? [lines('declared model', scaled(declared, scale), 'declared')] : []),
       lines(declared.length > 0 ? 'model with the effects' : 'model', scaled(output.model, scale), 'model'),
     ]));
-    const inputs = segment.inputs.map(input => of(input, scale => [lines('input', scaled(input.values, scale), 'soft', 1.5)]));
+    const inputs = segment.inputs.map(input => of(input, scale => [lines('input', scaled(input.values, scale), 'ink', 1)]));
     return [...outputs, ...inputs];
   };
   const { segments } = await ask(address());

@@ -40,7 +40,7 @@ const number = text => (text.trim() === '' ? undefined : Number(text));
 
 // --- maneuvers ---------------------------------------------------------------------------------------------------------
 
-const ROLES = [['', 'not used'], ['estimation', 'fitted'], ['validation', 'predicted'], ['final', 'kept for the end']];
+const ROLES = [['', 'not used'], ['estimation', 'fitted'], ['validation', 'checked on'], ['final', 'kept for the end']];
 
 function showManeuvers() {
   const place = byId('maneuvers');
@@ -211,6 +211,15 @@ async function takeWhole(next) {
   await chooseModel();
 }
 
+byId('json').addEventListener('input', () => {
+  try {
+    JSON.parse(byId('json').value);
+    byId('json-fault').textContent = '';
+  } catch (error) {
+    byId('json-fault').textContent = `This is no JSON: ${error.message}`;
+  }
+});
+
 byId('json').addEventListener('change', async () => {
   let next;
   try {
@@ -275,21 +284,28 @@ function showProblem(error) {
 
 /** The first thing that is missing, in words. */
 function missing() {
-  if (!spec.maneuvers.some(use => (use.role ?? 'estimation') === 'estimation')) return 'Choose a maneuver to be fitted (1).';
-  if (spec.model === '') return 'Choose a model (2).';
+  if (byId('json-fault').textContent !== '') return `The job's JSON cannot be read, and nothing was sent. ${byId('json-fault').textContent}`;
+  if (!spec.maneuvers.some(use => (use.role ?? 'estimation') === 'estimation')) return 'Choose a maneuver to be fitted, under 1. Maneuvers.';
+  if (spec.model === '') return 'Choose a model, under 2. Model.';
   return undefined;
 }
 
 async function send(address, done) {
   byId('faults').replaceChildren();
   const lack = missing();
-  byId('said').textContent = lack ?? 'Asking the service ...';
-  if (lack) return;
+  byId('said').textContent = lack ? '' : 'Asking the service ...';
+  if (lack) {
+    showProblem(new Error(lack));
+    return;
+  }
+  const buttons = [byId('check'), form.querySelector('button.main')];
+  for (const button of buttons) button.disabled = true;
   try {
     done(await post(address, spec));
   } catch (error) {
     showProblem(error);
   }
+  for (const button of buttons) button.disabled = false;
 }
 
 form.addEventListener('submit', event => {
@@ -299,9 +315,15 @@ form.addEventListener('submit', event => {
 
 byId('check').addEventListener('click', () => send('/v1/jobs?validate_only=true', prepared => {
   const { samples, parameters, outputs, findings } = prepared;
-  byId('said').textContent = `Good: ${samples} samples of ${outputs.length} outputs, ${parameters.length} free parameters`
-    + (findings.length > 0 ? `; ${findings.map(finding => finding.message).join('; ')}` : '');
+  byId('said').textContent = `It can run: ${samples} samples of ${outputs.length} outputs, ${parameters.length} free parameters.`;
+  if (findings.length > 0) {
+    byId('faults').replaceChildren(element('div', { class: 'note' }, 'But what is odd about the data:',
+      element('ul', {}, ...findings.map(finding => element('li', {}, `${finding.message}; ${finding.remedy}`)))));
+  }
 }));
+
+// who comes back to the page has nothing under way
+addEventListener('pageshow', () => { byId('said').textContent = ''; });
 
 // --- beginning ---------------------------------------------------------------------------------------------------------
 
@@ -330,6 +352,7 @@ async function begin() {
   } else {
     spec = { model: query.get('model') ?? '', maneuvers: [] };
     if (query.get('name')) spec.name = query.get('name');
+    if (query.get('kind')) spec.kind = query.get('kind');
     for (const [role] of ROLES.slice(1)) {
       for (const id of query.getAll(role)) {
         const maneuver = maneuvers.find(one => one.id === id);
