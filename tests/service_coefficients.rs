@@ -26,7 +26,7 @@ async fn a_finished_job_has_modes_and_its_derivatives_can_be_made_nondimensional
     );
     let page = server.get(&format!("/jobs/{id}")).await.text();
     assert!(
-        page.contains("<h2>Modes</h2>") && page.contains("rad/s"),
+        page.contains(r#"<h2 id="modes">Modes</h2>"#) && page.contains("rad/s"),
         "{page}"
     );
 
