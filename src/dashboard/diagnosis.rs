@@ -73,7 +73,8 @@ fn fit_row(fit: &FitChange) -> Markup {
     }
 }
 
-fn part(role: Role) -> &'static str {
+/// What part a flight takes, in a word.
+pub(super) fn part(role: Role) -> &'static str {
     match role {
         Role::Estimation => "fitted",
         Role::Validation => "checked on",

@@ -5,7 +5,29 @@ use maud::{Markup, html};
 use crate::estimate::{Estimate, FilterEstimate, Measure, Mode, OutputFit, five_digits as number};
 use crate::flight::{Shown, shown_in};
 
-pub(super) fn parameter_table(estimate: &Estimate) -> Markup {
+/// Parameters, process noise and the fit of each output, under headings. Below the first and the last
+/// heading stands where the numbers come from, if that is said.
+pub(super) fn tables(estimate: &Estimate, [of_parameters, of_fit]: [&Markup; 2]) -> Markup {
+    html! {
+        h2 id="parameters" { "Parameters" }
+        (of_parameters)
+        div.scroll tabindex="0" role="region" aria-labelledby="parameters" { (parameter_table(estimate)) }
+        @if let Some(filter) = &estimate.filter {
+            h2 id="process-noise" { "Process noise" }
+            div.scroll tabindex="0" role="region" aria-labelledby="process-noise" { (process_noise_table(filter)) }
+        }
+        h2 id="fit" { "Fit" }
+        (of_fit)
+        div.scroll tabindex="0" role="region" aria-labelledby="fit" { (output_table(&estimate.outputs)) }
+        @for prediction in &estimate.prediction {
+            h3 { "Prediction of " (prediction.segment) }
+            p { (prediction.reason) }
+            div.scroll tabindex="0" role="region" aria-label={ "prediction of " (prediction.segment) } { (output_table(&prediction.outputs)) }
+        }
+    }
+}
+
+fn parameter_table(estimate: &Estimate) -> Markup {
     html! {
         table {
             thead { tr {
@@ -30,7 +52,7 @@ pub(super) fn parameter_table(estimate: &Estimate) -> Markup {
     }
 }
 
-pub(super) fn process_noise_table(filter: &FilterEstimate) -> Markup {
+fn process_noise_table(filter: &FilterEstimate) -> Markup {
     html! {
         table {
             thead { tr {
@@ -52,7 +74,7 @@ pub(super) fn process_noise_table(filter: &FilterEstimate) -> Markup {
     }
 }
 
-pub(super) fn output_table(outputs: &[OutputFit]) -> Markup {
+fn output_table(outputs: &[OutputFit]) -> Markup {
     html! {
         table {
             thead { tr {

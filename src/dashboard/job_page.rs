@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::estimate_tables::{mode_table, output_table, parameter_table, process_noise_table};
+use super::estimate_tables::{mode_table, tables};
 use super::jobs_page::{badge, kind_text, moment};
 use super::layout::{Frame, page};
 use super::study::study_section;
@@ -101,11 +101,7 @@ pub(super) fn facts(view: &JobView) -> Markup {
                 @for (at, maneuver) in view.maneuvers.iter().enumerate() {
                     @if at > 0 { ", " }
                     a href={ "/maneuvers/" (maneuver.id) } { (maneuver.label) }
-                    @match maneuver.role {
-                        Role::Estimation => {}
-                        Role::Validation => { " (checked on)" }
-                        Role::Final => { " (kept for the end)" }
-                    }
+                    @if maneuver.role != Role::Estimation { " (" (diagnosis::part(maneuver.role)) ")" }
                 }
             }
             dt { "submitted" } dd {
@@ -192,19 +188,7 @@ fn result(estimate: &Estimate, has_course: bool) -> Markup {
         h2 id="histories" { "Measured and model" }
         p.soft { "Drag to look closer, double-click for the whole. All plots have one time." }
         div id="histories-plots" data-loading="true" {}
-        h2 id="parameters" { "Parameters" }
-        div.scroll tabindex="0" role="region" aria-labelledby="parameters" { (parameter_table(estimate)) }
-        @if let Some(filter) = &estimate.filter {
-            h2 id="process-noise" { "Process noise" }
-            div.scroll tabindex="0" role="region" aria-labelledby="process-noise" { (process_noise_table(filter)) }
-        }
-        h2 id="fit" { "Fit" }
-        div.scroll tabindex="0" role="region" aria-labelledby="fit" { (output_table(&estimate.outputs)) }
-        @for prediction in &estimate.prediction {
-            h3 { "Prediction of " (prediction.segment) }
-            p { (prediction.reason) }
-            div.scroll tabindex="0" role="region" aria-label={ "prediction of " (prediction.segment) } { (output_table(&prediction.outputs)) }
-        }
+        (tables(estimate, [&html! {}, &html! {}]))
         h2 { "Residuals" }
         p.soft { "White residuals leave nothing to explain: no bar beyond the band, and a flat spectrum." }
         div id="residuals" data-loading="true" {}

@@ -6,8 +6,7 @@ use super::jobs_page::moment;
 use super::layout::{Frame, page};
 use super::maneuvers_page::title;
 use crate::estimate::five_digits as number;
-use crate::flight::{Finding, Severity};
-use crate::flight::{Shown, shown_in};
+use crate::flight::{Finding, Severity, Shown, shown_in};
 use crate::ingest::{ChannelSummary, Summary};
 
 /// What the page shows.

@@ -3,7 +3,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::assets::STYLE;
-use super::estimate_tables::{mode_table, output_table, parameter_table, process_noise_table};
+use super::estimate_tables::{mode_table, tables};
 use super::figure::history_svg;
 use super::job_page::{JobView, facts, findings, state};
 use super::layout::head;
@@ -65,21 +65,7 @@ pub fn report(view: &ReportView) -> String {
 
 fn result(view: &ReportView, estimate: &Estimate) -> Markup {
     html! {
-        h2 id="parameters" { "Parameters" }
-        (source(view, "parameters"))
-        div.scroll tabindex="0" role="region" aria-labelledby="parameters" { (parameter_table(estimate)) }
-        @if let Some(filter) = &estimate.filter {
-            h2 id="process-noise" { "Process noise" }
-            div.scroll tabindex="0" role="region" aria-labelledby="process-noise" { (process_noise_table(filter)) }
-        }
-        h2 id="fit" { "Fit" }
-        (source(view, "estimate"))
-        div.scroll tabindex="0" role="region" aria-labelledby="fit" { (output_table(&estimate.outputs)) }
-        @for prediction in &estimate.prediction {
-            h3 { "Prediction of " (prediction.segment) }
-            p { (prediction.reason) }
-            div.scroll tabindex="0" role="region" aria-label={ "prediction of " (prediction.segment) } { (output_table(&prediction.outputs)) }
-        }
+        (tables(estimate, [&source(view, "parameters"), &source(view, "estimate")]))
         (tolerances(&view.histories))
         @for history in &view.histories {
             section.whole {

@@ -1,6 +1,6 @@
 //! How a model compares with what simulators are qualified by, where such a tolerance applies.
 //!
-//! Tolerances: 14 CFR Part 60, Appendix A, Table A2A (objective tests of dynamics), which ICAO 9625 shares.
+//! Tolerances: 14 CFR Part 60, Appendix A, Table A2A (objective tests of dynamics).
 
 use maud::{Markup, html};
 

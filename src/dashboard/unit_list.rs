@@ -2,8 +2,7 @@
 
 use maud::{Markup, html};
 
-use crate::flight::Unit;
-use crate::flight::shown_in;
+use crate::flight::{Unit, shown_in};
 
 /// Those that recordings have; a form takes others, too.
 const UNITS: [&str; 60] = [

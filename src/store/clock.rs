@@ -52,12 +52,13 @@ impl Clock {
 
     /// The time that has passed since a moment of the tables, s.
     pub fn seconds_since(&self, moment: &str) -> f64 {
-        seconds(moment, &self.now_text()).unwrap_or(0.0)
+        Self::seconds_between(moment, &self.now_text()).unwrap_or(0.0)
     }
 
     /// The time between two moments of the tables, s.
     pub fn seconds_between(from: &str, to: &str) -> Option<f64> {
-        seconds(from, to)
+        let [from, to] = [from, to].map(|text| text.parse::<Timestamp>().ok());
+        Some((to?.as_millisecond() - from?.as_millisecond()) as f64 / 1000.0)
     }
 
     /// A moment that a user wrote (RFC 3339), as it is written in the tables.
@@ -93,12 +94,6 @@ fn id_of(moment: Timestamp) -> Uuid {
     let seconds = u64::try_from(moment.as_second()).unwrap_or(0);
     let nanoseconds = u32::try_from(moment.subsec_nanosecond()).unwrap_or(0);
     Uuid::new_v7(uuid::Timestamp::from_unix(&CONTEXT, seconds, nanoseconds))
-}
-
-/// The time between two moments of the tables, s.
-pub(super) fn seconds(from: &str, to: &str) -> Option<f64> {
-    let [from, to] = [from, to].map(|text| text.parse::<Timestamp>().ok());
-    Some((to?.as_millisecond() - from?.as_millisecond()) as f64 / 1000.0)
 }
 
 /// RFC 3339 with exactly three decimals: of one length, so that text sorts as time.

@@ -12,7 +12,7 @@ use utoipa::ToSchema;
 use uuid::Uuid;
 
 use super::jobs::read_id;
-use super::{Store, StoreError};
+use super::{Clock, Store, StoreError};
 
 /// What every key begins with: tools that look for leaked secrets find it by that.
 const PREFIX: &str = "trimtab_";
@@ -125,17 +125,26 @@ fn read_key(row: &AnyRow) -> Result<KeyRecord, StoreError> {
     let id = read_id(row, "id")?;
     let scopes = serde_json::from_str(row.try_get("scopes")?)
         .map_err(|error| StoreError::corrupt(format!("key {id}"), error))?;
+    let created: String = row.try_get("created")?;
+    let expires: Option<String> = row.try_get("expires")?;
+    let lifetime = match row.try_get::<Option<i64>, _>("lifetime")? {
+        Some(0) => None,
+        Some(seconds) => Some(Duration::from_secs(seconds.unsigned_abs())),
+        // of a key from before it was kept: what it had, so that none outlives what was meant
+        None => expires
+            .as_deref()
+            .and_then(|expires| Clock::seconds_between(&created, expires))
+            .map(|seconds| Duration::from_secs_f64(seconds.max(1.0))),
+    };
     Ok(KeyRecord {
         id,
         project: row.try_get("project")?,
         name: row.try_get("name")?,
         scopes,
         max_priority: i32::try_from(row.try_get::<i64, _>("max_priority")?).unwrap_or(0),
-        created: row.try_get("created")?,
-        lifetime: row
-            .try_get::<Option<i64>, _>("lifetime")?
-            .map(|seconds| Duration::from_secs(u64::try_from(seconds).unwrap_or(0))),
-        expires: row.try_get("expires")?,
+        created,
+        lifetime,
+        expires,
         revoked: row.try_get("revoked")?,
         used: row.try_get("used")?,
     })
@@ -183,7 +192,7 @@ impl Store {
         .bind(serde_json::Value::from(names).to_string())
         .bind(i64::from(record.max_priority))
         .bind(&record.created)
-        .bind(new.lifetime.map(|time| i64::try_from(time.as_secs()).unwrap_or(i64::MAX)))
+        .bind(new.lifetime.map_or(0, |time| i64::try_from(time.as_secs().max(1)).unwrap_or(i64::MAX)))
         .bind(&record.expires)
         .execute(&self.writer)
         .await?;

@@ -4,7 +4,7 @@ use sqlx::{AnyConnection, Row};
 use uuid::Uuid;
 
 use super::page::one_more;
-use super::{Page, Project, StoreError, clock, tallies, webhooks};
+use super::{Clock, Page, Project, StoreError, tallies, webhooks};
 use crate::job::{EventBody, Status};
 
 /// An event as it is kept. The body stays JSON: most readers hand it on as it is.
@@ -108,7 +108,7 @@ async fn note(
         .bind(job)
         .fetch_one(&mut *connection)
         .await?;
-    let since = |moment: &str| clock::seconds(moment, now).unwrap_or(0.0).max(0.0);
+    let since = |moment: &str| Clock::seconds_between(moment, now).unwrap_or(0.0).max(0.0);
     match how {
         None => tallies::count_wait(connection, since(row.try_get("created")?)).await,
         Some(how) => {

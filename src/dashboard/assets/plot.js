@@ -99,7 +99,8 @@ export async function timePlot(element, load) {
       for (const series of row.series) {
         traces.push({
           x: time, y: series.values, name: series.name, yaxis: `y${number}`, xaxis: 'x', legendgroup: series.name,
-          showlegend: !traces.some(trace => trace.legendgroup === series.name), ...series.style(),
+          showlegend: !traces.some(trace => trace.legendgroup === series.name),
+          hovertemplate: `${row.title}: %{y:.5g}${row.series.length > 1 ? ` (${series.name})` : ''}<extra></extra>`, ...series.style(),
         });
       }
     });

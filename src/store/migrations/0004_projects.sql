@@ -8,7 +8,6 @@ CREATE TABLE keys (
     scopes       TEXT NOT NULL,             -- JSON
     max_priority BIGINT NOT NULL,
     created      TEXT NOT NULL,
-    lifetime     BIGINT,                    -- s, as it was asked for; a key that replaces it has the same
     expires      TEXT,
     revoked      TEXT,
     used         TEXT                       -- about when it was last used
