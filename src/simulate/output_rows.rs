@@ -19,7 +19,7 @@ struct OutputRow {
     by_state: Vec<(usize, usize)>,
     /// Entries of ∂g/∂θ: result of the program, and column.
     by_parameter: Vec<(usize, usize)>,
-    /// By sample of the block: ∂g/∂θ as packs. Empty where it is zero.
+    /// ∂g/∂θ as packs: by sample of the block; one row for all where only θ changes it; empty where it is zero.
     direct: Vec<Pack>,
     /// By sample of the block.
     rows: Vec<Pack>,
@@ -41,17 +41,18 @@ impl OutputRows {
                     Some((jacobian.by_state.len() + i, column))
                 })
                 .collect();
-            let over_block = vec![Pack::default(); BLOCK * width];
+            let varies = |&(entry, _): &(usize, usize)| jacobian.program.varies(entry);
+            let direct_rows = match by_parameter.as_slice() {
+                [] => 0,
+                entries if entries.iter().any(varies) => BLOCK,
+                _ => 1,
+            };
             OutputRow {
                 width,
                 by_state: by_state.map(|(i, &(_, state))| (i, state)).collect(),
-                direct: if by_parameter.is_empty() {
-                    Vec::new()
-                } else {
-                    over_block.clone()
-                },
                 by_parameter,
-                rows: over_block,
+                direct: vec![Pack::default(); direct_rows * width],
+                rows: vec![Pack::default(); BLOCK * width],
             }
         };
         Self {
@@ -102,13 +103,68 @@ fn form(
     sensitivities: &[Pack],
     (states, width): (usize, usize),
 ) {
+    let sensitivities = (sensitivities, states);
+    match (output.width, width) {
+        (1, 1) => form_packs::<1, 1>(output, len, observation, sensitivities),
+        (2, 1) => form_packs::<2, 1>(output, len, observation, sensitivities),
+        (2, 2) => form_packs::<2, 2>(output, len, observation, sensitivities),
+        (3, 2) => form_packs::<3, 2>(output, len, observation, sensitivities),
+        (3, 3) => form_packs::<3, 3>(output, len, observation, sensitivities),
+        (4, 3) => form_packs::<4, 3>(output, len, observation, sensitivities),
+        (4, 4) => form_packs::<4, 4>(output, len, observation, sensitivities),
+        (5, 4) => form_packs::<5, 4>(output, len, observation, sensitivities),
+        _ => form_any(output, len, observation, sensitivities, width),
+    }
+}
+
+/// For a number of packs that is known beforehand, so that a row stays in registers: `ROW` of this output, `STATE` of
+/// each state.
+#[inline(always)]
+fn form_packs<const ROW: usize, const STATE: usize>(
+    output: &mut OutputRow,
+    len: usize,
+    observation: &Linearised<'_>,
+    (sensitivities, states): (&[Pack], usize),
+) {
+    let (rows, _) = output.rows.as_chunks_mut::<ROW>();
+    let (direct, _) = output.direct.as_chunks::<ROW>();
+    let zero = [Pack::default(); ROW];
+    let (own, same) = match direct {
+        [] => (direct, &zero),
+        [same] => (&[][..], same),
+        _ => (direct, &zero),
+    };
+    let (sensitivities, _) = sensitivities.as_chunks::<STATE>();
+    let samples = sensitivities.chunks_exact(states.max(1));
+    for (k, (row, by_state)) in rows[..len].iter_mut().zip(samples).enumerate() {
+        let mut sum = *own.get(k).unwrap_or(same);
+        for &(entry, state) in &output.by_state {
+            let value = observation.value(0, entry, k);
+            let from = &by_state[state];
+            for pack in 0..STATE {
+                sum[pack] = multiply_add(value, from[pack], sum[pack]);
+            }
+        }
+        *row = sum;
+    }
+}
+
+/// For any number of packs.
+#[inline(always)]
+fn form_any(
+    output: &mut OutputRow,
+    len: usize,
+    observation: &Linearised<'_>,
+    (sensitivities, states): (&[Pack], usize),
+    width: usize,
+) {
     let rows = output.rows[..len * output.width].chunks_exact_mut(output.width.max(1));
-    let is_direct = !output.direct.is_empty();
+    let same = output.direct.len() == output.width;
     for (k, row) in rows.enumerate() {
-        if is_direct {
-            row.copy_from_slice(&output.direct[k * output.width..(k + 1) * output.width]);
-        } else {
-            row.fill(Pack::default());
+        let at = if same { 0 } else { k * output.width };
+        match output.direct.get(at..at + output.width) {
+            Some(direct) => row.copy_from_slice(direct),
+            None => row.fill(Pack::default()),
         }
         for &(entry, state) in &output.by_state {
             let value = observation.value(0, entry, k);

@@ -13,8 +13,8 @@ use super::method::Stage;
 use super::pack::{PACK, Pack};
 use crate::model::Model;
 
-/// Samples taken at a time, in vectors: enough sums at once to hide how long a multiply-add takes.
-const VECTORS: usize = 4;
+/// Samples taken at a time, in vectors: so few that all slots of them stay in the nearest memory.
+const VECTORS: usize = 2;
 const GROUP: usize = VECTORS * PACK;
 type Group = [Pack; VECTORS];
 
@@ -26,10 +26,21 @@ struct Product {
 }
 
 /// How one entry of [P_s | Q_s] comes about.
+#[derive(Clone, Copy)]
 struct Entry {
     slot: usize,
+    /// No stage before had it.
+    is_new: bool,
     /// The entry of J or G that stands there itself.
     own: Option<usize>,
+    /// How many products.
+    products: usize,
+}
+
+/// One stage: its entries, and their products one after the other.
+#[derive(Default)]
+struct StagePlan {
+    entries: Vec<Entry>,
     products: Vec<Product>,
 }
 
@@ -37,12 +48,17 @@ struct Entry {
 pub(super) struct Transition {
     /// Row and column of each slot; columns are states, then dynamic parameters.
     places: Vec<(usize, usize)>,
-    /// By stage.
-    plan: Vec<Vec<Entry>>,
-    /// By slot: a_s [P_(s-1) | Q_(s-1)], that of the stage to come, and [P | Q].
-    before: Vec<[f64; BLOCK]>,
-    after: Vec<[f64; BLOCK]>,
-    sum: Vec<[f64; BLOCK]>,
+    plan: Vec<StagePlan>,
+    /// By slot: [P | Q].
+    maps: Vec<[f64; BLOCK]>,
+    scratch: Scratch,
+}
+
+/// Of one group of samples, by slot: h a_s [P_(s-1) | Q_(s-1)], that of the stage to come, and the sum of stages.
+struct Scratch {
+    before: Vec<Group>,
+    after: Vec<Group>,
+    sum: Vec<Group>,
 }
 
 impl Transition {
@@ -67,7 +83,7 @@ impl Transition {
         let mut plan = Vec::new();
         for _ in 0..stages {
             let before = slots.clone();
-            let mut entries = Vec::new();
+            let mut stage = StagePlan::default();
             for (at, &own) in own.iter().enumerate() {
                 let (row, column) = (at / width, at % width);
                 let factors = (0..states).filter_map(|state| {
@@ -75,29 +91,35 @@ impl Transition {
                     let slot = before[state * width + column]?;
                     Some(Product { entry, slot })
                 });
-                let products: Vec<Product> = factors.collect();
-                if own.is_none() && products.is_empty() {
+                let so_far = stage.products.len();
+                stage.products.extend(factors);
+                let products = stage.products.len() - so_far;
+                if own.is_none() && products == 0 {
                     continue;
                 }
                 let slot = *slots[at].get_or_insert_with(|| {
                     places.push((row, column));
                     places.len() - 1
                 });
-                entries.push(Entry {
+                stage.entries.push(Entry {
                     slot,
+                    is_new: before[at].is_none(),
                     own,
                     products,
                 });
             }
-            plan.push(entries);
+            plan.push(stage);
         }
-        let zeros = vec![[0.0; BLOCK]; places.len()];
+        let zeros = || vec![Group::default(); places.len()];
         Self {
-            places,
+            maps: vec![[0.0; BLOCK]; places.len()],
+            scratch: Scratch {
+                before: zeros(),
+                after: zeros(),
+                sum: zeros(),
+            },
             plan,
-            before: zeros.clone(),
-            after: zeros.clone(),
-            sum: zeros,
+            places,
         }
     }
 
@@ -108,8 +130,7 @@ impl Transition {
 
     /// Products of a sample.
     pub fn products(&self) -> usize {
-        let entries = self.plan.iter().flatten();
-        entries.map(|entry| entry.products.len()).sum()
+        self.plan.iter().map(|stage| stage.products.len()).sum()
     }
 
     /// Works out the maps of the first `steps` samples. `lengths` are those of the steps, s.
@@ -120,77 +141,86 @@ impl Transition {
         steps: usize,
         dynamics: &Linearised<'_>,
     ) {
-        self.sum.as_flattened_mut().fill(0.0);
-        for s in 0..stages.len() {
-            let advance = stages.get(s + 1).map_or(0.0, |next| next.advance);
-            let factors = (stages[s].weight, advance);
-            let entries = dynamics.all_over_block(s);
-            compose(self, s, factors, lengths, steps, entries);
-            std::mem::swap(&mut self.before, &mut self.after);
+        for group in 0..steps.div_ceil(GROUP) {
+            let lengths = of(lengths, group);
+            for s in 0..stages.len() {
+                let advance = stages.get(s + 1).map(|next| next.advance);
+                let factors = (stages[s].weight, advance);
+                let entries = dynamics.all_over_block(s);
+                compose(
+                    &self.plan[s],
+                    &mut self.scratch,
+                    factors,
+                    lengths,
+                    (group, entries),
+                );
+                std::mem::swap(&mut self.scratch.before, &mut self.scratch.after);
+            }
+            for (map, sum) in self.maps.iter_mut().zip(&self.scratch.sum) {
+                *of_mut(map, group) = *sum;
+            }
         }
     }
 
     /// An entry of [P | Q] over the block.
     #[inline(always)]
     pub fn over_block(&self, slot: usize) -> &[f64; BLOCK] {
-        &self.sum[slot]
+        &self.maps[slot]
     }
 }
 
+/// One stage of one group of samples.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
 fn compose(
-    transition: &mut Transition,
-    stage: usize,
-    (weight, advance): (f64, f64),
-    lengths: &[f64; BLOCK],
-    steps: usize,
-    entries: &[[f64; BLOCK]],
+    plan: &StagePlan,
+    scratch: &mut Scratch,
+    (weight, advance): (f64, Option<f64>),
+    lengths: &Group,
+    (group, entries): (usize, &[[f64; BLOCK]]),
 ) {
-    let Transition {
-        plan,
-        before,
-        after,
-        sum,
-        ..
-    } = transition;
-    for group in 0..steps.div_ceil(GROUP) {
-        let lengths = of(lengths, group);
-        for entry in &plan[stage] {
-            let mut value = match entry.own {
-                Some(own) => *of(&entries[own], group),
-                None => Group::default(),
-            };
-            for product in &entry.products {
-                let factor = of(&entries[product.entry], group);
-                let other = of(&before[product.slot], group);
-                for v in 0..VECTORS {
-                    for i in 0..PACK {
-                        value[v][i] = factor[v][i].mul_add(other[v][i], value[v][i]);
-                    }
-                }
-            }
-            // by value, one after the other: two places written in one loop might be one and the same
-            for v in 0..VECTORS {
-                for i in 0..PACK {
-                    value[v][i] *= lengths[v][i];
-                }
-            }
-            let sum = of_mut(&mut sum[entry.slot], group);
-            let mut total = *sum;
-            for v in 0..VECTORS {
-                for i in 0..PACK {
-                    total[v][i] = weight.mul_add(value[v][i], total[v][i]);
-                }
-            }
-            *sum = total;
-            for vector in &mut value {
-                for slope in vector {
-                    *slope *= advance;
-                }
-            }
-            *of_mut(&mut after[entry.slot], group) = value;
+    let (weight, onwards) = (
+        times(weight, lengths),
+        times(advance.unwrap_or(0.0), lengths),
+    );
+    let mut products = plan.products.as_slice();
+    for entry in &plan.entries {
+        let mut value = match entry.own {
+            Some(own) => *of(&entries[own], group),
+            None => Group::default(),
+        };
+        let (own, rest) = products.split_at(entry.products);
+        products = rest;
+        for product in own {
+            let factor = of(&entries[product.entry], group);
+            value = add_product(factor, &scratch.before[product.slot], value);
+        }
+        let sum = &mut scratch.sum[entry.slot];
+        let so_far = if entry.is_new { Group::default() } else { *sum };
+        *sum = add_product(&weight, &value, so_far);
+        if advance.is_some() {
+            scratch.after[entry.slot] = add_product(&onwards, &value, Group::default());
         }
     }
+}
+
+/// a * b + addend, number by number. The addend by value, so that nothing can alias.
+#[inline(always)]
+fn add_product(a: &Group, b: &Group, mut addend: Group) -> Group {
+    for v in 0..VECTORS {
+        for i in 0..PACK {
+            addend[v][i] = a[v][i].mul_add(b[v][i], addend[v][i]);
+        }
+    }
+    addend
+}
+
+#[inline(always)]
+fn times(factor: f64, lengths: &Group) -> Group {
+    let mut product = *lengths;
+    for length in product.as_flattened_mut() {
+        *length *= factor;
+    }
+    product
 }
 
 /// The samples of one group.
