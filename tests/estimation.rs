@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use indexmap::IndexMap;
 use serde_json::{Value, json};
-use trimtab::estimate::{Bound, Outcome, Progress};
+use trimtab::estimate::{Bound, Evaluator, NormalEquations, Outcome, Progress};
 use trimtab::flight::{Channel, Maneuver, Unit};
 use trimtab::job::{self, Fault, JobResult, JobSpec, ModelSource};
 
@@ -405,4 +405,33 @@ fn sizes_are_bounded_before_anything_is_made() {
         (&*tolerance.code, tolerance.pointer.as_str()),
         ("bad_option", "/options/tolerance")
     );
+}
+
+#[test]
+fn several_threads_give_the_numbers_of_one() {
+    let maneuvers: Vec<Arc<Maneuver>> = (0..9).map(|i| maneuver(0.01 * f64::from(i))).collect();
+    let model = json!({
+        "name": "first-order",
+        "inputs": {"u": {}},
+        "parameters": {
+            "a": {"unit": "1/s", "start": -1.0}, "b": {"unit": "1/s", "start": 1.0},
+            "c": {"start": 0.1, "per": "maneuver"},
+        },
+        "states": {"x": {"initial": "0", "derivative": "a*x + b*u"}},
+        "outputs": {"y": {"equation": "x + c"}},
+    });
+    let plan = common::plans::plan(model, json!({}), &maneuvers);
+    let problem = &plan.problem;
+    let theta = problem.unknowns.start();
+    let equations = |mut evaluator: Evaluator<'_>| {
+        let found = NormalEquations::at(&mut evaluator, &theta).expect("a cost");
+        (found.information, found.descent)
+    };
+    let one = equations(Evaluator::new(problem));
+    for threads in [1, 2, 3, 4, 16] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.expect("threads");
+        let several = pool.install(|| equations(Evaluator::on_all_cores(problem)));
+        assert_eq!(several, one, "{threads} threads");
+    }
 }

@@ -6,6 +6,7 @@ use utoipa::ToSchema;
 
 use super::absorbed::absorbed;
 use super::coloured_residuals::{Colour, gradient_covariance};
+use super::definite::Definite;
 use super::evaluation::{Evaluator, Unusable};
 use super::information::Spectrum;
 use super::iterate::Iterate;
@@ -42,7 +43,7 @@ pub(super) struct ErrorBounds {
     /// Empty when some unknowns cannot be told apart, or errors are out of the range of numbers.
     pub correlation: Vec<Vec<f64>>,
     /// Sets of places of which the data see only some combinations, with a direction in which nothing changes.
-    collinear: Vec<Vec<(usize, f64)>>,
+    collinear: Vec<Collinear>,
 }
 
 impl ErrorBounds {
@@ -80,14 +81,13 @@ impl ErrorBounds {
             correlation: Vec::new(),
             collinear: Vec::new(),
         };
-        if let Some(spectrum) = Spectrum::of(&own, &own.diagonal()) {
-            let in_places = |set: Vec<(usize, f64)>| {
+        if let Some((inverse, collinear)) = inverse(&own) {
+            let in_places = |set: Collinear| {
                 set.into_iter()
                     .map(|(i, component)| (moving[i], component))
                     .collect()
             };
-            bounds.collinear = spectrum.collinear().into_iter().map(in_places).collect();
-            let inverse = spectrum.inverse();
+            bounds.collinear = collinear.into_iter().map(in_places).collect();
             for (a, &i) in moving.iter().enumerate() {
                 for (b, &j) in moving.iter().enumerate() {
                     bounds.covariance[(i, j)] = inverse[(a, b)];
@@ -207,6 +207,19 @@ impl CollinearSet {
             direction,
         }
     }
+}
+
+/// Members of a set of unknowns that cannot be told apart, by their places.
+type Collinear = Vec<(usize, f64)>;
+
+/// F⁻¹ over the directions that the data see, and the sets of unknowns of which they see only some combinations.
+fn inverse(information: &DMatrix<f64>) -> Option<(DMatrix<f64>, Vec<Collinear>)> {
+    let diagonal = information.diagonal();
+    if let Some(definite) = Definite::of(information, &diagonal) {
+        return Some((definite.inverse(), Vec::new()));
+    }
+    let spectrum = Spectrum::of(information, &diagonal)?;
+    Some((spectrum.inverse(), spectrum.collinear()))
 }
 
 /// Whether the model reproduces an output that tells of parameters to rounding, as simulated data without noise

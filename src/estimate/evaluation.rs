@@ -3,12 +3,12 @@
 use nalgebra::DMatrix;
 
 use super::derivatives::{self, CentralDifference, ComplexStep, Derivatives, ForwardDifference};
-use super::local_sums::LocalSums;
 use super::options::{Noise, NoiseStructure};
 use super::problem::Problem;
 use super::products::dot;
+use super::strand::{self, Strand};
 use super::sums::{ResidualSums, Sums, mirror};
-use crate::simulate::{Block, Diverged, Outputs, Sensitivities, delay_out_of_bounds};
+use crate::simulate::{Block, Diverged, Outputs, delay_out_of_bounds};
 
 /// Why a θ gives no cost.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -31,7 +31,8 @@ pub enum Unusable {
 /// Evaluates a problem at any θ; buffers are kept.
 pub struct Evaluator<'p> {
     problem: &'p Problem,
-    machinery: Sensitivities<'p>,
+    /// One for each thread; the first does what is done in turn.
+    strands: Vec<Strand<'p>>,
     outputs: Outputs<'p>,
     parameters: Vec<f64>,
     full: bool,
@@ -41,14 +42,18 @@ pub struct Evaluator<'p> {
 }
 
 impl<'p> Evaluator<'p> {
+    /// By one thread.
     pub fn new(problem: &'p Problem) -> Self {
+        Self::with(problem, vec![Strand::new(problem)])
+    }
+
+    /// By several threads where there are several long segments; the numbers are the same.
+    pub fn on_all_cores(problem: &'p Problem) -> Self {
+        Self::with(problem, Strand::several(problem))
+    }
+
+    fn with(problem: &'p Problem, strands: Vec<Strand<'p>>) -> Self {
         let options = &problem.options;
-        let machinery = Sensitivities::new(
-            &problem.model,
-            &problem.columns,
-            options.integrator,
-            options.input_interpolation,
-        );
         let full = matches!(
             options.noise,
             Noise::Estimated {
@@ -57,7 +62,7 @@ impl<'p> Evaluator<'p> {
         );
         Self {
             problem,
-            machinery,
+            strands,
             outputs: Outputs::new(
                 &problem.model,
                 options.integrator,
@@ -74,18 +79,6 @@ impl<'p> Evaluator<'p> {
         self.problem
     }
 
-    /// Sets the parameters for a segment.
-    fn set(&mut self, segment: usize, theta: &[f64]) -> Result<(), Unusable> {
-        let problem = self.problem;
-        (problem.unknowns).parameters(segment, theta, &mut self.parameters);
-        let beyond =
-            delay_out_of_bounds(&problem.model, &problem.segments[segment], &self.parameters);
-        match beyond {
-            Some(delay) => Err(Unusable::Delayed { segment, delay }),
-            None => Ok(()),
-        }
-    }
-
     /// Residuals alone.
     pub(super) fn residuals(&mut self, theta: &[f64]) -> Result<ResidualSums, Unusable> {
         self.simulations += 1;
@@ -94,7 +87,7 @@ impl<'p> Evaluator<'p> {
         let mut sums = DMatrix::zeros(outputs, outputs);
         let mut residuals = vec![Vec::new(); outputs];
         for (index, segment) in problem.segments.iter().enumerate() {
-            self.set(index, theta)?;
+            set_parameters(problem, index, theta, &mut self.parameters)?;
             let run = self.outputs.run(segment, &self.parameters, |first, y| {
                 for ((residuals, y), z) in residuals.iter_mut().zip(y).zip(&segment.measured) {
                     residuals.clear();
@@ -125,14 +118,7 @@ impl<'p> Evaluator<'p> {
         segment: usize,
         sink: impl FnMut(&Block<'_>),
     ) -> Result<(), Unusable> {
-        let problem = self.problem;
-        (problem.unknowns).parameters(segment, theta, &mut self.parameters);
-        self.machinery
-            .run(&problem.segments[segment], &self.parameters, sink)
-            .map_err(|diverged| Unusable::LeftRange {
-                segment,
-                sample: diverged.sample,
-            })
+        self.strands[0].run(self.problem, segment, theta, sink)
     }
 
     /// Residuals and the sums of their sensitivities.
@@ -156,20 +142,33 @@ impl<'p> Evaluator<'p> {
             Derivatives::ForwardSensitivities {} | Derivatives::Adjoint { .. } => {}
         }
         let mut total = Sums::zeros(outputs, unknowns, full);
-        for (index, segment) in problem.segments.iter().enumerate() {
-            self.set(index, theta)?;
-            let mut local = LocalSums::new(problem, self.full);
-            self.machinery
-                .run(segment, &self.parameters, |block| local.add(block, segment))
-                .map_err(|diverged| left_range(index, &diverged))?;
-            local.scatter(problem, index, &mut total);
+        let locals = strand::sums(&mut self.strands, problem, theta, full)?;
+        for (segment, local) in locals.iter().enumerate() {
+            local.scatter(problem, segment, &mut total);
         }
         mirror(&mut total.residuals);
         total.finite()
     }
 }
 
-fn left_range(segment: usize, diverged: &Diverged) -> Unusable {
+/// All parameters of the model for a segment, SI.
+///
+/// # Errors
+/// A delay is longer than any may be.
+pub(super) fn set_parameters(
+    problem: &Problem,
+    segment: usize,
+    theta: &[f64],
+    parameters: &mut Vec<f64>,
+) -> Result<(), Unusable> {
+    (problem.unknowns).parameters(segment, theta, parameters);
+    match delay_out_of_bounds(&problem.model, &problem.segments[segment], parameters) {
+        Some(delay) => Err(Unusable::Delayed { segment, delay }),
+        None => Ok(()),
+    }
+}
+
+pub(super) fn left_range(segment: usize, diverged: &Diverged) -> Unusable {
     Unusable::LeftRange {
         segment,
         sample: diverged.sample,

@@ -161,7 +161,10 @@ impl Weighting {
                 let product = &sums.products[pair(i, j, full)];
                 information += (product + product.transpose()) * self.inverse[(i, j)];
             }
-            information += &sums.products[pair(i, i, full)] * self.inverse[(i, i)];
+            // in place: with many unknowns these matrices are large
+            let weight = self.inverse[(i, i)];
+            let own = &sums.products[pair(i, i, full)];
+            information.zip_apply(own, |sum, product| *sum += product * weight);
         }
         information
     }
@@ -191,7 +194,7 @@ impl Weighting {
         if sums.gradients[0].len() == 1 {
             for (i, gradients) in sums.gradients.iter().enumerate() {
                 let scaled = &gradients[0] * self.inverse[(i, i)];
-                term += &scaled * scaled.transpose() * (2.0 / counts[i] as f64);
+                term.ger(2.0 / counts[i] as f64, &scaled, &scaled, 1.0);
             }
             return term;
         }

@@ -11,10 +11,12 @@
 //! and [`Estimate`] is the answer, with the reason why the solver stopped.
 
 mod absorbed;
+mod acceleration;
 mod answer;
 mod autoregression;
 mod coefficients;
 mod coloured_residuals;
+mod definite;
 pub mod derivatives;
 mod equation_error;
 mod error_bounds;
@@ -39,12 +41,14 @@ mod products;
 pub mod quasi_newton;
 mod report;
 mod role;
+mod search;
 mod second_try;
 mod shooting;
 mod start;
 mod state_matrix;
 mod step;
 mod stopped;
+mod strand;
 pub mod study;
 mod sums;
 mod unknowns;

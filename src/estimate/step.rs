@@ -2,14 +2,15 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::definite::Definite;
 use super::information::Spectrum;
 use super::report::Bound;
 use super::unknowns::Unknowns;
 
 /// Gradient and Hessian at an iterate, and what bounds leave of them.
 pub(super) struct Newton {
-    spectrum: Spectrum,
-    /// Places of θ that are not held at a bound; the spectrum is over these.
+    hessian: Hessian,
+    /// Places of θ that are not held at a bound; the Hessian is over these.
     moving: Vec<usize>,
     descent: DVector<f64>,
     unknowns: usize,
@@ -27,24 +28,18 @@ impl Newton {
         let moving: Vec<usize> = (0..held.len()).filter(|&i| held[i].is_none()).collect();
         let part = |m: &DMatrix<f64>| m.select_rows(&moving).select_columns(&moving);
         let own = part(information);
-        let diagonal = own.diagonal();
-        let spectrum = Spectrum::of(&own, &diagonal)?;
-        let seen = |spectrum: &Spectrum| (0..moving.len()).filter(|&i| spectrum.is_seen(i)).count();
-        let sharper = relaxation
-            .and_then(|relaxation| Spectrum::of(&(&own - part(relaxation)), &diagonal))
-            .filter(|sharper| seen(sharper) == seen(&spectrum));
-        let descent = descent.select_rows(&moving);
+        let relaxed = relaxation.map(|relaxation| &own - part(relaxation));
         Some(Self {
-            spectrum: sharper.unwrap_or(spectrum),
+            hessian: Hessian::of(&own, relaxed.as_ref())?,
+            descent: descent.select_rows(&moving),
             moving,
-            descent,
             unknowns: held.len(),
         })
     }
 
     /// The change of θ for a damping λ.
     pub fn step(&self, damping: f64) -> DVector<f64> {
-        let step = self.spectrum.solve(&self.descent, damping);
+        let step = self.hessian.solve(&self.descent, damping);
         let mut whole = DVector::zeros(self.unknowns);
         self.moving
             .iter()
@@ -55,7 +50,7 @@ impl Newton {
 
     /// Length of the undamped step in standard errors: √(gᵀ H⁻¹ g).
     pub fn distance(&self) -> f64 {
-        self.spectrum
+        self.hessian
             .solve(&self.descent, 0.0)
             .dot(&self.descent)
             .max(0.0)
@@ -64,7 +59,54 @@ impl Newton {
 
     /// Length of the gradient, each component times the standard error that its unknown alone would have.
     pub fn gradient_norm(&self) -> f64 {
-        self.descent.component_mul(&self.spectrum.scale).norm()
+        self.descent.component_mul(self.hessian.scale()).norm()
+    }
+}
+
+/// What a step is solved with.
+enum Hessian {
+    /// All directions are seen.
+    Definite(Definite),
+    /// Some may not be, and are then left out.
+    Split(Spectrum),
+}
+
+impl Hessian {
+    /// `relaxed` is what the change of R leaves of the information matrix.
+    fn of(information: &DMatrix<f64>, relaxed: Option<&DMatrix<f64>>) -> Option<Self> {
+        let diagonal = information.diagonal();
+        // what is taken off is positive: where the rest sees a direction, the whole does
+        let definite = relaxed
+            .and_then(|relaxed| Definite::of(relaxed, &diagonal))
+            .or_else(|| Definite::of(information, &diagonal));
+        if let Some(definite) = definite {
+            return Some(Self::Definite(definite));
+        }
+        let spectrum = Spectrum::of(information, &diagonal)?;
+        let seen = |spectrum: &Spectrum| {
+            let all = 0..spectrum.values.len();
+            all.filter(|&i| spectrum.is_seen(i)).count()
+        };
+        let sharper = relaxed
+            .and_then(|relaxed| Spectrum::of(relaxed, &diagonal))
+            .filter(|sharper| seen(sharper) == seen(&spectrum));
+        Some(Self::Split(sharper.unwrap_or(spectrum)))
+    }
+
+    /// (H + λ diag)⁻¹ v over the directions that are seen.
+    fn solve(&self, v: &DVector<f64>, damping: f64) -> DVector<f64> {
+        match self {
+            Self::Definite(definite) => definite.solve(v, damping),
+            Self::Split(spectrum) => spectrum.solve(v, damping),
+        }
+    }
+
+    /// 1/√diagonal of the information matrix.
+    fn scale(&self) -> &DVector<f64> {
+        match self {
+            Self::Definite(definite) => definite.scale(),
+            Self::Split(spectrum) => &spectrum.scale,
+        }
     }
 }
 

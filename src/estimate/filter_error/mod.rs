@@ -31,10 +31,11 @@ use super::evaluation::Unusable;
 use super::iterate::Taken;
 use super::likelihood::Weighting;
 use super::options::Method;
-use super::output_error::{
-    DAMPING_EASED, DAMPING_NONE, DAMPING_RAISED, DAMPING_START, MOST_TRIALS, Observer, ROUNDING,
-};
+use super::output_error::Observer;
 use super::problem::Problem;
+use super::search::{
+    DAMPING_EASED, DAMPING_NONE, DAMPING_RAISED, DAMPING_START, MOST_TRIALS, ROUNDING,
+};
 use super::stopped::Stopped;
 use iterate::{GainNoise, Iterate};
 use limit::restore;
