@@ -28,7 +28,7 @@ type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64
 pub fn error_figure(curves: &[ErrorCurve]) -> Result<String, String> {
     draw(|area| {
         let x = (LEAST_STEP, 0.0);
-        let mut chart = axes(area, x, (LEAST_ERROR, MOST_ERROR))?;
+        let mut chart = axes(area, x, (LEAST_ERROR, with_legend(LEAST_ERROR, MOST_ERROR)))?;
         mesh(
             &mut chart,
             "relative step",
@@ -99,8 +99,9 @@ pub fn cost_figure(costs: &[CostPoint]) -> Result<String, String> {
             let all: Vec<Vec<(f64, f64)>> = picks.map(points).into();
             let y = range(all.iter().flatten().map(|point| point.1));
             let x = range(all.iter().flatten().map(|point| point.0));
-            let mut chart = axes(panel, (0.0, x.1.max(0.1)), (y.0.floor(), y.1.ceil()))?;
-            let decades = 2 * (y.1.ceil() - y.0.floor()) as usize + 1;
+            let (bottom, top) = (y.0.floor(), with_legend(y.0.floor(), y.1));
+            let mut chart = axes(panel, (0.0, x.1.max(0.1)), (bottom, top))?;
+            let decades = 2 * (top - bottom) as usize + 1;
             mesh(&mut chart, "free parameters", what, (4, decades))?;
             for (number, name) in ["direct (forward sensitivities)", "adjoint"]
                 .iter()
@@ -112,6 +113,12 @@ pub fn cost_figure(costs: &[CostPoint]) -> Result<String, String> {
         }
         Ok(())
     })
+}
+
+/// The end of an axis that has room for the legend above all curves.
+fn with_legend(bottom: f64, top: f64) -> f64 {
+    const LEGEND: f64 = 0.2;
+    (bottom + (top - bottom) / (1.0 - LEGEND)).ceil()
 }
 
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
