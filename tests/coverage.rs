@@ -22,7 +22,7 @@ use coverage::{fit, over_seeds};
 /// √(0.95·0.05/200) = 1.5 %; three of those below it are 90 %.
 #[test]
 fn intervals_hold_for_white_and_coloured_noise() {
-    let white = coloured::short_period(NoiseColour::White, 60);
+    let white = coloured::short_period(NoiseColour::White, 1..61);
     white.print("white");
     let (corrected, conventional) = (
         white.pooled(|row| &row.corrected),
@@ -39,7 +39,7 @@ fn intervals_hold_for_white_and_coloured_noise() {
         },
         NoiseColour::BandLimited { bandwidth: 2.0 },
     ] {
-        let coloured = coloured::short_period(colour, 60);
+        let coloured = coloured::short_period(colour, 1..61);
         coloured.print(&format!("{colour:?}"));
         let (corrected, conventional) = (
             coloured.pooled(|row| &row.corrected),
@@ -58,7 +58,7 @@ fn a_reconstruction_is_as_accurate_as_it_says() {
     let document = reconstruction::document();
     let spec = json!({"model": "flight-path-reconstruction", "maneuvers": [{"id": "x"}]});
     let spec: JobSpec = serde_json::from_value(spec).expect("a spec");
-    let coverage = over_seeds(24, &truth.parameters, |seed| {
+    let coverage = over_seeds(1..25, &truth.parameters, |seed| {
         fit(&document, &spec, truth.recording(seed, 1.0))
     });
     coverage.print("flight path reconstruction");

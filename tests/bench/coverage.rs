@@ -1,4 +1,5 @@
-//! How often the 95 % intervals contain the truth: `cargo bench --bench coverage [-- SEEDS]` prints the tables.
+//! How often the 95 % intervals contain the truth: `cargo bench --bench coverage [-- SEEDS [FIRST]]` prints the tables.
+//! Seeds count from FIRST, 1 if not given.
 
 #[path = "../common/coloured.rs"]
 mod coloured;
@@ -7,6 +8,7 @@ mod coverage;
 #[path = "../common/reconstruction.rs"]
 mod reconstruction;
 
+use std::ops::Range;
 use std::time::Instant;
 
 use serde_json::{Value, json};
@@ -20,7 +22,8 @@ const SEEDS: u64 = 1000;
 
 fn main() {
     let mut numbers = std::env::args().filter_map(|argument| argument.parse().ok());
-    let seeds: u64 = numbers.next_back().unwrap_or(SEEDS);
+    let seeds: u64 = numbers.next().unwrap_or(SEEDS);
+    let first: u64 = numbers.next().unwrap_or(1);
     let n = seeds as f64;
     println!(
         "a share of 95 % is known to ±{:.1} % (95 %) from {seeds} seeds",
@@ -48,19 +51,19 @@ fn main() {
     ];
     for (name, colour) in colours {
         let begun = Instant::now();
-        let coverage = coloured::short_period(colour, seeds);
+        let coverage = coloured::short_period(colour, first..first + seeds);
         coverage.print(&format!(
             "short period, {name} noise ({:.1?})",
             begun.elapsed()
         ));
     }
 
-    reconstruct(seeds);
+    reconstruct(first..first + seeds);
 }
 
 /// Flight path reconstruction, with noise and with half of it: a bias from the noise, which an estimate has that is not
 /// linear in it, is then half as many standard deviations; one from how the truth was integrated twice as many.
-fn reconstruct(seeds: u64) {
+fn reconstruct(seeds: Range<u64>) {
     let truth = reconstruction::Truth::new();
     let document = reconstruction::document();
     let spec = |options: Value| -> JobSpec {
@@ -70,7 +73,7 @@ fn reconstruct(seeds: u64) {
     let flown = |share: f64| {
         let begun = Instant::now();
         let plain = spec(json!({}));
-        let coverage = over_seeds(seeds, &truth.parameters, |seed| {
+        let coverage = over_seeds(seeds.clone(), &truth.parameters, |seed| {
             fit(&document, &plain, truth.recording(seed, share))
         });
         coverage.print(&format!(
@@ -95,7 +98,7 @@ fn reconstruct(seeds: u64) {
     let mut integration = Coverage::default();
     integration.add(&silent, &truth.parameters);
     println!("\nbias in standard deviations of the estimate; with half the noise; without noise");
-    let known = (seeds as f64).sqrt().recip();
+    let known = ((seeds.end - seeds.start) as f64).sqrt().recip();
     for (name, row) in &whole.0 {
         println!(
             "{name:12} {:7.3} ±{known:.3} {:7.3} ±{known:.3} {:9.1e}",

@@ -1,8 +1,9 @@
-//! The problems P1 to P4 of the performance peers, one JSON line each with the peers' keys.
+//! The problems P1 to P4 and P5b of the performance peers, one JSON line each with the peers' keys.
 //!
-//! `cargo bench --bench peers` needs the flight data; see the README for running the peers beside it. P3 is simulated
-//! by the peers: `TRIMTAB_PEER_PROBLEMS` names the folder that their `export_problems.py --out` has written. Names of
-//! problems as arguments restrict the run.
+//! `cargo bench --bench peers` needs the flight data; see the README for running the peers beside it. P3 and P5b are
+//! simulated by the peers: `TRIMTAB_PEER_PROBLEMS` names the folder that their `export_problems.py --out` has written.
+//! Names of problems as arguments restrict the run. One evaluation is by one thread; a solve of P5b, with its 50
+//! maneuvers, by as many as there are cores (`RAYON_NUM_THREADS=1` for one).
 
 #[path = "../common/flight_data.rs"]
 mod flight_data;
@@ -23,23 +24,44 @@ use trimtab::model::ModelDocument;
 struct Problem {
     name: &'static str,
     file: &'static str,
-    model: &'static str,
+    model: String,
     spec: Value,
 }
 
-fn problems() -> [Problem; 4] {
+const FLIGHT_PATH: &str = include_str!("flight-path-reconstruction.toml");
+
+/// What each maneuver of P5b has of its own.
+const OWN: [&str; 12] = [
+    "W_N", "W_E", "W_D", "u_0", "v_0", "w_0", "phi_0", "theta_0", "psi_0", "xE_0", "yE_0", "zE_0",
+];
+
+/// The model of P3 with wind and initial state for each maneuver, started from channels that say so.
+fn flight_path_of_each() -> String {
+    let line = |line: &str| {
+        let (name, rest) = line.split_once(" = { start = ").unwrap_or((line, ""));
+        match rest.split_once(',') {
+            Some((_, rest)) if OWN.contains(&name) => {
+                format!("{name} = {{ start = \"first(start_{name})\", per = \"maneuver\",{rest}\n")
+            }
+            _ => format!("{line}\n"),
+        }
+    };
+    FLIGHT_PATH.lines().map(line).collect()
+}
+
+fn problems() -> [Problem; 5] {
     let start = |value: f64| json!({"start": value});
     [
         Problem {
             name: "P1",
             file: "attas_elv1.csv",
-            model: include_str!("../../src/model/catalog/short-period.toml"),
+            model: include_str!("../../src/model/catalog/short-period.toml").into(),
             spec: json!({}),
         },
         Problem {
             name: "P2",
             file: "attas_ailrud1.csv",
-            model: include_str!("../../src/model/catalog/lateral-directional-2.toml"),
+            model: include_str!("../../src/model/catalog/lateral-directional-2.toml").into(),
             spec: json!({
                 "channels": {"da": "(da_right - da_left)/2"},
                 "parameters": {
@@ -52,24 +74,33 @@ fn problems() -> [Problem; 4] {
         Problem {
             name: "P3",
             file: "P3.csv",
-            model: include_str!("flight-path-reconstruction.toml"),
+            model: FLIGHT_PATH.into(),
             spec: json!({}),
         },
         Problem {
             name: "P4",
             file: "hfb320_1_10.csv",
-            model: include_str!("hfb320.toml"),
+            model: include_str!("hfb320.toml").into(),
+            spec: json!({}),
+        },
+        Problem {
+            name: "P5b",
+            file: "P5b.csv",
+            model: flight_path_of_each(),
             spec: json!({}),
         },
     ]
 }
 
 /// From the model's text to a problem ready to be evaluated.
-fn prepare(problem: &Problem, recording: &Arc<Maneuver>, tolerance: f64) -> Plan {
-    let document: ModelDocument = toml::from_str(problem.model).expect("a document");
+fn prepare(problem: &Problem, recordings: &[Arc<Maneuver>], tolerance: f64) -> Plan {
+    let document: ModelDocument = toml::from_str(&problem.model).expect("a document");
+    let uses = recordings
+        .iter()
+        .map(|recording| json!({"id": recording.digest(), "gaps": "join"}));
     let mut spec = json!({
         "model": "in the file",
-        "maneuvers": [{"id": "the recording", "gaps": "join"}],
+        "maneuvers": uses.collect::<Vec<Value>>(),
         // the peers know the conventional error bounds only
         "options": {"tolerance": tolerance, "method": "gauss_newton", "error_bounds": "conventional", "start": {"kind": "document"}},
     });
@@ -77,8 +108,7 @@ fn prepare(problem: &Problem, recording: &Arc<Maneuver>, tolerance: f64) -> Plan
         spec[key] = value.clone();
     }
     let spec: JobSpec = serde_json::from_value(spec).expect("a spec");
-    job::prepare(&spec, &document, std::slice::from_ref(recording))
-        .unwrap_or_else(|faults| panic!("{faults:#?}"))
+    job::prepare(&spec, &document, recordings).unwrap_or_else(|faults| panic!("{faults:#?}"))
 }
 
 /// Time that this process has spent on a processor, where the system tells.
@@ -103,7 +133,11 @@ fn timed(mut call: impl FnMut()) -> Times {
     let mut times: Vec<Duration> = Vec::new();
     let processor = processor_time();
     let began = Instant::now();
-    while times.len() < 5 || (began.elapsed() < Duration::from_millis(1500) && times.len() < 2000) {
+    let enough = |times: usize, took: Duration| {
+        let least = if took < Duration::from_secs(5) { 5 } else { 2 };
+        times >= least && (took > Duration::from_millis(1500) || times >= 2000)
+    };
+    while !enough(times.len(), began.elapsed()) {
         let start = Instant::now();
         call();
         times.push(start.elapsed());
@@ -127,14 +161,17 @@ fn solve(plan: &Plan) -> trimtab::estimate::Estimate {
 }
 
 fn measure(problem: &Problem, directory: &Path) -> Value {
-    let recording = Arc::new(recording(problem, directory));
-    let n = recording.len() as f64;
+    let recordings = recordings(problem, directory);
+    let samples: usize = recordings.iter().map(|recording| recording.len()).sum();
+    let n = samples as f64;
     // the peers stop when det R changes by less than a share: a step of d standard errors changes it by d²/N
-    let tolerance = |share: f64| (share * n).sqrt();
-    let plan = prepare(problem, &recording, tolerance(1e-8));
+    let tolerance = |share: f64| (share * n).sqrt().min(1.0);
+    let plan = prepare(problem, &recordings, tolerance(1e-8));
+    let own = if recordings.len() > 1 { OWN.len() } else { 0 };
+    let of_one = plan.problem.unknowns.len() - own * (recordings.len() - 1);
     let mut line = json!({
-        "peer": "trimtab", "problem": problem.name, "threads": 1, "N": recording.len(), "M": 1,
-        "n_theta": plan.problem.unknowns.len(), "nloc": plan.problem.unknowns.len(),
+        "peer": "trimtab", "problem": problem.name, "threads": 1, "N": samples / recordings.len(), "M": recordings.len(),
+        "n_theta": plan.problem.unknowns.len(), "nloc": of_one,
         "nx": plan.problem.model.states.len(), "ny": plan.problem.model.outputs.len(),
         "eval_includes_normal": true,
     });
@@ -151,7 +188,7 @@ fn measure(problem: &Problem, directory: &Path) -> Value {
     put("eval", &evaluation);
     put("normal", &evaluation);
     for (share, suffix) in [(1e-4, ""), (1e-8, "_1e-08")] {
-        let plan = prepare(problem, &recording, tolerance(share));
+        let plan = prepare(problem, &recordings, tolerance(share));
         put(
             &format!("solve{suffix}"),
             &timed(|| {
@@ -163,18 +200,18 @@ fn measure(problem: &Problem, directory: &Path) -> Value {
     put(
         "text_to_estimate",
         &timed(|| {
-            solve(&prepare(problem, &recording, tolerance(1e-8)));
+            solve(&prepare(problem, &recordings, tolerance(1e-8)));
         }),
     );
     let compile = timed(|| {
-        prepare(problem, &recording, 1.0);
+        prepare(problem, &recordings, 1.0);
     });
     line["compile_s"] = json!(compile.median / 1e3);
     line["compile_cpu_s"] = json!(compile.median / 1e3);
     // machine code is made once for each model, when its steps have taken as long
     let mut native: Vec<Duration> = (0..20)
         .map(|_| {
-            let plan = prepare(problem, &recording, 1.0);
+            let plan = prepare(problem, &recordings, 1.0);
             let start = Instant::now();
             plan.problem.model.make_native();
             start.elapsed()
@@ -183,7 +220,7 @@ fn measure(problem: &Problem, directory: &Path) -> Value {
     native.sort();
     line["native_s"] = json!(native[native.len() / 2].as_secs_f64());
     for (share, suffix) in [(1e-4, ""), (1e-8, "_1e-08"), (1e-12, "_check")] {
-        let plan = prepare(problem, &recording, tolerance(share));
+        let plan = prepare(problem, &recordings, tolerance(share));
         let estimate = solve(&plan);
         line[format!("iterations{suffix}")] = json!(estimate.iterations);
         line[format!("evals{suffix}")] = json!(estimate.evaluations);
@@ -203,15 +240,15 @@ fn measure(problem: &Problem, directory: &Path) -> Value {
     line
 }
 
-/// The recording of a problem, with the start values that it comes with.
-fn recording(problem: &Problem, directory: &Path) -> Maneuver {
+/// The recordings of a problem.
+fn recordings(problem: &Problem, directory: &Path) -> Vec<Arc<Maneuver>> {
     let bytes = std::fs::read(directory.join(problem.file)).expect("a data file");
-    if problem.name != "P3" {
-        return ingest::read(&bytes, ingest::Format::Csv, &ingest::Limits::default())
-            .expect("a recording");
+    if !is_simulated(problem) {
+        let read = ingest::read(&bytes, ingest::Format::Csv, &ingest::Limits::default());
+        return vec![Arc::new(read.expect("a recording"))];
     }
     // the peers' own files: maneuver, t, inputs u_*, outputs z_*, all SI
-    let document: ModelDocument = toml::from_str(problem.model).expect("a document");
+    let document: ModelDocument = toml::from_str(&problem.model).expect("a document");
     let mut reader = csv::Reader::from_reader(bytes.as_slice());
     let names: Vec<String> = reader
         .headers()
@@ -219,58 +256,90 @@ fn recording(problem: &Problem, directory: &Path) -> Maneuver {
         .iter()
         .map(str::to_string)
         .collect();
-    let mut columns = vec![Vec::new(); names.len()];
+    let mut maneuvers: Vec<Vec<Vec<f64>>> = Vec::new();
     for row in reader.records() {
-        for (column, cell) in columns.iter_mut().zip(&row.expect("a row")) {
+        let row = row.expect("a row");
+        let number: usize = row[0].parse().expect("a number");
+        if number == maneuvers.len() {
+            maneuvers.push(vec![Vec::new(); names.len()]);
+        }
+        for (column, cell) in maneuvers[number].iter_mut().zip(&row) {
             column.push(cell.parse::<f64>().expect("a number"));
         }
     }
-    let mut channels = IndexMap::new();
-    for (name, values) in names.iter().zip(&columns).skip(2) {
-        let name = &name[2..];
-        let unit = match (document.inputs.get(name), document.outputs.get(name)) {
-            (Some(input), _) => &input.unit,
-            (_, Some(output)) => &output.unit,
-            _ => panic!("the model has no {name}"),
-        };
-        let unit = (unit, Unit::parse(unit).expect("a unit"));
-        channels.insert(
-            name.to_string(),
-            Channel::from_recorded(unit.0, unit.1, values.clone()),
-        );
-    }
-    Maneuver::new(columns[1].clone(), channels).expect("a maneuver")
+    let starts = exported_starts(problem, directory);
+    let channel = |unit: &str, values: Vec<f64>| {
+        let parsed = Unit::parse(unit).expect("a unit");
+        Channel::from_recorded(unit, parsed, values)
+    };
+    let maneuver = |(number, columns): (usize, Vec<Vec<f64>>)| {
+        let mut channels = IndexMap::new();
+        let length = columns[1].len();
+        for (name, values) in names.iter().zip(&columns).skip(2) {
+            let name = &name[2..];
+            let unit = match (document.inputs.get(name), document.outputs.get(name)) {
+                (Some(input), _) => &input.unit,
+                (_, Some(output)) => &output.unit,
+                _ => panic!("the model has no {name}"),
+            };
+            channels.insert(name.to_string(), channel(unit, values.clone()));
+        }
+        for name in OWN {
+            if let Some(&start) = starts.get(&format!("{name}[{number}]")) {
+                let unit = &document.parameters[name].unit;
+                channels.insert(format!("start_{name}"), channel(unit, vec![start; length]));
+            }
+        }
+        Arc::new(Maneuver::new(columns[1].clone(), channels).expect("a maneuver"))
+    };
+    maneuvers.into_iter().enumerate().map(maneuver).collect()
 }
 
-/// The start values of P3 that the peers read off the records, as the parameters of a job.
-fn start_values(directory: &Path) -> Value {
-    let text = std::fs::read_to_string(directory.join("P3.json")).expect("P3.json");
+fn is_simulated(problem: &Problem) -> bool {
+    ["P3", "P5b"].contains(&problem.name)
+}
+
+/// Start values of a simulated problem, as the peers read them off the records.
+fn exported_starts(problem: &Problem, directory: &Path) -> IndexMap<String, f64> {
+    let path = directory.join(format!("{}.json", problem.name));
+    let text = std::fs::read_to_string(path).expect("what the peers exported");
     let exported: Value = serde_json::from_str(&text).expect("JSON");
     let list = |key: &str| exported[key].as_array().expect("a list").clone();
     let pairs = list("names").into_iter().zip(list("theta0"));
-    let start = |(name, value): (Value, Value)| {
-        (
-            name.as_str().expect("a name").to_string(),
-            json!({"start": value}),
-        )
-    };
-    json!({"parameters": Value::Object(pairs.map(start).collect())})
+    pairs
+        .map(|(name, value)| {
+            let name = name.as_str().expect("a name").to_string();
+            (name, value.as_f64().expect("a number"))
+        })
+        .collect()
 }
 
-/// The peers' P2 has its parameters in another order than the catalog's document.
+/// The peers' P2 has its parameters in another order than the catalog's document, and P5b maneuver by maneuver.
 fn in_peer_order(problem: &Problem, values: Vec<(&str, f64)>) -> Vec<f64> {
-    let order = "Lp Lr Lda Ldr Lb Np Nr Nda Ndr Nb p_bias r_bias ay_bias Yp Yr Yda Ydr Yb";
-    if problem.name != "P2" {
-        return values.into_iter().map(|(_, value)| value).collect();
+    let value = |(_, value): &(&str, f64)| *value;
+    match problem.name {
+        "P2" => {
+            let order = "Lp Lr Lda Ldr Lb Np Nr Nda Ndr Nb p_bias r_bias ay_bias Yp Yr Yda Ydr Yb";
+            let find = |name| values.iter().find(|(own, _)| *own == name);
+            order
+                .split(' ')
+                .map(|name| value(find(name).expect("a parameter")))
+                .collect()
+        }
+        "P5b" => {
+            let (own, shared): (Vec<_>, Vec<_>) =
+                values.iter().partition(|(name, _)| OWN.contains(name));
+            let maneuvers = own.len() / OWN.len();
+            let of = |maneuver: usize| {
+                let named = |name| own.iter().filter(move |(own, _)| *own == name);
+                let nth = OWN.map(|name| named(name).nth(maneuver).expect("a parameter"));
+                nth.map(value)
+            };
+            let shared = shared.iter().map(value);
+            shared.chain((0..maneuvers).flat_map(of)).collect()
+        }
+        _ => values.iter().map(value).collect(),
     }
-    let find = |name| {
-        values
-            .iter()
-            .find(|(own, _)| *own == name)
-            .expect("a parameter")
-            .1
-    };
-    order.split(' ').map(find).collect()
 }
 
 fn main() {
@@ -284,7 +353,7 @@ fn main() {
         if !wanted.is_empty() && !wanted.iter().any(|name| name == problem.name) {
             continue;
         }
-        let directory = if problem.name == "P3" {
+        let directory = if is_simulated(&problem) {
             &exported
         } else {
             &flight
@@ -293,8 +362,11 @@ fn main() {
             eprintln!("SKIPPED {}: no data", problem.name);
             continue;
         };
-        if problem.name == "P3" {
-            problem.spec = start_values(directory);
+        if is_simulated(&problem) {
+            let starts = exported_starts(&problem, directory);
+            let shared = starts.iter().filter(|(name, _)| !name.ends_with(']'));
+            let starts = shared.map(|(name, value)| (name.clone(), json!({"start": value})));
+            problem.spec = json!({"parameters": Value::Object(starts.collect())});
         }
         println!("{}", measure(&problem, directory));
     }

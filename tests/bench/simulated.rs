@@ -51,8 +51,51 @@ const HFB320: &str = r#"
     ax = { unit = "m/s^2", noise = 0.02 }
     az = { unit = "m/s^2", noise = 0.05 }
 "#;
+/// Straight and level: all of it stays in range for hours, which the airplane with its controls held does not.
+const FLIGHT_PATH: &str = r#"
+    model = "flight-path-reconstruction"
+    seed = 5
+    step = 0.05
+    duration = 60.0
+    [truth]
+    u_0 = 79.9
+    w_0 = 4.0
+    theta_0 = 0.05
+    psi_0 = 0.7
+    x_0 = 0.0
+    y_0 = 0.0
+    z_0 = -1000.0
+    [inputs.ax]
+    unit = "m/s^2"
+    trim = 0.490
+    design = { shape = "constant" }
+    [inputs.ay]
+    unit = "m/s^2"
+    design = { shape = "constant" }
+    [inputs.az]
+    unit = "m/s^2"
+    trim = -9.794
+    design = { shape = "constant" }
+    [inputs.p]
+    unit = "rad/s"
+    design = { shape = "constant" }
+    [inputs.q]
+    unit = "rad/s"
+    design = { shape = "constant" }
+    [inputs.r]
+    unit = "rad/s"
+    design = { shape = "constant" }
+    [outputs]
+    alpha = { unit = "rad", noise = 0.003 }
+    beta = { unit = "rad", noise = 0.003 }
+    V = { unit = "m/s", noise = 0.3 }
+    x = { unit = "m", noise = 1.0 }
+    y = { unit = "m", noise = 1.0 }
+    z = { unit = "m", noise = 1.5 }
+"#;
 
-/// A problem on `short-period`, `lateral-directional-2` or `hfb320`, with a recording of `duration` seconds, or of its own length.
+/// A problem on `short-period`, `lateral-directional-2`, `flight-path-reconstruction` or
+/// `hfb320`, with a recording of `duration` seconds, or of its own length.
 pub fn plan(name: &str, duration: Option<f64>) -> Plan {
     let (document, scenario): (ModelDocument, &str) = match name {
         "hfb320" => {
@@ -60,6 +103,9 @@ pub fn plan(name: &str, duration: Option<f64>) -> Plan {
             (document, HFB320)
         }
         "short-period" => (catalog::find(name).expect("a catalog model"), SHORT_PERIOD),
+        "flight-path-reconstruction" => {
+            (catalog::find(name).expect("a catalog model"), FLIGHT_PATH)
+        }
         _ => (catalog::find(name).expect("a catalog model"), LATERAL),
     };
     let model = Model::compile(&document).unwrap_or_else(|faults| panic!("{faults:#?}"));

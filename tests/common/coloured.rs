@@ -1,5 +1,6 @@
 //! Short-period fits with noise of a given colour.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use serde_json::json;
@@ -10,7 +11,7 @@ use trimtab::simulate::{NoiseColour, Scenario};
 use super::coverage::{Coverage, fit, over_seeds};
 
 /// Fits the bundled elevator maneuver with `seeds` realisations of its noise, coloured.
-pub fn short_period(colour: NoiseColour, seeds: u64) -> Coverage {
+pub fn short_period(colour: NoiseColour, seeds: Range<u64>) -> Coverage {
     let text = include_str!("../../data/elevator.toml");
     let mut scenario: Scenario = toml::from_str(text).expect("a scenario");
     for output in scenario.outputs.values_mut() {

@@ -1,6 +1,6 @@
 //! How often intervals contain the truth, over many seeds.
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
 use indexmap::IndexMap;
@@ -116,16 +116,16 @@ pub fn fit(document: &ModelDocument, spec: &JobSpec, recording: Arc<Maneuver>) -
 
 /// Fits the recordings of seeds 1 to `seeds` on all cores.
 pub fn over_seeds(
-    seeds: u64,
+    seeds: Range<u64>,
     truth: &IndexMap<String, f64>,
     fit: impl Fn(u64) -> Estimate + Sync,
 ) -> Coverage {
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get() as u64);
     let estimates = std::thread::scope(|scope| {
         let part = |thread: u64| {
-            let fit = &fit;
+            let (fit, seeds) = (&fit, seeds.clone());
             scope.spawn(move || -> Vec<(u64, Estimate)> {
-                let own = (1..=seeds).filter(|seed| seed % threads == thread);
+                let own = seeds.filter(|seed| seed % threads == thread);
                 own.map(|seed| (seed, fit(seed))).collect()
             })
         };
