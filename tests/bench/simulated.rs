@@ -59,6 +59,7 @@ const FLIGHT_PATH: &str = r#"
     duration = 60.0
     [truth]
     u_0 = 79.9
+    v_0 = 0.0
     w_0 = 4.0
     theta_0 = 0.05
     psi_0 = 0.7
