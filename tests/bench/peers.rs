@@ -95,9 +95,8 @@ fn problems() -> [Problem; 5] {
 /// From the model's text to a problem ready to be evaluated.
 fn prepare(problem: &Problem, recordings: &[Arc<Maneuver>], tolerance: f64) -> Plan {
     let document: ModelDocument = toml::from_str(&problem.model).expect("a document");
-    let uses = recordings
-        .iter()
-        .map(|recording| json!({"id": recording.digest(), "gaps": "join"}));
+    let uses =
+        (0..recordings.len()).map(|number| json!({"id": number.to_string(), "gaps": "join"}));
     let mut spec = json!({
         "model": "in the file",
         "maneuvers": uses.collect::<Vec<Value>>(),
