@@ -22,9 +22,7 @@ impl Spectrum {
     /// `None` where the decomposition fails: entries that are not finite, or no convergence.
     pub fn of(matrix: &DMatrix<f64>, diagonal: &DVector<f64>) -> Option<Self> {
         let scale = diagonal.map(|d| if d > 0.0 { d.sqrt().recip() } else { 0.0 });
-        let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
-            scale[i] * matrix[(i, j)] * scale[j]
-        });
+        let scaled = scaled(matrix, &scale);
         if scaled.iter().any(|v| !v.is_finite()) {
             return None;
         }
@@ -71,8 +69,9 @@ impl Spectrum {
                 0.0
             }
         });
-        let scaled = &self.vectors * DMatrix::from_diagonal(&reciprocal) * self.vectors.transpose();
-        DMatrix::from_fn(n, n, |i, j| self.scale[i] * scaled[(i, j)] * self.scale[j])
+        let inverse =
+            &self.vectors * DMatrix::from_diagonal(&reciprocal) * self.vectors.transpose();
+        scaled(&inverse, &self.scale)
     }
 
     /// Sets of unknowns of which the data see only some combinations: members, and a direction in θ along
@@ -113,6 +112,13 @@ impl Spectrum {
         });
         unseen.chain(sets).collect()
     }
+}
+
+/// Row and column i times `scale[i]`.
+pub(super) fn scaled(matrix: &DMatrix<f64>, scale: &DVector<f64>) -> DMatrix<f64> {
+    DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
+        scale[i] * matrix[(i, j)] * scale[j]
+    })
 }
 
 /// Reduced row echelon form with complete pivoting.

@@ -11,7 +11,7 @@ use super::iterate::{Iterate, Taken};
 use super::likelihood::Weighting;
 use super::options::Method;
 use super::problem::Problem;
-use super::step::{Newton, advanced};
+use super::step::{Newton, advanced, length};
 
 /// Damping: where it starts, what success and failure make of it, and below what it is none.
 pub(super) const DAMPING_START: f64 = 1e-3;
@@ -153,9 +153,8 @@ fn lower(
     }
     let moved = next.theta.iter().zip(&current.theta).map(|(a, b)| a - b);
     let moved = DVector::from_iterator(current.theta.len(), moved);
-    let length = moved.dot(&(&current.information * &moved)).max(0.0).sqrt();
     let taken = Taken {
-        length,
+        length: length(&moved, &current.information),
         damping,
         halvings,
     };

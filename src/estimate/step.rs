@@ -63,6 +63,11 @@ impl Newton {
     }
 }
 
+/// Length of a step in standard errors: √(sᵀ F s).
+pub(super) fn length(step: &DVector<f64>, information: &DMatrix<f64>) -> f64 {
+    step.dot(&(information * step)).max(0.0).sqrt()
+}
+
 /// What a step is solved with.
 enum Hessian {
     /// All directions are seen.

@@ -129,15 +129,12 @@ fn form_packs<const ROW: usize, const STATE: usize>(
     let (rows, _) = output.rows.as_chunks_mut::<ROW>();
     let (direct, _) = output.direct.as_chunks::<ROW>();
     let zero = [Pack::default(); ROW];
-    let (own, same) = match direct {
-        [] => (direct, &zero),
-        [same] => (&[][..], same),
-        _ => (direct, &zero),
-    };
+    // where there is one row, it is that of all samples
+    let same = direct.first().unwrap_or(&zero);
     let (sensitivities, _) = sensitivities.as_chunks::<STATE>();
     let samples = sensitivities.chunks_exact(states.max(1));
     for (k, (row, by_state)) in rows[..len].iter_mut().zip(samples).enumerate() {
-        let mut sum = *own.get(k).unwrap_or(same);
+        let mut sum = *direct.get(k).unwrap_or(same);
         for &(entry, state) in &output.by_state {
             let value = observation.value(0, entry, k);
             let from = &by_state[state];

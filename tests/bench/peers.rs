@@ -163,7 +163,8 @@ fn measure(problem: &Problem, directory: &Path) -> Value {
     let recordings = recordings(problem, directory);
     let samples: usize = recordings.iter().map(|recording| recording.len()).sum();
     let n = samples as f64;
-    // the peers stop when det R changes by less than a share: a step of d standard errors changes it by d²/N
+    // the peers stop when det R changes by less than a share: a step of d standard errors changes it by d²/N;
+    // more than one is more than a job may ask for (P5b at 1e-4)
     let tolerance = |share: f64| (share * n).sqrt().min(1.0);
     let plan = prepare(problem, &recordings, tolerance(1e-8));
     let own = if recordings.len() > 1 { OWN.len() } else { 0 };

@@ -51,6 +51,7 @@ const HFB320: &str = r#"
     ax = { unit = "m/s^2", noise = 0.02 }
     az = { unit = "m/s^2", noise = 0.05 }
 "#;
+
 /// Straight and level: all of it stays in range for hours, which the airplane with its controls held does not.
 const FLIGHT_PATH: &str = r#"
     model = "flight-path-reconstruction"
@@ -66,26 +67,13 @@ const FLIGHT_PATH: &str = r#"
     x_0 = 0.0
     y_0 = 0.0
     z_0 = -1000.0
-    [inputs.ax]
-    unit = "m/s^2"
-    trim = 0.490
-    design = { shape = "constant" }
-    [inputs.ay]
-    unit = "m/s^2"
-    design = { shape = "constant" }
-    [inputs.az]
-    unit = "m/s^2"
-    trim = -9.794
-    design = { shape = "constant" }
-    [inputs.p]
-    unit = "rad/s"
-    design = { shape = "constant" }
-    [inputs.q]
-    unit = "rad/s"
-    design = { shape = "constant" }
-    [inputs.r]
-    unit = "rad/s"
-    design = { shape = "constant" }
+    [inputs]
+    ax = { unit = "m/s^2", trim = 0.490, design = { shape = "constant" } }
+    ay = { unit = "m/s^2", design = { shape = "constant" } }
+    az = { unit = "m/s^2", trim = -9.794, design = { shape = "constant" } }
+    p = { unit = "rad/s", design = { shape = "constant" } }
+    q = { unit = "rad/s", design = { shape = "constant" } }
+    r = { unit = "rad/s", design = { shape = "constant" } }
     [outputs]
     alpha = { unit = "rad", noise = 0.003 }
     beta = { unit = "rad", noise = 0.003 }

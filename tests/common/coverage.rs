@@ -114,7 +114,7 @@ pub fn fit(document: &ModelDocument, spec: &JobSpec, recording: Arc<Maneuver>) -
     result.unwrap_or_else(|f| panic!("{f:#?}")).estimate
 }
 
-/// Fits the recordings of seeds 1 to `seeds` on all cores.
+/// Fits the recordings of `seeds` on all cores.
 pub fn over_seeds(
     seeds: Range<u64>,
     truth: &IndexMap<String, f64>,

@@ -36,6 +36,7 @@ use super::problem::Problem;
 use super::search::{
     DAMPING_EASED, DAMPING_NONE, DAMPING_RAISED, DAMPING_START, MOST_TRIALS, ROUNDING,
 };
+use super::step::length;
 use super::stopped::Stopped;
 use iterate::{GainNoise, Iterate};
 use limit::restore;
@@ -156,7 +157,7 @@ fn search(
                 let mut moved = DVector::from_iterator(step.len(), moved);
                 // these follow from the others, and count with them
                 current.limit.places.iter().for_each(|&i| moved[i] = 0.0);
-                let length = moved.dot(&(&current.information * &moved)).max(0.0).sqrt();
+                let length = length(&moved, &current.information);
                 let taken = Taken {
                     length,
                     damping,
