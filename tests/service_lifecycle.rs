@@ -165,7 +165,7 @@ impl Busy {
             finished.push((id.clone(), parameters(&process.url, &id).await));
         }
         let mut endless = endless_job(&long);
-        endless["options"]["max_iterations"] = json!(150);
+        endless["options"]["max_iterations"] = json!(20);
         let mut waiting = vec![submit(&process.url, &endless).await];
         for _ in 0..8 {
             waiting.push(submit(&process.url, &job(&short)).await);
