@@ -9,6 +9,7 @@
 //! Morelli, Aircraft System Identification, ch. 5), and what only enters outputs that measure a state, such as its
 //! bias, is not found. So it is a start for output error, or a quick look.
 
+mod local_fit;
 mod measured;
 mod regression;
 mod smoothing;

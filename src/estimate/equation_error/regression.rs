@@ -13,7 +13,7 @@ use crate::model::{Input, Model, ModelDocument, Output};
 use crate::simulate::{InputInterpolation, Segment};
 
 use super::measured::{MeasuredState, measured_states};
-use super::smoothing::{half_width, smoothed_over};
+use super::smoothing::{Windows, half_width};
 
 /// The regression problem of an output-error problem.
 pub(in crate::estimate) struct Regression {
@@ -180,19 +180,19 @@ fn with_states(
     let read = |at: &MeasuredState| at.read(&problem.model, segment, parameters);
     let states: Vec<Vec<f64>> = measured.iter().map(read).collect();
     let series: Vec<&[f64]> = states.iter().map(Vec::as_slice).collect();
-    let half = half_width(&time, &series);
+    let windows = Windows::new(&time, half_width(&time, &series));
     let mut made = segment.clone();
     for input in &mut made.inputs {
         let seen = match problem.options.input_interpolation {
             InputInterpolation::Linear => input.clone(),
             InputInterpolation::Hold => around_samples(input),
         };
-        *input = smoothed_over(&time, &seen, half).value;
+        *input = windows.smoothed(&seen).value;
     }
     made.measured.clear();
     let mut first = Vec::new();
     for state in &states {
-        let smooth = smoothed_over(&time, state, half);
+        let smooth = windows.smoothed(state);
         first.push(smooth.value.first().copied().unwrap_or(0.0));
         made.inputs.push(smooth.value);
         made.measured.push(smooth.slope);
@@ -200,7 +200,7 @@ fn with_states(
     let others = segment.measured.iter().enumerate();
     let others = others.filter(|(i, _)| measured.iter().all(|at| at.output != *i));
     made.measured.extend(others.map(|(_, values)| {
-        let smooth = smoothed_over(&time, values, half).value;
+        let smooth = windows.smoothed(values).value;
         let numbers = values.iter().zip(smooth);
         // what was not measured is not made up
         numbers
