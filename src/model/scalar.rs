@@ -179,14 +179,20 @@ impl Scalar for Complex64 {
     }
 }
 
-/// sin x and cos x, to the last bit as each alone, in little more than the time of one.
+/// Sines, then cosines, to the last bit as each alone, in little more than the time of one.
 #[inline(always)]
-pub(super) fn sin_cos(x: f64) -> (f64, f64) {
-    if is_small(x) {
-        trigonometry::sin_cos(x)
+pub(super) fn sines_and_cosines<const COUNT: usize>(angles: [f64; COUNT]) -> [[f64; COUNT]; 2] {
+    let mut both = [[0.0; COUNT]; 2];
+    if angles.iter().all(|&angle| is_small(angle)) {
+        for i in 0..COUNT {
+            (both[0][i], both[1][i]) = trigonometry::sin_cos(angles[i]);
+        }
     } else {
-        (f64::sin(x), f64::cos(x))
+        for i in 0..COUNT {
+            (both[0][i], both[1][i]) = (Scalar::sin(angles[i]), Scalar::cos(angles[i]));
+        }
     }
+    both
 }
 
 /// How many samples are evaluated side by side.

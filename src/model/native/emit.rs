@@ -8,7 +8,8 @@ use std::mem::offset_of;
 
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::{
-    AbiParam, Block, BlockArg, Function, InstBuilder, MemFlagsData, Signature, Type, Value, types,
+    AbiParam, Block, BlockArg, Function, InstBuilder, MemFlagsData, SigRef, Signature, StackSlot,
+    StackSlotData, StackSlotKind, Type, Value, types,
 };
 use cranelift_codegen::isa::TargetFrontendConfig;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
@@ -40,8 +41,11 @@ pub(super) fn steps(
     function: &mut Function,
     memory: &mut FunctionBuilderContext,
 ) {
-    let builder = FunctionBuilder::new(function, memory);
+    let mut builder = FunctionBuilder::new(function, memory);
+    let numbers = (2 * functions::ANGLES) as u32;
+    let slot = StackSlotData::new(StackSlotKind::ExplicitSlot, NUMBER as u32 * numbers, 3);
     let mut emitter = Emitter {
+        sines_and_cosines: builder.create_sized_stack_slot(slot),
         builder,
         dynamics,
         target,
@@ -66,8 +70,10 @@ struct Emitter<'a> {
     target: TargetFrontendConfig,
     /// By register: its number, once there is one.
     values: Vec<Option<Value>>,
-    /// By how many numbers go in and out.
-    signatures: HashMap<(usize, usize), cranelift_codegen::ir::SigRef>,
+    /// By whether an address goes in, and how many numbers go in and out.
+    signatures: HashMap<(bool, usize, usize), SigRef>,
+    /// Where sines stand, then cosines.
+    sines_and_cosines: StackSlot,
 }
 
 impl Emitter<'_> {
@@ -172,38 +178,51 @@ impl Emitter<'_> {
             *value = Some(x);
         }
         let body = self.dynamics.body();
-        let cosines = body
-            .iter()
-            .filter(|i| matches!(i.operation, Operation::Cos));
-        let cosines: HashMap<u32, u32> = cosines.map(|i| (i.a, i.target)).collect();
-        let sines = body
-            .iter()
-            .filter(|i| matches!(i.operation, Operation::Sin));
-        let sines: HashMap<u32, u32> = sines.map(|i| (i.a, i.target)).collect();
-        for instruction in body {
-            if self.values[instruction.target as usize].is_some() {
-                continue;
+        let levels = trigonometric_levels(body, self.dynamics.registers());
+        let level = |instruction: &Instruction| levels[instruction.target as usize];
+        let last = body.iter().map(level).max().unwrap_or(0);
+        for now in 0..=last {
+            let of_now = body.iter().filter(|instruction| level(instruction) == now);
+            let (trigonometric, others): (Vec<_>, Vec<_>) =
+                of_now.partition(|i| is_trigonometric(i));
+            self.sines_and_cosines(places, &trigonometric);
+            for instruction in others {
+                let value = self.one(places, instruction);
+                self.values[instruction.target as usize] = Some(value);
             }
-            let angle = instruction.a;
-            if let (Operation::Sin | Operation::Cos, Some(&sine), Some(&cosine)) = (
-                instruction.operation,
-                sines.get(&angle),
-                cosines.get(&angle),
-            ) {
-                // both for the price of one
-                let angle = self.value(places, angle);
-                let both = self.call::<2>(functions::of_sine_and_cosine(), &[angle]);
-                self.values[sine as usize] = Some(both[0]);
-                self.values[cosine as usize] = Some(both[1]);
-                continue;
-            }
-            let value = self.one(places, instruction);
-            self.values[instruction.target as usize] = Some(value);
         }
         let results = self.dynamics.result_registers();
         (results.iter())
             .map(|&register| self.value(places, register))
             .collect()
+    }
+
+    /// Sines and cosines that do not wait for one another: of several angles for the price of one.
+    fn sines_and_cosines(&mut self, places: Places, instructions: &[&Instruction]) {
+        let mut angles: Vec<u32> = instructions.iter().map(|i| i.a).collect();
+        angles.sort_unstable();
+        angles.dedup();
+        for angles in angles.chunks(functions::ANGLES) {
+            let mut numbers: Vec<Value> = angles
+                .iter()
+                .map(|&angle| self.value(places, angle))
+                .collect();
+            // one that is there twice does no harm
+            numbers.resize(functions::ANGLES, numbers[0]);
+            let address = (self.builder.ins()).stack_addr(POINTER, self.sines_and_cosines, 0);
+            self.call::<0>(functions::of_sines_and_cosines(), Some(address), &numbers);
+            for instruction in instructions {
+                let Some(place) = angles.iter().position(|&angle| angle == instruction.a) else {
+                    continue;
+                };
+                let place = match instruction.operation {
+                    Operation::Cos => functions::ANGLES + place,
+                    _ => place,
+                };
+                let value = self.load(address, NUMBER * place as i32);
+                self.values[instruction.target as usize] = Some(value);
+            }
+        }
     }
 
     /// The number in a register: a result of the body, or what stands there before it.
@@ -228,7 +247,7 @@ impl Emitter<'_> {
         let operation = instruction.operation;
         let a = self.value(places, instruction.a);
         if let Some(function) = functions::of_one(operation) {
-            return self.call::<1>(function, &[a])[0];
+            return self.call::<1>(function, None, &[a])[0];
         }
         match operation {
             Operation::Negate => return self.builder.ins().fneg(a),
@@ -238,7 +257,7 @@ impl Emitter<'_> {
         }
         let b = self.value(places, instruction.b);
         if let Some(function) = functions::of_two(operation) {
-            return self.call::<1>(function, &[a, b])[0];
+            return self.call::<1>(function, None, &[a, b])[0];
         }
         match operation {
             Operation::Add => return self.builder.ins().fadd(a, b),
@@ -285,18 +304,22 @@ impl Emitter<'_> {
     fn call<const RESULTS: usize>(
         &mut self,
         function: usize,
+        address: Option<Value>,
         numbers: &[Value],
     ) -> [Value; RESULTS] {
         let signature = *(self.signatures)
-            .entry((numbers.len(), RESULTS))
+            .entry((address.is_some(), numbers.len(), RESULTS))
             .or_insert_with(|| {
                 let mut signature = Signature::new(self.target.default_call_conv);
-                signature.params = vec![AbiParam::new(F); numbers.len()];
+                let address = address.map(|_| AbiParam::new(POINTER));
+                signature.params = address.into_iter().collect();
+                (signature.params).extend(numbers.iter().map(|_| AbiParam::new(F)));
                 signature.returns = vec![AbiParam::new(F); RESULTS];
                 self.builder.import_signature(signature)
             });
         let function = self.builder.ins().iconst(POINTER, function as i64);
-        let call = (self.builder.ins()).call_indirect(signature, function, numbers);
+        let arguments: Vec<Value> = address.into_iter().chain(numbers.iter().copied()).collect();
+        let call = (self.builder.ins()).call_indirect(signature, function, &arguments);
         let results = self.builder.inst_results(call);
         std::array::from_fn(|i| results[i])
     }
@@ -320,6 +343,22 @@ impl Emitter<'_> {
         }
         block
     }
+}
+
+fn is_trigonometric(instruction: &Instruction) -> bool {
+    matches!(instruction.operation, Operation::Sin | Operation::Cos)
+}
+
+/// By register: how many sines and cosines, one of the other, stand before what is in it.
+fn trigonometric_levels(body: &[Instruction], registers: usize) -> Vec<usize> {
+    let mut levels = vec![0; registers];
+    for instruction in body {
+        let operands = [instruction.a, instruction.b, instruction.c];
+        let before = operands.map(|operand| levels[operand as usize]);
+        let own = usize::from(is_trigonometric(instruction));
+        levels[instruction.target as usize] = own + before.into_iter().max().unwrap_or(0);
+    }
+    levels
 }
 
 /// Of memory that is there and aligned.

@@ -3,38 +3,18 @@
 use multiversion::multiversion;
 
 use crate::model::instruction::Operation;
-use crate::model::scalar::{Scalar, sin_cos};
+use crate::model::scalar::{self, Scalar};
 
-/// Two numbers, returned in two registers.
-#[repr(C)]
-struct Pair(f64, f64);
-
-#[multiversion(targets("x86_64+avx2+fma"))]
-fn fast_sin(x: f64) -> f64 {
-    Scalar::sin(x)
-}
+/// Angles whose sines and cosines one call gives.
+pub(super) const ANGLES: usize = 4;
 
 #[multiversion(targets("x86_64+avx2+fma"))]
-fn fast_cos(x: f64) -> f64 {
-    Scalar::cos(x)
+fn fast_sines_and_cosines(angles: [f64; ANGLES], to: &mut [[f64; ANGLES]; 2]) {
+    *to = scalar::sines_and_cosines(angles);
 }
 
-#[multiversion(targets("x86_64+avx2+fma"))]
-fn fast_sin_cos(x: f64) -> (f64, f64) {
-    sin_cos(x)
-}
-
-extern "C" fn sine(x: f64) -> f64 {
-    fast_sin(x)
-}
-
-extern "C" fn cosine(x: f64) -> f64 {
-    fast_cos(x)
-}
-
-extern "C" fn sine_and_cosine(x: f64) -> Pair {
-    let (sine, cosine) = fast_sin_cos(x);
-    Pair(sine, cosine)
+extern "C" fn sines_and_cosines(to: &mut [[f64; ANGLES]; 2], a: f64, b: f64, c: f64, d: f64) {
+    fast_sines_and_cosines([a, b, c, d], to);
 }
 
 macro_rules! unary {
@@ -53,8 +33,6 @@ extern "C" fn atan2(y: f64, x: f64) -> f64 {
 /// Where the function of one number stands, for the operations that are calls.
 pub(super) fn of_one(operation: Operation) -> Option<usize> {
     let function: extern "C" fn(f64) -> f64 = match operation {
-        Operation::Sin => sine,
-        Operation::Cos => cosine,
         Operation::Tan => tan,
         Operation::Asin => asin,
         Operation::Acos => acos,
@@ -78,7 +56,7 @@ pub(super) fn of_two(operation: Operation) -> Option<usize> {
     Some(function as usize)
 }
 
-/// Where the function stands that gives sine and cosine, in this order.
-pub(super) fn of_sine_and_cosine() -> usize {
-    sine_and_cosine as extern "C" fn(f64) -> Pair as usize
+/// Where the function stands that writes the sines of its angles to an address, then their cosines.
+pub(super) fn of_sines_and_cosines() -> usize {
+    sines_and_cosines as extern "C" fn(&mut [[f64; ANGLES]; 2], f64, f64, f64, f64) as usize
 }
