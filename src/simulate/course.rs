@@ -2,9 +2,10 @@
 
 use multiversion::multiversion;
 
+use super::aligned::Aligned;
 use super::linearised::BLOCK;
 use super::method::{InputInterpolation, Integrator, Stage};
-use super::one_step::OneStep;
+use super::one_step::{MOST_STATES, OneStep};
 use super::segment::{Segment, Steps};
 use super::stepper::{Stepper, between};
 use super::trajectory::{Diverged, initial_state};
@@ -23,15 +24,15 @@ pub(super) struct Course<'m> {
     state: Vec<f64>,
     elapsed: f64,
     /// By stage, then state: values over the block. Values behind the end repeat the last.
-    pub stage_states: Vec<[f64; BLOCK]>,
+    pub stage_states: Aligned<[f64; BLOCK]>,
     /// By stage: its weight, and how far the next one goes.
     shares: Vec<[f64; 2]>,
     /// Lengths of the steps of the block, s.
     lengths: [f64; BLOCK],
     /// By stage, then input.
-    stage_inputs: Vec<[f64; BLOCK]>,
+    stage_inputs: Aligned<[f64; BLOCK]>,
     /// By stage: time since the start of the segment.
-    stage_times: Vec<[f64; BLOCK]>,
+    stage_times: Aligned<[f64; BLOCK]>,
 }
 
 impl<'m> Course<'m> {
@@ -45,7 +46,7 @@ impl<'m> Course<'m> {
             let next = stages.get(s + 1).map_or(0.0, |next| next.advance);
             [stage.weight, next]
         });
-        let over_block = |count: usize| vec![[0.0; BLOCK]; stages.len() * count];
+        let over_block = |count: usize| Aligned::zeros(stages.len() * count);
         Self {
             model,
             interpolation,
@@ -207,7 +208,7 @@ impl<'m> Course<'m> {
                 to[steps] = self.state[i % n];
             }
         }
-        for values in self.stage_states.iter_mut().chain(&mut self.stage_times) {
+        for values in self.stage_states.iter_mut().chain(&mut *self.stage_times) {
             let last = values[len - 1];
             values[len..].fill(last);
         }
@@ -264,19 +265,46 @@ fn march(
             }
         }
     }
-    let mut next = [0.0; super::one_step::MOST_STATES];
-    for k in 0..len {
-        for (i, row) in matrix.chunks_exact(factors).enumerate() {
-            next[i] = states[i][k];
-            for (&factor, &x) in row[..n].iter().zip(&*state) {
-                next[i] = factor.mul_add(x, next[i]);
+    match n {
+        1 => march_states::<1>(matrix, (len, steps), state, states),
+        2 => march_states::<2>(matrix, (len, steps), state, states),
+        3 => march_states::<3>(matrix, (len, steps), state, states),
+        4 => march_states::<4>(matrix, (len, steps), state, states),
+        5 => march_states::<5>(matrix, (len, steps), state, states),
+        _ => march_states::<MOST_STATES>(matrix, (len, steps), state, states),
+    }
+}
+
+/// For a number of states that is known beforehand, so that they stay in registers. What drives them stands in `states`.
+#[inline(always)]
+fn march_states<const STATES: usize>(
+    matrix: &[f64],
+    (len, steps): (usize, usize),
+    state: &mut [f64],
+    states: &mut [[f64; BLOCK]],
+) {
+    let factors = matrix.len() / STATES;
+    let transition: [[f64; STATES]; STATES] =
+        std::array::from_fn(|i| std::array::from_fn(|j| matrix[i * factors + j]));
+    let (Some(state), Some(states)) = (
+        state.first_chunk_mut::<STATES>(),
+        states.first_chunk_mut::<STATES>(),
+    ) else {
+        return;
+    };
+    let mut now = *state;
+    for k in 0..len.min(BLOCK) {
+        let mut next = now;
+        for (i, values) in states.iter_mut().enumerate() {
+            next[i] = values[k];
+            for j in 0..STATES {
+                next[i] = transition[i][j].mul_add(now[j], next[i]);
             }
-        }
-        for (values, &x) in states.iter_mut().zip(&*state) {
-            values[k] = x;
+            values[k] = now[i];
         }
         if k < steps {
-            state.copy_from_slice(&next[..n]);
+            now = next;
         }
     }
+    *state = now;
 }

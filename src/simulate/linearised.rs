@@ -1,5 +1,6 @@
 //! The results of a program over a block of samples, evaluated side by side.
 
+use super::aligned::Aligned;
 use super::course::Course;
 pub(super) use crate::model::BLOCK;
 use crate::model::{LANES, Lanes, Program, Workspace};
@@ -12,7 +13,7 @@ pub(super) struct Linearised<'m> {
     /// Results that change from sample to sample; the others are filled in once for each θ.
     varying: Vec<usize>,
     /// By stage, then result: values over the block.
-    values: Vec<[f64; BLOCK]>,
+    values: Aligned<[f64; BLOCK]>,
 }
 
 impl<'m> Linearised<'m> {
@@ -23,7 +24,7 @@ impl<'m> Linearised<'m> {
             workspace: program.workspace(),
             results,
             varying: (0..results).filter(|&i| program.varies(i)).collect(),
-            values: vec![[0.0; BLOCK]; stages * results],
+            values: Aligned::zeros(stages * results),
         }
     }
 

@@ -6,6 +6,7 @@
 //! are delayed here: [`driven`] inputs before a run, outputs behind it.
 
 mod adjoint;
+mod aligned;
 mod columns;
 mod course;
 mod delay_line;
@@ -34,6 +35,7 @@ mod transition;
 mod transition_recursion;
 
 pub use adjoint::{Adjoint, Checkpoints};
+pub use aligned::Aligned;
 pub use columns::Columns;
 pub use delayed_inputs::{MOST_DELAY, delay_out_of_bounds, driven};
 pub use effects::ScenarioEffect;

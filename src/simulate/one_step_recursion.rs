@@ -2,6 +2,7 @@
 
 use multiversion::multiversion;
 
+use super::aligned::Aligned;
 use super::columns::Columns;
 use super::course::Course;
 use super::linearised::BLOCK;
@@ -15,7 +16,7 @@ pub(super) struct OneStepRecursion {
     states: usize,
     factors: usize,
     /// By pack, then state, then factor: ∂M/∂θ.
-    change: Vec<Pack>,
+    change: Aligned<Pack>,
     /// By sample of the block: z.
     factors_over_block: Vec<f64>,
 }
@@ -34,8 +35,7 @@ impl OneStepRecursion {
         self.factors = one_step.factors();
         self.states = one_step.matrix().len() / self.factors;
         let size = one_step.matrix().len();
-        self.change.clear();
-        self.change.resize(width * size, Pack::default());
+        self.change = Aligned::zeros(width * size);
         for (column, &parameter) in columns.dynamic.iter().enumerate() {
             let derivative =
                 one_step.derivative(parameter, h, course.stages, course.interpolation());

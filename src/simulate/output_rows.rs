@@ -2,10 +2,14 @@
 
 use multiversion::multiversion;
 
+use super::aligned::Aligned;
 use super::columns::Columns;
 use super::linearised::{BLOCK, Linearised};
 use super::pack::{PACK, Pack, multiply_add, packs};
 use crate::model::Model;
+
+/// Outputs that depend on more states go the general way.
+const MOST_IN_REGISTERS: usize = 16;
 
 pub(super) struct OutputRows {
     outputs: Vec<OutputRow>,
@@ -20,9 +24,9 @@ struct OutputRow {
     /// Entries of ∂g/∂θ: result of the program, and column.
     by_parameter: Vec<(usize, usize)>,
     /// ∂g/∂θ as packs: by sample of the block; one row for all where only θ changes it; empty where it is zero.
-    direct: Vec<Pack>,
+    direct: Aligned<Pack>,
     /// By sample of the block.
-    rows: Vec<Pack>,
+    rows: Aligned<Pack>,
 }
 
 impl OutputRows {
@@ -51,8 +55,8 @@ impl OutputRows {
                 width,
                 by_state: by_state.map(|(i, &(_, state))| (i, state)).collect(),
                 by_parameter,
-                direct: vec![Pack::default(); direct_rows * width],
-                rows: vec![Pack::default(); BLOCK * width],
+                direct: Aligned::zeros(direct_rows * width),
+                rows: Aligned::zeros(BLOCK * width),
             }
         };
         Self {
@@ -104,6 +108,9 @@ fn form(
     (states, width): (usize, usize),
 ) {
     let sensitivities = (sensitivities, states);
+    if output.by_state.len() > MOST_IN_REGISTERS {
+        return form_any(output, len, observation, sensitivities, width);
+    }
     match (output.width, width) {
         (1, 1) => form_packs::<1, 1>(output, len, observation, sensitivities),
         (2, 1) => form_packs::<2, 1>(output, len, observation, sensitivities),
@@ -133,13 +140,19 @@ fn form_packs<const ROW: usize, const STATE: usize>(
     let same = direct.first().unwrap_or(&zero);
     let (sensitivities, _) = sensitivities.as_chunks::<STATE>();
     let samples = sensitivities.chunks_exact(states.max(1));
-    for (k, (row, by_state)) in rows[..len].iter_mut().zip(samples).enumerate() {
+    let nothing = (&[0.0; BLOCK], 0);
+    let mut entries = [nothing; MOST_IN_REGISTERS];
+    for (to, &(entry, state)) in entries.iter_mut().zip(&output.by_state) {
+        *to = (observation.over_block(0, entry), state);
+    }
+    let entries = &entries[..output.by_state.len()];
+    let rows = rows[..len.min(BLOCK)].iter_mut();
+    for (k, (row, by_state)) in rows.zip(samples).enumerate() {
         let mut sum = *direct.get(k).unwrap_or(same);
-        for &(entry, state) in &output.by_state {
-            let value = observation.value(0, entry, k);
+        for &(values, state) in entries {
             let from = &by_state[state];
             for pack in 0..STATE {
-                sum[pack] = multiply_add(value, from[pack], sum[pack]);
+                sum[pack] = multiply_add(values[k], from[pack], sum[pack]);
             }
         }
         *row = sum;

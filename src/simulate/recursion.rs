@@ -2,6 +2,7 @@
 
 use multiversion::multiversion;
 
+use super::aligned::Aligned;
 use super::columns::Columns;
 use super::linearised::{BLOCK, Linearised};
 use super::method::Stage;
@@ -37,16 +38,16 @@ pub(super) struct Recursion {
     /// Packs of ∂f/∂θ at one sample: the zero pack, and those with an entry.
     packs: usize,
     /// By stage, then sample of the block: the packs of ∂f/∂θ.
-    forcing: Vec<Pack>,
+    forcing: Aligned<Pack>,
     scratch: Scratch,
 }
 
 /// One pack of each state's row.
 struct Scratch {
-    now: Vec<Pack>,
-    stage: Vec<Pack>,
-    slope: Vec<Pack>,
-    sum: Vec<Pack>,
+    now: Aligned<Pack>,
+    stage: Aligned<Pack>,
+    slope: Aligned<Pack>,
+    sum: Aligned<Pack>,
 }
 
 impl Recursion {
@@ -71,7 +72,7 @@ impl Recursion {
                 number: *pack * PACK + column % PACK,
             });
         }
-        let zeros = || vec![Pack::default(); states];
+        let zeros = || Aligned::zeros(states);
         Self {
             states,
             width,
@@ -79,7 +80,7 @@ impl Recursion {
             by_parameter,
             forced,
             packs,
-            forcing: vec![Pack::default(); stages * BLOCK * packs],
+            forcing: Aligned::zeros(stages * BLOCK * packs),
             scratch: Scratch {
                 now: zeros(),
                 stage: zeros(),

@@ -1,5 +1,6 @@
 //! ∂x/∂θ along the samples of a block: sequential in time, packs of parameters side by side.
 
+use super::aligned::Aligned;
 use super::columns::Columns;
 use super::course::Course;
 use super::linearised::{BLOCK, Linearised};
@@ -19,7 +20,7 @@ pub(super) struct StateSensitivities {
     /// Packs of a row of ∂x/∂θ.
     width: usize,
     /// By sample of the block, then state: a row of packs. One sample more than a block has.
-    pub rows: Vec<Pack>,
+    pub rows: Aligned<Pack>,
     general: General,
     one_step: OneStepRecursion,
 }
@@ -52,7 +53,7 @@ impl StateSensitivities {
         Self {
             states,
             width,
-            rows: vec![Pack::default(); (BLOCK + 1) * states * width],
+            rows: Aligned::zeros((BLOCK + 1) * states * width),
             general: General::new(model, columns, stages),
             one_step: OneStepRecursion::default(),
         }

@@ -7,6 +7,7 @@
 
 use multiversion::multiversion;
 
+use super::aligned::Aligned;
 use super::columns::Columns;
 use super::linearised::{BLOCK, Linearised};
 use super::method::Stage;
@@ -50,15 +51,15 @@ pub(super) struct Transition {
     places: Vec<(usize, usize)>,
     plan: Vec<StagePlan>,
     /// By slot: [P | Q].
-    maps: Vec<[f64; BLOCK]>,
+    maps: Aligned<[f64; BLOCK]>,
     scratch: Scratch,
 }
 
 /// Of one group of samples, by slot: h a_s [P_(s-1) | Q_(s-1)], that of the stage to come, and the sum of stages.
 struct Scratch {
-    before: Vec<Group>,
-    after: Vec<Group>,
-    sum: Vec<Group>,
+    before: Aligned<Group>,
+    after: Aligned<Group>,
+    sum: Aligned<Group>,
 }
 
 impl Transition {
@@ -110,9 +111,9 @@ impl Transition {
             }
             plan.push(stage);
         }
-        let zeros = || vec![Group::default(); places.len()];
+        let zeros = || Aligned::zeros(places.len());
         Self {
-            maps: vec![[0.0; BLOCK]; places.len()],
+            maps: Aligned::zeros(places.len()),
             scratch: Scratch {
                 before: zeros(),
                 after: zeros(),
@@ -156,7 +157,7 @@ impl Transition {
                 );
                 std::mem::swap(&mut self.scratch.before, &mut self.scratch.after);
             }
-            for (map, sum) in self.maps.iter_mut().zip(&self.scratch.sum) {
+            for (map, sum) in self.maps.iter_mut().zip(&*self.scratch.sum) {
                 *of_mut(map, group) = *sum;
             }
         }

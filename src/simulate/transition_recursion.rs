@@ -2,39 +2,48 @@
 
 use multiversion::multiversion;
 
+use super::aligned::Aligned;
 use super::columns::Columns;
 use super::linearised::{BLOCK, Linearised};
 use super::method::Stage;
 use super::pack::{PACK, Pack, multiply_add, packs};
 use super::segment::Segment;
-use super::transition::{Transition, meets, moved};
+use super::transition::Transition;
 use crate::model::Model;
+
+/// Packs of a row that go along together: as many as stay in registers whatever the model.
+const MOST_PACKS: usize = 4;
 
 /// An entry of P times a row of ∂x/∂θ.
 #[derive(Clone, Copy)]
 struct Product {
     slot: usize,
-    state: usize,
+    /// The first pack of the row, among those of a sample.
+    row: usize,
 }
 
-/// One pack of one state's row.
+/// The row of one state.
 struct Row {
-    /// Its number among the packs of a sample.
+    /// Its first pack, among those of a sample.
     at: usize,
-    products: Vec<Product>,
-    /// Its number among the packs of Q; 0 is one that is always zero.
-    forced: usize,
+    /// How many products.
+    products: usize,
 }
 
 pub(super) struct TransitionRecursion {
     transition: Transition,
-    /// Packs of a sample.
-    sample: usize,
+    /// Packs of a row.
+    width: usize,
+    /// By state.
     rows: Vec<Row>,
+    /// One row's after the other's.
+    products: Vec<Product>,
+    /// By state, then pack: its number among the packs of Q; 0 is one that is always zero.
+    forced: Vec<usize>,
     /// Slots of Q, and their numbers within the packs of a sample.
     forcing: Vec<(usize, usize)>,
     /// By sample of the block: the zero pack, and those of Q with an entry.
-    forcing_packs: Vec<Pack>,
+    forcing_packs: Aligned<Pack>,
     packs: usize,
 }
 
@@ -57,37 +66,35 @@ impl TransitionRecursion {
             }
             forcing.push((slot, *pack * PACK + column % PACK));
         }
-        let moved = moved(model, columns);
-        let row = |at: usize| {
-            let (row, pack) = (at / width, at % width);
+        let mut products = Vec::new();
+        let row = |row: usize| {
+            let so_far = products.len();
             let slots = transition.places().iter().enumerate();
-            let products = slots.filter(|&(_, &(of, column))| {
-                of == row && column < states && meets(&moved[column], pack)
-            });
+            let slots = slots.filter(|&(_, &(of, column))| of == row && column < states);
+            products.extend(slots.map(|(slot, &(_, column))| Product {
+                slot,
+                row: column * width,
+            }));
             Row {
-                at,
-                products: products
-                    .map(|(slot, &(_, column))| Product {
-                        slot,
-                        state: column * width + pack,
-                    })
-                    .collect(),
-                forced: forced[at],
+                at: row * width,
+                products: products.len() - so_far,
             }
         };
         Self {
-            rows: (0..states * width).map(row).collect(),
+            rows: (0..states).map(row).collect(),
+            products,
             transition,
-            sample: states * width,
+            width,
+            forced,
             forcing,
-            forcing_packs: vec![Pack::default(); BLOCK * count],
+            forcing_packs: Aligned::zeros(BLOCK * count),
             packs: count,
         }
     }
 
     /// Products of a sample that are done side by side, and those of packs that are done in turn.
     pub fn products(&self) -> (usize, usize) {
-        let in_turn = self.rows.iter().map(|row| row.products.len()).sum();
+        let in_turn = self.products.len() * self.width;
         (self.transition.products(), in_turn)
     }
 
@@ -119,17 +126,56 @@ impl TransitionRecursion {
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
 fn sweep(recursion: &TransitionRecursion, steps: usize, rows: &mut [Pack]) {
-    let sample = recursion.sample;
-    for k in 0..steps {
-        let (from, to) = rows[k * sample..(k + 2) * sample].split_at_mut(sample);
-        let forcing = &recursion.forcing_packs[k * recursion.packs..(k + 1) * recursion.packs];
-        for row in &recursion.rows {
-            let mut value = multiply_add(1.0, from[row.at], forcing[row.forced]);
-            for product in &row.products {
-                let factor = recursion.transition.over_block(product.slot)[k];
-                value = multiply_add(factor, from[product.state], value);
-            }
-            to[row.at] = value;
+    let slots = recursion.products.iter().map(|product| product.slot);
+    let factors: Vec<&[f64; BLOCK]> = slots
+        .map(|slot| recursion.transition.over_block(slot))
+        .collect();
+    // parameters do not know of one another
+    for first in (0..recursion.width).step_by(MOST_PACKS) {
+        match recursion.width - first {
+            1 => sweep_packs::<1>(recursion, &factors, first, steps, rows),
+            2 => sweep_packs::<2>(recursion, &factors, first, steps, rows),
+            3 => sweep_packs::<3>(recursion, &factors, first, steps, rows),
+            _ => sweep_packs::<MOST_PACKS>(recursion, &factors, first, steps, rows),
         }
     }
+}
+
+/// `COUNT` packs of each row, from the pack `first` on.
+#[inline(always)]
+fn sweep_packs<const COUNT: usize>(
+    recursion: &TransitionRecursion,
+    factors: &[&[f64; BLOCK]],
+    first: usize,
+    steps: usize,
+    rows: &mut [Pack],
+) {
+    let sample = recursion.rows.len() * recursion.width;
+    for k in 0..steps.min(BLOCK) {
+        let (from, to) = rows[k * sample..(k + 2) * sample].split_at_mut(sample);
+        let forcing = &recursion.forcing_packs[k * recursion.packs..(k + 1) * recursion.packs];
+        let mut products = recursion.products.iter().zip(factors);
+        for row in &recursion.rows {
+            let at = row.at + first;
+            let mut sums = *some_packs::<COUNT>(from, at);
+            let forced = &recursion.forced[at..at + COUNT];
+            for i in 0..COUNT {
+                sums[i] = multiply_add(1.0, sums[i], forcing[forced[i]]);
+            }
+            for (product, factor) in products.by_ref().take(row.products) {
+                let other = some_packs::<COUNT>(from, product.row + first);
+                for i in 0..COUNT {
+                    sums[i] = multiply_add(factor[k], other[i], sums[i]);
+                }
+            }
+            let (to, _) = to[at..].as_chunks_mut::<COUNT>();
+            to[0] = sums;
+        }
+    }
+}
+
+#[inline(always)]
+fn some_packs<const COUNT: usize>(packs: &[Pack], at: usize) -> &[Pack; COUNT] {
+    let (chunks, _) = packs[at..].as_chunks::<COUNT>();
+    &chunks[0]
 }
