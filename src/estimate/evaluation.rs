@@ -143,8 +143,8 @@ impl<'p> Evaluator<'p> {
         }
         let mut total = Sums::zeros(outputs, unknowns, full);
         let locals = strand::sums(&mut self.strands, problem, theta, full)?;
-        for (segment, local) in locals.iter().enumerate() {
-            local.scatter(problem, segment, &mut total);
+        for (segment, local) in locals.into_iter().enumerate() {
+            local.add_to(problem, segment, &mut total);
         }
         mirror(&mut total.residuals);
         total.finite()

@@ -5,7 +5,7 @@
 //! r_i = Σ e_i²/N_i and J = Σ (N_i/2) ln r_i + const. Its Hessian is the information matrix less
 //! a term for the change of R with θ; with that term the step converges faster than R merely held fixed.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{SQRT_2, TAU};
 
 use nalgebra::{DMatrix, DVector};
 
@@ -23,7 +23,7 @@ pub struct NormalEquations {
     pub information: DMatrix<f64>,
     /// -∂J/∂θ
     pub descent: DVector<f64>,
-    /// What the change of R with θ takes off the information matrix; where R is estimated.
+    /// What the change of R with θ takes off the information matrix, where R is estimated: U of U Uᵀ.
     pub(super) relaxation: Option<DMatrix<f64>>,
 }
 
@@ -44,7 +44,7 @@ impl NormalEquations {
             information,
             descent,
             relaxation: match noise {
-                Noise::Estimated { .. } => Some(weighting.relaxation(&sums, &problem.counts)),
+                Noise::Estimated { .. } => Some(weighting.relaxation(&sums, &problem.counts)?),
                 Noise::Given { .. } => None,
             },
             weighting,
@@ -153,25 +153,12 @@ impl Weighting {
 
     /// The information matrix F = Σ Sᵀ R⁻¹ S.
     pub fn information(&self, sums: &Sums) -> DMatrix<f64> {
-        let full = sums.gradients[0].len() > 1;
-        let unknowns = sums.products[0].nrows();
-        let mut information = DMatrix::zeros(unknowns, unknowns);
-        for i in 0..self.inverse.nrows() {
-            for j in if full { 0..i } else { i..i } {
-                let product = &sums.products[pair(i, j, full)];
-                information += (product + product.transpose()) * self.inverse[(i, j)];
-            }
-            // in place: with many unknowns these matrices are large
-            let weight = self.inverse[(i, i)];
-            let own = &sums.products[pair(i, i, full)];
-            information.zip_apply(own, |sum, product| *sum += product * weight);
-        }
-        information
+        sums.weighted(&self.inverse)
     }
 
     /// The descent direction -∂J/∂θ = Σ Sᵀ R⁻¹ e.
     pub fn descent(&self, sums: &Sums) -> DVector<f64> {
-        let mut descent = DVector::zeros(sums.products[0].nrows());
+        let mut descent = DVector::zeros(sums.gradients[0][0].len());
         for (i, gradients) in sums.gradients.iter().enumerate() {
             if let [own] = gradients.as_slice() {
                 descent += own * self.inverse[(i, i)];
@@ -184,34 +171,40 @@ impl Weighting {
         descent
     }
 
-    /// What the change of R with θ takes off the information matrix:
+    /// What the change of R with θ takes off the information matrix, as U of U Uᵀ, unknowns by a few columns:
     /// (N/2) tr(R⁻¹ ∂R/∂θ_a R⁻¹ ∂R/∂θ_b), with ∂R/∂θ_a = -(1/N) Σ (S_a eᵀ + e S_aᵀ); output by output, with
-    /// its own N, where R is diagonal.
-    pub fn relaxation(&self, sums: &Sums, counts: &[usize]) -> DMatrix<f64> {
-        let unknowns = sums.products[0].nrows();
+    /// its own N, where R is diagonal. With R = L Lᵀ the trace is a scalar product of L⁻¹ ∂R/∂θ L⁻ᵀ.
+    ///
+    /// # Errors
+    /// R is singular.
+    pub fn relaxation(&self, sums: &Sums, counts: &[usize]) -> Result<DMatrix<f64>, Unusable> {
+        let unknowns = sums.gradients[0][0].len();
         let outputs = self.inverse.nrows();
-        let mut term = DMatrix::zeros(unknowns, unknowns);
-        if sums.gradients[0].len() == 1 {
-            for (i, gradients) in sums.gradients.iter().enumerate() {
-                let scaled = &gradients[0] * self.inverse[(i, i)];
-                term.ger(2.0 / counts[i] as f64, &scaled, &scaled, 1.0);
-            }
-            return term;
+        if self.diagonal {
+            let column = |i: usize| {
+                let share = (2.0 / counts[i] as f64).sqrt() * self.inverse[(i, i)];
+                &sums.gradients[i][0] * share
+            };
+            let columns: Vec<DVector<f64>> = (0..outputs).map(column).collect();
+            return Ok(DMatrix::from_columns(&columns));
         }
-        let n = counts[0] as f64;
-        let change = |a: usize| {
-            let moment = DMatrix::from_fn(outputs, outputs, |i, j| sums.gradients[i][j][a]);
-            &self.inverse * (&moment + moment.transpose())
-        };
-        let changes: Vec<DMatrix<f64>> = (0..unknowns).map(change).collect();
+        let factor = self.covariance.clone().cholesky();
+        let inverse =
+            (factor.and_then(|factor| factor.l().try_inverse())).ok_or(Unusable::SingularNoise)?;
+        let share = (0.5 / counts[0] as f64).sqrt();
+        let mut columns = DMatrix::zeros(unknowns, outputs * (outputs + 1) / 2);
         for a in 0..unknowns {
-            for b in 0..=a {
-                let trace = changes[a].component_mul(&changes[b].transpose()).sum();
-                term[(a, b)] = 0.5 * trace / n;
-                term[(b, a)] = term[(a, b)];
+            let moment = DMatrix::from_fn(outputs, outputs, |i, j| sums.gradients[i][j][a]);
+            let change = &inverse * (&moment + moment.transpose()) * inverse.transpose();
+            for i in 0..outputs {
+                for j in 0..=i {
+                    // one for both of the triangles
+                    let both = if i == j { 1.0 } else { SQRT_2 };
+                    columns[(a, pair(i, j, true))] = both * share * change[(i, j)];
+                }
             }
         }
-        term
+        Ok(columns)
     }
 }
 

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use super::missing::Missing;
 use super::problem::Problem;
 use super::products::{add_cross_products, add_gradient, add_products, dot};
-use super::sums::{Sums, pair};
+use super::sums::{Product, Products, Sums, pair};
 use crate::simulate::{Block, PACK, Pack, Segment, packs};
 
 pub(super) struct LocalSums {
@@ -30,8 +30,7 @@ impl LocalSums {
         let widths: Vec<usize> = (0..outputs)
             .map(|i| problem.columns.of_output(i).len())
             .collect();
-        let pairs = (0..outputs).flat_map(|i| (if full { 0 } else { i }..=i).map(move |j| (i, j)));
-        let products = pairs
+        let products = pairs(&widths, full)
             .map(|(i, j)| vec![Pack::default(); widths[i] * packs(widths[j])])
             .collect();
         let columns = if full { outputs } else { 1 };
@@ -86,41 +85,34 @@ impl LocalSums {
         }
     }
 
-    /// Adds to the sums of all segments, in the places of θ.
-    pub fn scatter(&self, problem: &Problem, segment: usize, total: &mut Sums) {
-        let outputs = self.widths.len();
+    /// Adds to the sums of all segments.
+    pub fn add_to(self, problem: &Problem, segment: usize, total: &mut Sums) {
         let places = |output: usize| -> Vec<Option<usize>> {
             let parameters = problem.columns.of_output(output).iter();
             parameters
                 .map(|&parameter| problem.unknowns.place(segment, parameter))
                 .collect()
         };
+        let places: Vec<_> = (0..self.widths.len()).map(places).collect();
         total.residuals += &self.residuals;
-        for i in 0..outputs {
-            let rows = places(i);
-            for j in if self.full { 0..=i } else { i..=i } {
-                let columns = places(j);
-                let from = self.products[pair(i, j, self.full)].as_flattened();
-                let stride = packs(columns.len()) * PACK;
-                let to = &mut total.products[pair(i, j, self.full)];
-                for (a, row) in rows.iter().enumerate() {
-                    for (b, column) in columns.iter().enumerate() {
-                        let (Some(row), Some(column)) = (*row, *column) else {
-                            continue;
-                        };
-                        // only the lower triangle is summed where both are the same
-                        let (a, b) = if i == j && b > a { (b, a) } else { (a, b) };
-                        to[(row, column)] += from[a * stride + b];
-                    }
-                }
-            }
-            for (gradient, to) in self.gradients[i].iter().zip(&mut total.gradients[i]) {
-                for (&value, place) in gradient.as_flattened().iter().zip(&rows) {
-                    if let Some(place) = *place {
-                        to[place] += value;
-                    }
-                }
-            }
-        }
+        let gradients = self.gradients.iter();
+        total.add_gradients(
+            &places,
+            gradients.map(|of_output| of_output.iter().map(|sum| sum.as_flattened())),
+        );
+        let product = |(sums, across): (Vec<Pack>, usize)| Product {
+            values: sums.as_flattened().to_vec(),
+            width: packs(across) * PACK,
+        };
+        let across = pairs(&self.widths, self.full).map(|(_, j)| self.widths[j]);
+        total.products.push(Products {
+            of_pairs: self.products.into_iter().zip(across).map(product).collect(),
+            places,
+        });
     }
+}
+
+/// (i, j), j ≤ i, of outputs that count.
+fn pairs(outputs: &[usize], full: bool) -> impl Iterator<Item = (usize, usize)> {
+    (0..outputs.len()).flat_map(move |i| (if full { 0 } else { i }..=i).map(move |j| (i, j)))
 }

@@ -17,8 +17,8 @@ pub(super) struct Newton {
 }
 
 impl Newton {
-    /// `held` are the places held at a bound. The Hessian less `relaxation` is used where that is positive
-    /// definite, else the information matrix alone.
+    /// `held` are the places held at a bound. With U the `relaxation`, the Hessian less U Uᵀ is used where that is
+    /// positive definite, else the information matrix alone.
     pub fn new(
         information: &DMatrix<f64>,
         relaxation: Option<&DMatrix<f64>>,
@@ -26,11 +26,15 @@ impl Newton {
         held: &[Option<Bound>],
     ) -> Option<Self> {
         let moving: Vec<usize> = (0..held.len()).filter(|&i| held[i].is_none()).collect();
-        let part = |m: &DMatrix<f64>| m.select_rows(&moving).select_columns(&moving);
-        let own = part(information);
-        let relaxed = relaxation.map(|relaxation| &own - part(relaxation));
+        let hessian = if moving.len() == held.len() {
+            Hessian::of(information, relaxation)?
+        } else {
+            let own = information.select_rows(&moving).select_columns(&moving);
+            let relaxation = relaxation.map(|columns| columns.select_rows(&moving));
+            Hessian::of(&own, relaxation.as_ref())?
+        };
         Some(Self {
-            hessian: Hessian::of(&own, relaxed.as_ref())?,
+            hessian,
             descent: descent.select_rows(&moving),
             moving,
             unknowns: held.len(),
@@ -77,12 +81,12 @@ enum Hessian {
 }
 
 impl Hessian {
-    /// `relaxed` is what the change of R leaves of the information matrix.
-    fn of(information: &DMatrix<f64>, relaxed: Option<&DMatrix<f64>>) -> Option<Self> {
+    /// U Uᵀ of the `relaxation` is what the change of R takes off the information matrix.
+    fn of(information: &DMatrix<f64>, relaxation: Option<&DMatrix<f64>>) -> Option<Self> {
         let diagonal = information.diagonal();
         // what is taken off is positive: where the rest sees a direction, the whole does
-        let definite = relaxed
-            .and_then(|relaxed| Definite::of(relaxed, &diagonal))
+        let definite = relaxation
+            .and_then(|columns| Definite::less(information, columns, &diagonal))
             .or_else(|| Definite::of(information, &diagonal));
         if let Some(definite) = definite {
             return Some(Self::Definite(definite));
@@ -92,8 +96,8 @@ impl Hessian {
             let all = 0..spectrum.values.len();
             all.filter(|&i| spectrum.is_seen(i)).count()
         };
-        let sharper = relaxed
-            .and_then(|relaxed| Spectrum::of(relaxed, &diagonal))
+        let sharper = relaxation
+            .and_then(|u| Spectrum::of(&(information - u * u.transpose()), &diagonal))
             .filter(|sharper| seen(sharper) == seen(&spectrum));
         Some(Self::Split(sharper.unwrap_or(spectrum)))
     }

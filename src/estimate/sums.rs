@@ -7,40 +7,107 @@ use super::evaluation::Unusable;
 /// Σ e eᵀ over all samples, outputs by outputs; only the diagonal unless R is full.
 pub(super) type ResidualSums = DMatrix<f64>;
 
-/// For each pair of outputs (i, j), j ≤ i: Σ S_iᵀ S_j and Σ S_iᵀ e_j over all samples, in θ's places.
 #[derive(Clone, Debug)]
 pub(super) struct Sums {
     pub residuals: ResidualSums,
-    /// By pair; see [`pair`].
-    pub products: Vec<DMatrix<f64>>,
-    /// By output i, then j: Σ S_iᵀ e_j.
+    /// By output i, then j: Σ S_iᵀ e_j over all samples, in θ's places. One j, that is i, unless R is full.
     pub gradients: Vec<Vec<DVector<f64>>>,
+    /// Those of each segment: in θ's places they would fill many large matrices, with zeros for the most part.
+    pub products: Vec<Products>,
+}
+
+/// For each pair of outputs (i, j), j ≤ i: Σ S_iᵀ S_j over the samples of a segment, in the columns of its own
+/// sensitivities.
+#[derive(Clone, Debug)]
+pub(super) struct Products {
+    /// By output: where its columns stand in θ; `None` for what is no unknown.
+    pub places: Vec<Vec<Option<usize>>>,
+    /// By pair; see [`pair`]. Where i = j only the lower triangle counts.
+    pub of_pairs: Vec<Product>,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Product {
+    /// Row by row.
+    pub values: Vec<f64>,
+    /// Of a row, with what fills it up.
+    pub width: usize,
 }
 
 impl Sums {
     /// Nothing yet; `full` where all pairs of outputs count.
     pub fn zeros(outputs: usize, unknowns: usize, full: bool) -> Self {
-        let pairs = if full {
-            outputs * (outputs + 1) / 2
-        } else {
-            outputs
-        };
         let columns = if full { outputs } else { 1 };
         Self {
             residuals: DMatrix::zeros(outputs, outputs),
-            products: vec![DMatrix::zeros(unknowns, unknowns); pairs],
             gradients: vec![vec![DVector::zeros(unknowns); columns]; outputs],
+            products: Vec::new(),
         }
     }
 
     /// # Errors
     /// A residual or a derivative is not a finite number.
     pub fn finite(self) -> Result<Self, Unusable> {
-        let mut products = self.products.iter().flat_map(|product| product.iter());
-        if self.residuals.iter().all(|v| v.is_finite()) && products.all(|v| v.is_finite()) {
+        let products = self.products.iter().flat_map(|part| &part.of_pairs);
+        let mut values = products.flat_map(|product| &product.values);
+        if self.residuals.iter().all(|v| v.is_finite()) && values.all(|v| v.is_finite()) {
             Ok(self)
         } else {
             Err(Unusable::NotFinite)
+        }
+    }
+
+    /// Adds Σ S_iᵀ e_j of a segment's own columns, by i, then j.
+    pub fn add_gradients<'g>(
+        &mut self,
+        places: &[Vec<Option<usize>>],
+        own: impl IntoIterator<Item = impl IntoIterator<Item = &'g [f64]>>,
+    ) {
+        for ((places, own), to) in places.iter().zip(own).zip(&mut self.gradients) {
+            for (own, to) in own.into_iter().zip(to) {
+                for (value, place) in own.iter().zip(places) {
+                    if let Some(place) = *place {
+                        to[place] += value;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Σ Sᵀ W S over all samples, in θ's places.
+    pub fn weighted(&self, weight: &DMatrix<f64>) -> DMatrix<f64> {
+        let unknowns = self.gradients[0][0].len();
+        let mut total = DMatrix::zeros(unknowns, unknowns);
+        for part in &self.products {
+            part.add_weighted(weight, &mut total);
+        }
+        total
+    }
+}
+
+impl Products {
+    fn add_weighted(&self, weight: &DMatrix<f64>, total: &mut DMatrix<f64>) {
+        let outputs = self.places.len();
+        let full = self.of_pairs.len() > outputs;
+        for i in 0..outputs {
+            for j in if full { 0..i + 1 } else { i..i + 1 } {
+                let product = &self.of_pairs[pair(i, j, full)];
+                let weight = weight[(i, j)];
+                for (a, &row) in self.places[i].iter().enumerate() {
+                    let Some(row) = row else { continue };
+                    let values = &product.values[a * product.width..][..product.width];
+                    // where both outputs are the same, the upper triangle is the lower one
+                    let columns = if i == j { a } else { values.len() };
+                    for (value, &column) in values[..columns].iter().zip(&self.places[j]) {
+                        let Some(column) = column else { continue };
+                        total[(row, column)] += value * weight;
+                        total[(column, row)] += value * weight;
+                    }
+                    if i == j {
+                        total[(row, row)] += values[a] * weight;
+                    }
+                }
+            }
         }
     }
 }

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::estimate::evaluation::Unusable;
 use crate::estimate::problem::Problem;
-use crate::estimate::sums::{Sums, mirror, pair};
+use crate::estimate::sums::{Product, Products, Sums, mirror, pair};
 use crate::model::Scalar;
 use crate::simulate::{March, Standing};
 
@@ -142,48 +142,75 @@ pub(in crate::estimate) fn sums<P: Perturbation>(
     let places: Vec<usize> = (0..problem.unknowns.len()).collect();
     let mut total = Sums::zeros(outputs, places.len(), full);
     for index in 0..problem.segments.len() {
-        let mut local: Option<Sums> = None;
+        let mut local: Option<LocalSums> = None;
         let own = columns(technique, problem, index, theta, &places, |stretch| {
             let width = stretch.slopes[0].ncols();
-            let local = local.get_or_insert_with(|| Sums::zeros(outputs, width, full));
-            add(local, stretch, full);
+            let local = local.get_or_insert_with(|| LocalSums::zeros(outputs, width, full));
+            local.add(stretch, full);
         })?;
         if let Some(local) = local {
-            scatter(&local, &own, &mut total);
+            local.add_to(&own, &mut total);
         }
     }
     mirror(&mut total.residuals);
     total.finite()
 }
 
-fn add(to: &mut Sums, stretch: &Columns<'_>, full: bool) {
-    let (slopes, residuals) = (stretch.slopes, stretch.residuals);
-    for i in 0..slopes.len() {
-        for j in if full { 0..i + 1 } else { i..i + 1 } {
-            to.residuals[(i, j)] += residuals[i].dot(&residuals[j]);
-            let product = &mut to.products[pair(i, j, full)];
-            product.gemm_tr(1.0, &slopes[i], &slopes[j], 1.0);
-        }
-        for (j, gradient) in to.gradients[i].iter_mut().enumerate() {
-            let residual = &residuals[if full { j } else { i }];
-            gradient.gemv_tr(1.0, &slopes[i], residual, 1.0);
-        }
-    }
+/// The sums of one segment, in its own columns.
+struct LocalSums {
+    /// Residuals and gradients.
+    sums: Sums,
+    /// By pair of outputs (i, j): Σ S_jᵀ S_i.
+    products: Vec<DMatrix<f64>>,
 }
 
-/// From the columns of one segment to the places of θ.
-fn scatter(local: &Sums, places: &[usize], total: &mut Sums) {
-    total.residuals += &local.residuals;
-    for (from, to) in local.products.iter().zip(&mut total.products) {
-        for (a, &row) in places.iter().enumerate() {
-            for (b, &column) in places.iter().enumerate() {
-                to[(row, column)] += from[(a, b)];
+impl LocalSums {
+    fn zeros(outputs: usize, width: usize, full: bool) -> Self {
+        let pairs = if full {
+            outputs * (outputs + 1) / 2
+        } else {
+            outputs
+        };
+        Self {
+            sums: Sums::zeros(outputs, width, full),
+            products: vec![DMatrix::zeros(width, width); pairs],
+        }
+    }
+
+    fn add(&mut self, stretch: &Columns<'_>, full: bool) {
+        let (slopes, residuals) = (stretch.slopes, stretch.residuals);
+        for i in 0..slopes.len() {
+            for j in if full { 0..i + 1 } else { i..i + 1 } {
+                self.sums.residuals[(i, j)] += residuals[i].dot(&residuals[j]);
+                let product = &mut self.products[pair(i, j, full)];
+                product.gemm_tr(1.0, &slopes[j], &slopes[i], 1.0);
+            }
+            for (j, gradient) in self.sums.gradients[i].iter_mut().enumerate() {
+                let residual = &residuals[if full { j } else { i }];
+                gradient.gemv_tr(1.0, &slopes[i], residual, 1.0);
             }
         }
     }
-    for (from, to) in (local.gradients.iter().flatten()).zip(total.gradients.iter_mut().flatten()) {
-        for (&value, &place) in from.iter().zip(places) {
-            to[place] += value;
-        }
+
+    /// Adds to the sums of all segments; `places` are those of the columns in θ.
+    fn add_to(self, places: &[usize], total: &mut Sums) {
+        let width = places.len();
+        let places: Vec<Option<usize>> = places.iter().copied().map(Some).collect();
+        let places = vec![places; self.sums.gradients.len()];
+        total.residuals += &self.sums.residuals;
+        let gradients = self.sums.gradients.iter();
+        total.add_gradients(
+            &places,
+            gradients.map(|of_output| of_output.iter().map(DVector::as_slice)),
+        );
+        // column by column of Σ S_jᵀ S_i is row by row of Σ S_iᵀ S_j
+        let product = |product: DMatrix<f64>| Product {
+            values: product.as_slice().to_vec(),
+            width,
+        };
+        total.products.push(Products {
+            of_pairs: self.products.into_iter().map(product).collect(),
+            places,
+        });
     }
 }

@@ -7,7 +7,7 @@ use super::super::likelihood::Weighting;
 use super::super::options::{Noise, NoiseStructure};
 use super::super::priors;
 use super::super::problem::Problem;
-use super::super::sums::{ResidualSums, Sums, mirror, pair};
+use super::super::sums::{Product, Products, ResidualSums, Sums, mirror, pair};
 use super::gain::{Gain, Setting};
 use super::layout::Layout;
 use super::predictor::{Prediction, Predictor};
@@ -163,19 +163,7 @@ impl<'p> FilterEvaluator<'p> {
         let problem = self.problem;
         let (outputs, unknowns) = (problem.model.outputs.len(), self.layout.len());
         let full = self.full;
-        let pairs = if full {
-            outputs * (outputs + 1) / 2
-        } else {
-            outputs
-        };
-        let mut total = Sums {
-            residuals: DMatrix::zeros(outputs, outputs),
-            products: vec![DMatrix::zeros(unknowns, unknowns); pairs],
-            gradients: vec![
-                vec![DVector::zeros(unknowns); if full { outputs } else { 1 }];
-                outputs
-            ],
-        };
+        let mut total = Sums::zeros(outputs, unknowns, full);
         let mut shares = Shares::new(problem.model.states.len());
         self.settings(z, weight, |this, index, setting| {
             let gain = gain(setting, index)?;
@@ -194,15 +182,11 @@ impl<'p> FilterEvaluator<'p> {
                     local.add(at);
                 },
             );
-            local.scatter(&places, &mut total);
+            local.add_to(&places, &mut total);
             Ok(())
         })?;
-        let residuals = finished(std::mem::take(&mut total.residuals))?;
-        let finite = |matrix: &DMatrix<f64>| matrix.iter().all(|value| value.is_finite());
-        if !total.products.iter().all(finite) {
-            return Err(Unusable::NotFinite);
-        }
-        Ok((Sums { residuals, ..total }, shares.0))
+        mirror(&mut total.residuals);
+        Ok((total.finite()?, shares.0))
     }
 
     /// The shares and their slopes by the intensities alone: quick, without a look at the data.
@@ -322,25 +306,20 @@ impl LocalSums {
         }
     }
 
-    /// Adds to the sums of all segments, in the places of the unknowns.
-    fn scatter(&self, places: &[usize], total: &mut Sums) {
+    /// Adds to the sums of all segments; `places` are those of the columns among the unknowns.
+    fn add_to(self, places: &[usize], total: &mut Sums) {
+        let places: Vec<Option<usize>> = places.iter().copied().map(Some).collect();
+        let places = vec![places; self.gradients.len()];
+        let gradients = self.gradients.iter();
+        total.add_gradients(
+            &places,
+            gradients.map(|of_output| of_output.iter().map(Vec::as_slice)),
+        );
         let width = self.width;
-        for i in 0..self.gradients.len() {
-            for j in if self.full { 0..=i } else { i..=i } {
-                let from = &self.products[pair(i, j, self.full)];
-                let to = &mut total.products[pair(i, j, self.full)];
-                for (a, &row) in places.iter().enumerate() {
-                    for (b, &column) in places.iter().enumerate() {
-                        let (a, b) = if i == j && b > a { (b, a) } else { (a, b) };
-                        to[(row, column)] += from[a * width + b];
-                    }
-                }
-            }
-            for (from, to) in self.gradients[i].iter().zip(&mut total.gradients[i]) {
-                for (value, &place) in from.iter().zip(places) {
-                    to[place] += value;
-                }
-            }
-        }
+        let product = |values: Vec<f64>| Product { values, width };
+        total.products.push(Products {
+            of_pairs: self.products.into_iter().map(product).collect(),
+            places,
+        });
     }
 }

@@ -59,11 +59,13 @@ impl Iterate {
         let mut descent = weighting.descent(&sums);
         priors::add(&problem.unknowns, &z, &mut information, &mut descent);
         let limit = Limit::new(&evaluator.layout, &shares, &descent);
-        let reduced = |full: &DMatrix<f64>| limit.reduction.tr_mul(&(full * &limit.reduction));
-        let information = reduced(&information);
+        let information = limit.reduction.tr_mul(&(information * &limit.reduction));
         let descent = limit.reduction.tr_mul(&descent);
         let relaxation = match noise {
-            Noise::Estimated { .. } => Some(reduced(&weighting.relaxation(&sums, &problem.counts))),
+            Noise::Estimated { .. } => {
+                let columns = weighting.relaxation(&sums, &problem.counts)?;
+                Some(limit.reduction.tr_mul(&columns))
+            }
             Noise::Given { .. } => None,
         };
         let held = held(evaluator, &z, &descent, &limit);
