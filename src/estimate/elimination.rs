@@ -3,22 +3,28 @@
 
 use nalgebra::DMatrix;
 
-/// The places of a symmetric matrix, sets that do not meet one another first, then those that meet more than half of all.
-/// Where all do, the order is as it was.
+/// The places of a symmetric matrix, sets that do not meet one another first, then what they share: places that meet
+/// more than twice as many as most do. Where there is one set alone, the order is as it was.
 pub(super) fn order(matrix: &DMatrix<f64>) -> Order {
     let n = matrix.nrows();
     let meets = |place: usize| {
         let column = matrix.column(place);
         (0..n).filter(move |&other| column[other] != 0.0)
     };
-    let is_shared: Vec<bool> = (0..n).map(|place| 2 * meets(place).count() > n).collect();
-    let mut is_taken = is_shared.clone();
+    let met: Vec<usize> = (0..n).map(|place| meets(place).count()).collect();
+    let mut sorted = met.clone();
+    sorted.sort_unstable();
+    let most = sorted.get(n / 2).copied().unwrap_or(0);
+    let is_shared = |place: usize| met[place] > 2 * most;
+    let mut is_taken: Vec<bool> = (0..n).map(is_shared).collect();
+    let mut sets = 0;
     let mut places = Vec::with_capacity(n);
     for first in 0..n {
         if is_taken[first] {
             continue;
         }
         is_taken[first] = true;
+        sets += 1;
         let mut next = places.len();
         places.push(first);
         while let Some(&place) = places.get(next) {
@@ -31,8 +37,12 @@ pub(super) fn order(matrix: &DMatrix<f64>) -> Order {
             }
         }
     }
+    if sets <= 1 {
+        let places = (0..n).collect();
+        return Order { places, own: 0 };
+    }
     let own = places.len();
-    places.extend((0..n).filter(|&place| is_shared[place]));
+    places.extend((0..n).filter(|&place| is_shared(place)));
     Order { places, own }
 }
 
@@ -46,18 +56,17 @@ pub(super) struct Order {
 mod tests {
     use super::*;
 
-    /// Two shared places and three sets of two, of which one place is alone.
     #[test]
     fn sets_come_one_after_the_other_and_what_they_share_last() {
         let shared = [0, 4];
-        let set = |place: usize| place % 3;
-        let matrix = DMatrix::from_fn(8, 8, |i, j| {
+        let set = |place: usize| place % 5;
+        let matrix = DMatrix::from_fn(12, 12, |i, j| {
             let meet = i == j || shared.contains(&i) || shared.contains(&j) || set(i) == set(j);
             f64::from(u8::from(meet))
         });
         let order = order(&matrix);
-        assert_eq!(order.own, 6);
-        assert_eq!(order.places, [1, 7, 2, 5, 3, 6, 0, 4]);
+        assert_eq!(order.own, 10);
+        assert_eq!(order.places, [1, 6, 11, 2, 7, 3, 8, 5, 10, 9, 0, 4]);
         let full = DMatrix::from_element(3, 3, 1.0);
         let order = super::order(&full);
         assert_eq!((order.places, order.own), (vec![0, 1, 2], 0));

@@ -5,6 +5,8 @@
 //! windows take away noise, narrow ones keep the motion: the width is that of least leave-one-out error, which
 //! follows from the fit without fitting again (Cleveland; Craven and Wahba).
 
+use multiversion::multiversion;
+
 use super::local_fit::{Kernel, LocalFit};
 use crate::estimate::products::dot;
 
@@ -74,13 +76,20 @@ impl<'t> Windows<'t> {
     }
 
     pub fn smoothed(&self, values: &[f64]) -> Smoothed {
+        let shared = self.kernels.as_ref().map(|_| {
+            let value = self.by_kernels(values, |kernel| &kernel.value);
+            (value, self.by_kernels(values, |kernel| &kernel.slope))
+        });
         let mut result = Smoothed {
             value: Vec::with_capacity(values.len()),
             slope: Vec::with_capacity(values.len()),
             noise: 0.0,
         };
         for k in 0..values.len() {
-            let (value, slope) = match self.value_and_slope(values, k) {
+            let shared = shared.as_ref().map(|(value, slope)| (value[k], slope[k]));
+            // a missing value makes both none
+            let shared = shared.filter(|(value, slope)| value.is_finite() && slope.is_finite());
+            let (value, slope) = match shared.or_else(|| self.value_and_slope(values, k)) {
                 Some(both) => both,
                 // too few neighbours for a polynomial: a long hole, or a recording of a few samples
                 None => (
@@ -110,8 +119,17 @@ impl<'t> Windows<'t> {
 
     /// Mean square of the leave-one-out errors.
     fn left_out_error(&self, values: &[f64]) -> f64 {
-        let looks = (0..values.len()).step_by(values.len().div_ceil(MOST_LOOKS).max(1));
-        let errors = looks.filter_map(|k| self.left_out(values, k));
+        let len = values.len();
+        let looks = (0..len).step_by(len.div_ceil(MOST_LOOKS).max(1));
+        let shared = (self.kernels.as_ref())
+            .map(|kernels| (kernels, self.by_kernels(values, |kernel| &kernel.value)));
+        let errors = looks.filter_map(|k| {
+            let shared = shared.as_ref().and_then(|(kernels, smoothed)| {
+                let leverage = kernels[k - self.ends(k, len).0].leverage;
+                left_out(values[k], smoothed[k], leverage)
+            });
+            shared.or_else(|| self.left_out(values, k))
+        });
         let (sum, count) = errors.fold((0.0, 0), |(sum, count), e| (sum + e * e, count + 1));
         if count > 0 {
             // an exact fit is no better than rounding
@@ -129,22 +147,25 @@ impl<'t> Windows<'t> {
         (first, (first + 2 * self.half).min(len - 1))
     }
 
-    /// The neighbours of sample `k`, and their kernel if there is one.
-    fn even<'v>(&self, values: &'v [f64], k: usize) -> Option<(&'v [f64], &Kernel)> {
-        let (first, last) = self.ends(k, values.len());
-        let kernel = self.kernels.as_ref()?.get(k - first)?;
-        Some((&values[first..=last], kernel))
+    /// What the weights make of the window of each sample; there must be kernels.
+    fn by_kernels(&self, values: &[f64], weights: fn(&Kernel) -> &[f64]) -> Vec<f64> {
+        let kernels = self.kernels.as_deref().unwrap_or_default();
+        let (len, half) = (values.len(), self.half);
+        let mut result = vec![0.0; len];
+        if let (Some(middle), true) = (kernels.get(half), len > 2 * half) {
+            slide(weights(middle), values, &mut result[half..len - half]);
+        }
+        for k in (0..half.min(len)).chain(len.saturating_sub(half)..len) {
+            let (first, last) = self.ends(k, len);
+            if let Some(kernel) = kernels.get(k - first) {
+                result[k] = dot(weights(kernel), &values[first..=last]);
+            }
+        }
+        result
     }
 
     /// The smoothed value and the derivative at sample `k`.
     fn value_and_slope(&self, values: &[f64], k: usize) -> Option<(f64, f64)> {
-        if let Some((near, kernel)) = self.even(values, k) {
-            let (value, slope) = (dot(&kernel.value, near), dot(&kernel.slope, near));
-            // a missing value makes both none
-            if value.is_finite() && slope.is_finite() {
-                return Some((value, slope));
-            }
-        }
         let fit = self.fit(values, k)?;
         Some(fit.value_and_slope(self.near(values, k)))
     }
@@ -154,16 +175,9 @@ impl<'t> Windows<'t> {
         if !values[k].is_finite() {
             return None;
         }
-        let without = |value: f64, leverage: f64| (values[k] - value) / (1.0 - leverage);
-        if let Some((near, kernel)) = self.even(values, k) {
-            let error = without(dot(&kernel.value, near), kernel.leverage);
-            if error.is_finite() {
-                return Some(error);
-            }
-        }
         let fit = self.fit(values, k)?;
         let (value, _) = fit.value_and_slope(self.near(values, k));
-        Some(without(value, fit.leverage())).filter(|error| error.is_finite())
+        left_out(values[k], value, fit.leverage())
     }
 
     fn near<'v>(
@@ -182,6 +196,32 @@ impl<'t> Windows<'t> {
         LocalFit::of(&self.time[first..=last], k - first, |j| {
             values[first + j].is_finite()
         })
+    }
+}
+
+/// The error of a smoothed value, had what was measured not been used for it; none where either is missing.
+fn left_out(measured: f64, smoothed: f64, leverage: f64) -> Option<f64> {
+    Some((measured - smoothed) / (1.0 - leverage)).filter(|error| error.is_finite())
+}
+
+/// to_k = Σ_j weight_j value_(k + j), several side by side.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
+fn slide(weights: &[f64], values: &[f64], to: &mut [f64]) {
+    const SIDE_BY_SIDE: usize = 32;
+    let mut first = 0;
+    let (groups, rest) = to.as_chunks_mut::<SIDE_BY_SIDE>();
+    for to in groups {
+        let mut sums = [0.0; SIDE_BY_SIDE];
+        for (weight, values) in weights.iter().zip(values[first..].windows(SIDE_BY_SIDE)) {
+            for i in 0..SIDE_BY_SIDE {
+                sums[i] = weight.mul_add(values[i], sums[i]);
+            }
+        }
+        *to = sums;
+        first += SIDE_BY_SIDE;
+    }
+    for (k, to) in rest.iter_mut().enumerate() {
+        *to = dot(weights, &values[first + k..][..weights.len()]);
     }
 }
 
