@@ -9,6 +9,7 @@ use nalgebra::DMatrix;
 
 use super::autoregression::most_lags;
 use super::evaluation::{Evaluator, Unusable};
+use super::products::add_combination;
 use crate::simulate::{PACK, Pack, multiply_add, packs};
 
 /// Σ_k S_k Cov S_(k+l)ᵀ at θ, by output, then lag, over all segments; `covariance` is that of θ. Missing samples do
@@ -101,7 +102,7 @@ impl<'s> LaggedSquares<'s> {
         self.first -= 1;
         self.latest.fill(Pack::default());
         if let Some(row) = row {
-            add_combination(&mut self.latest, row, &self.covariance);
+            add_combination(&mut self.latest, &self.covariance, row);
         }
         let stride = ROOM + self.sums.len() * PACK;
         let latest = self.latest.as_flattened();
@@ -111,19 +112,6 @@ impl<'s> LaggedSquares<'s> {
         if let Some(row) = row {
             add_lagged(self.sums, row, &self.recent, self.first);
         }
-    }
-}
-
-/// to += Σ_a factor_a row_a, for rows of as many packs as `to` has.
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
-fn add_combination(to: &mut [Pack], factors: &[f64], rows: &[Pack]) {
-    let stride = to.len();
-    for (pack, to) in to.iter_mut().enumerate() {
-        let mut sum = *to;
-        for (&factor, row) in factors.iter().zip(rows.chunks_exact(stride)) {
-            sum = multiply_add(factor, row[pack], sum);
-        }
-        *to = sum;
     }
 }
 

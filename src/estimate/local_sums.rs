@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use super::missing::Missing;
 use super::problem::Problem;
-use super::products::{add_cross_products, add_gradient, add_products, dot};
+use super::products::{add_combination, add_cross_products, add_products, dot};
 use super::sums::{Product, Products, Sums, pair};
 use crate::simulate::{Block, PACK, Pack, Segment, packs};
 
@@ -80,7 +80,7 @@ impl LocalSums {
                 self.widths[i],
             );
             for (j, gradient) in self.gradients[i].iter_mut().enumerate() {
-                add_gradient(gradient, rows, &residuals[if self.full { j } else { i }]);
+                add_combination(gradient, rows, &residuals[if self.full { j } else { i }]);
             }
         }
     }

@@ -30,14 +30,14 @@ pub(super) fn add_cross_products(
     }
 }
 
-/// to += Σ_k row_k e_k
+/// to += Σ_k factor_k row_k, for rows of as many packs as `to` has.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
-pub(super) fn add_gradient(to: &mut [Pack], rows: &[Pack], residuals: &[f64]) {
+pub(super) fn add_combination(to: &mut [Pack], rows: &[Pack], factors: &[f64]) {
     let stride = to.len();
     for (pack, to) in to.iter_mut().enumerate() {
         let mut sum = *to;
-        for (row, &residual) in rows.chunks_exact(stride).zip(residuals) {
-            sum = multiply_add(residual, row[pack], sum);
+        for (row, &factor) in rows.chunks_exact(stride).zip(factors) {
+            sum = multiply_add(factor, row[pack], sum);
         }
         *to = sum;
     }
