@@ -25,7 +25,8 @@ pub(super) struct Definite {
 impl Definite {
     /// `None` where some direction might not be seen.
     pub fn of(matrix: &DMatrix<f64>, diagonal: &DVector<f64>) -> Option<Self> {
-        Self::bordered(matrix, &DMatrix::zeros(matrix.nrows(), 0), diagonal)
+        let none = DMatrix::zeros(matrix.nrows(), 0);
+        Self::bordered(matrix, &none, diagonal, order(matrix))
     }
 
     /// M − U Uᵀ; where M has few numbers, it stays so: x of
@@ -41,22 +42,23 @@ impl Definite {
         columns: &DMatrix<f64>,
         diagonal: &DVector<f64>,
     ) -> Option<Self> {
-        if order(matrix).own == 0 {
+        let order = order(matrix);
+        if order.own == 0 {
             return Self::of(&(matrix - columns * columns.transpose()), diagonal);
         }
-        Self::bordered(matrix, columns, diagonal)
+        Self::bordered(matrix, columns, diagonal, order)
     }
 
     fn bordered(
         matrix: &DMatrix<f64>,
         columns: &DMatrix<f64>,
         diagonal: &DVector<f64>,
+        Order { places, .. }: Order,
     ) -> Option<Self> {
         if !diagonal.iter().all(|&d| d > 0.0 && d.is_finite()) {
             return None;
         }
         let scale = diagonal.map(|d| d.sqrt().recip());
-        let Order { places, .. } = order(matrix);
         let n = places.len();
         let scaled = Skyline::new(n + columns.ncols(), |i, j| {
             match (places.get(i), places.get(j)) {
@@ -85,10 +87,10 @@ impl Definite {
     pub fn inverse(&self) -> DMatrix<f64> {
         let n = self.places.len();
         let mut inverse = DMatrix::zeros(n, n);
-        for mut column in inverse.column_iter_mut().enumerate() {
+        for (place, mut column) in inverse.column_iter_mut().enumerate() {
             let mut unit = DVector::zeros(n);
-            unit[column.0] = 1.0;
-            column.1.copy_from(&self.solve_with(&self.factor, &unit));
+            unit[place] = 1.0;
+            column.copy_from(&self.solve_with(&self.factor, &unit));
         }
         inverse
     }
