@@ -73,7 +73,7 @@ struct LaggedSquares<'s> {
 impl<'s> LaggedSquares<'s> {
     fn new(covariance: &DMatrix<f64>, sums: &'s mut [Pack]) -> Self {
         let width = covariance.nrows();
-        let mut rows = zeros(0);
+        let mut rows = Vec::new();
         for row in covariance.row_iter() {
             let mut packs = zeros(width);
             for (to, value) in packs.as_flattened_mut().iter_mut().zip(row.iter()) {

@@ -156,7 +156,8 @@ mod tests {
         assert!((&x - &y).norm() < 1e-11 * y.norm(), "{x} {y}");
     }
 
-    /// Twenty maneuvers with three unknowns of their own, interleaved, and four that they share.
+    /// Twenty maneuvers with three unknowns of their own, interleaved, and four that they share. Rounding of 1e-16 is
+    /// magnified by a condition number of 150.
     #[test]
     fn what_maneuvers_have_of_their_own_and_what_is_taken_off_change_no_number() {
         let (maneuvers, own, shared) = (20, 3, 4);
@@ -188,14 +189,14 @@ mod tests {
         assert_eq!(order(&information).own, maneuvers * own);
         for damping in [0.0, 1e-3, 10.0] {
             let (x, y) = (definite.solve(&v, damping), spectrum.solve(&v, damping));
-            assert!((&x - &y).norm() < 1e-10 * y.norm(), "{damping}: {x} {y}");
+            assert!((&x - &y).norm() < 1e-11 * y.norm(), "{damping}: {x} {y}");
         }
         let (x, y) = (
             Definite::of(&information, &diagonal).expect("definite"),
             Spectrum::of(&information, &diagonal).expect("finite"),
         );
         let (x, y) = (x.inverse(), y.inverse());
-        assert!((&x - &y).norm() < 1e-10 * y.norm());
+        assert!((&x - &y).norm() < 1e-11 * y.norm());
         // as much as there is, and the rest is not definite
         assert!(Definite::less(&information, &(gradients * 100.0), &diagonal).is_none());
     }

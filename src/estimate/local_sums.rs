@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use super::missing::Missing;
 use super::problem::Problem;
 use super::products::{add_combination, add_cross_products, add_products, dot};
-use super::sums::{Product, Products, Sums, pair};
+use super::sums::{Product, Sums, pair, pairs};
 use crate::simulate::{Block, PACK, Pack, Segment, packs};
 
 pub(super) struct LocalSums {
@@ -30,7 +30,7 @@ impl LocalSums {
         let widths: Vec<usize> = (0..outputs)
             .map(|i| problem.columns.of_output(i).len())
             .collect();
-        let products = pairs(&widths, full)
+        let products = pairs(outputs, full)
             .map(|(i, j)| vec![Pack::default(); widths[i] * packs(widths[j])])
             .collect();
         let columns = if full { outputs } else { 1 };
@@ -96,23 +96,13 @@ impl LocalSums {
         let places: Vec<_> = (0..self.widths.len()).map(places).collect();
         total.residuals += &self.residuals;
         let gradients = self.gradients.iter();
-        total.add_gradients(
-            &places,
-            gradients.map(|of_output| of_output.iter().map(|sum| sum.as_flattened())),
-        );
+        let gradients = gradients.map(|of_output| of_output.iter().map(|sum| sum.as_flattened()));
+        let across = pairs(self.widths.len(), self.full).map(|(_, j)| packs(self.widths[j]));
         let product = |(sums, across): (Vec<Pack>, usize)| Product {
             values: sums.as_flattened().to_vec(),
-            width: packs(across) * PACK,
+            width: across * PACK,
         };
-        let across = pairs(&self.widths, self.full).map(|(_, j)| self.widths[j]);
-        total.products.push(Products {
-            of_pairs: self.products.into_iter().zip(across).map(product).collect(),
-            places,
-        });
+        let products = self.products.into_iter().zip(across).map(product);
+        total.add(places, gradients, products);
     }
-}
-
-/// (i, j), j ≤ i, of outputs that count.
-fn pairs(outputs: &[usize], full: bool) -> impl Iterator<Item = (usize, usize)> {
-    (0..outputs.len()).flat_map(move |i| (if full { 0 } else { i }..=i).map(move |j| (i, j)))
 }

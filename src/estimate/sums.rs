@@ -13,17 +13,19 @@ pub(super) struct Sums {
     /// By output i, then j: Σ S_iᵀ e_j over all samples, in θ's places. One j, that is i, unless R is full.
     pub gradients: Vec<Vec<DVector<f64>>>,
     /// Those of each segment: in θ's places they would fill many large matrices, with zeros for the most part.
-    pub products: Vec<Products>,
+    products: Vec<Products>,
 }
+
+/// By output: where the columns of its sensitivities stand in θ; `None` for what is no unknown.
+pub(super) type Places = Vec<Vec<Option<usize>>>;
 
 /// For each pair of outputs (i, j), j ≤ i: Σ S_iᵀ S_j over the samples of a segment, in the columns of its own
 /// sensitivities.
 #[derive(Clone, Debug)]
-pub(super) struct Products {
-    /// By output: where its columns stand in θ; `None` for what is no unknown.
-    pub places: Vec<Vec<Option<usize>>>,
-    /// By pair; see [`pair`]. Where i = j only the lower triangle counts.
-    pub of_pairs: Vec<Product>,
+struct Products {
+    places: Places,
+    /// By pair; see [`pairs`]. Where i = j only the lower triangle counts.
+    of_pairs: Vec<Product>,
 }
 
 #[derive(Clone, Debug)]
@@ -57,13 +59,14 @@ impl Sums {
         }
     }
 
-    /// Adds Σ S_iᵀ e_j of a segment's own columns, by i, then j.
-    pub fn add_gradients<'g>(
+    /// Adds what a segment has in its own columns: Σ S_iᵀ e_j by i, then j, and Σ S_iᵀ S_j by [`pairs`].
+    pub fn add<'g>(
         &mut self,
-        places: &[Vec<Option<usize>>],
-        own: impl IntoIterator<Item = impl IntoIterator<Item = &'g [f64]>>,
+        places: Places,
+        gradients: impl IntoIterator<Item = impl IntoIterator<Item = &'g [f64]>>,
+        of_pairs: impl IntoIterator<Item = Product>,
     ) {
-        for ((places, own), to) in places.iter().zip(own).zip(&mut self.gradients) {
+        for ((places, own), to) in places.iter().zip(gradients).zip(&mut self.gradients) {
             for (own, to) in own.into_iter().zip(to) {
                 for (value, place) in own.iter().zip(places) {
                     if let Some(place) = *place {
@@ -72,6 +75,8 @@ impl Sums {
                 }
             }
         }
+        let of_pairs = of_pairs.into_iter().collect();
+        self.products.push(Products { places, of_pairs });
     }
 
     /// Σ Sᵀ W S over all samples, in θ's places.
@@ -89,30 +94,32 @@ impl Products {
     fn add_weighted(&self, weight: &DMatrix<f64>, total: &mut DMatrix<f64>) {
         let outputs = self.places.len();
         let full = self.of_pairs.len() > outputs;
-        for i in 0..outputs {
-            for j in if full { 0..i + 1 } else { i..i + 1 } {
-                let product = &self.of_pairs[pair(i, j, full)];
-                let weight = weight[(i, j)];
-                for (a, &row) in self.places[i].iter().enumerate() {
-                    let Some(row) = row else { continue };
-                    let values = &product.values[a * product.width..][..product.width];
-                    // where both outputs are the same, the upper triangle is the lower one
-                    let columns = if i == j { a } else { values.len() };
-                    for (value, &column) in values[..columns].iter().zip(&self.places[j]) {
-                        let Some(column) = column else { continue };
-                        total[(row, column)] += value * weight;
-                        total[(column, row)] += value * weight;
-                    }
-                    if i == j {
-                        total[(row, row)] += values[a] * weight;
-                    }
+        for (product, (i, j)) in self.of_pairs.iter().zip(pairs(outputs, full)) {
+            let weight = weight[(i, j)];
+            for (a, &row) in self.places[i].iter().enumerate() {
+                let Some(row) = row else { continue };
+                let values = &product.values[a * product.width..][..product.width];
+                // where both outputs are the same, the upper triangle is the lower one
+                let columns = if i == j { a } else { values.len() };
+                for (value, &column) in values[..columns].iter().zip(&self.places[j]) {
+                    let Some(column) = column else { continue };
+                    total[(row, column)] += value * weight;
+                    total[(column, row)] += value * weight;
+                }
+                if i == j {
+                    total[(row, row)] += values[a] * weight;
                 }
             }
         }
     }
 }
 
-/// Where the pair of outputs (i, j), j ≤ i, is kept.
+/// The pairs of outputs (i, j), j ≤ i, that count: each with itself alone, unless R is full.
+pub(super) fn pairs(outputs: usize, full: bool) -> impl Iterator<Item = (usize, usize)> {
+    (0..outputs).flat_map(move |i| (if full { 0 } else { i }..=i).map(move |j| (i, j)))
+}
+
+/// Where, among [`pairs`], the pair of outputs (i, j), j ≤ i, is kept.
 pub(super) fn pair(i: usize, j: usize, full: bool) -> usize {
     if full { i * (i + 1) / 2 + j } else { i }
 }

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::estimate::evaluation::Unusable;
 use crate::estimate::problem::Problem;
-use crate::estimate::sums::{Product, Products, Sums, mirror, pair};
+use crate::estimate::sums::{Product, Sums, mirror, pairs};
 use crate::model::Scalar;
 use crate::simulate::{March, Standing};
 
@@ -166,25 +166,19 @@ struct LocalSums {
 
 impl LocalSums {
     fn zeros(outputs: usize, width: usize, full: bool) -> Self {
-        let pairs = if full {
-            outputs * (outputs + 1) / 2
-        } else {
-            outputs
-        };
         Self {
             sums: Sums::zeros(outputs, width, full),
-            products: vec![DMatrix::zeros(width, width); pairs],
+            products: vec![DMatrix::zeros(width, width); pairs(outputs, full).count()],
         }
     }
 
     fn add(&mut self, stretch: &Columns<'_>, full: bool) {
         let (slopes, residuals) = (stretch.slopes, stretch.residuals);
+        for (product, (i, j)) in self.products.iter_mut().zip(pairs(slopes.len(), full)) {
+            self.sums.residuals[(i, j)] += residuals[i].dot(&residuals[j]);
+            product.gemm_tr(1.0, &slopes[j], &slopes[i], 1.0);
+        }
         for i in 0..slopes.len() {
-            for j in if full { 0..i + 1 } else { i..i + 1 } {
-                self.sums.residuals[(i, j)] += residuals[i].dot(&residuals[j]);
-                let product = &mut self.products[pair(i, j, full)];
-                product.gemm_tr(1.0, &slopes[j], &slopes[i], 1.0);
-            }
             for (j, gradient) in self.sums.gradients[i].iter_mut().enumerate() {
                 let residual = &residuals[if full { j } else { i }];
                 gradient.gemv_tr(1.0, &slopes[i], residual, 1.0);
@@ -199,18 +193,13 @@ impl LocalSums {
         let places = vec![places; self.sums.gradients.len()];
         total.residuals += &self.sums.residuals;
         let gradients = self.sums.gradients.iter();
-        total.add_gradients(
-            &places,
-            gradients.map(|of_output| of_output.iter().map(DVector::as_slice)),
-        );
+        let gradients = gradients.map(|of_output| of_output.iter().map(DVector::as_slice));
         // column by column of Σ S_jᵀ S_i is row by row of Σ S_iᵀ S_j
         let product = |product: DMatrix<f64>| Product {
             values: product.as_slice().to_vec(),
             width,
         };
-        total.products.push(Products {
-            of_pairs: self.products.into_iter().map(product).collect(),
-            places,
-        });
+        let products = self.products.into_iter().map(product);
+        total.add(places, gradients, products);
     }
 }

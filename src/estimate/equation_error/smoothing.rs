@@ -76,9 +76,10 @@ impl<'t> Windows<'t> {
     }
 
     pub fn smoothed(&self, values: &[f64]) -> Smoothed {
-        let shared = self.kernels.as_ref().map(|_| {
-            let value = self.by_kernels(values, |kernel| &kernel.value);
-            (value, self.by_kernels(values, |kernel| &kernel.slope))
+        let shared = self.kernels.as_ref().map(|kernels| {
+            let value = self.by_kernels(kernels, values, |kernel| &kernel.value);
+            let slope = self.by_kernels(kernels, values, |kernel| &kernel.slope);
+            (value, slope)
         });
         let mut result = Smoothed {
             value: Vec::with_capacity(values.len()),
@@ -121,8 +122,10 @@ impl<'t> Windows<'t> {
     fn left_out_error(&self, values: &[f64]) -> f64 {
         let len = values.len();
         let looks = (0..len).step_by(len.div_ceil(MOST_LOOKS).max(1));
-        let shared = (self.kernels.as_ref())
-            .map(|kernels| (kernels, self.by_kernels(values, |kernel| &kernel.value)));
+        let shared = self.kernels.as_ref().map(|kernels| {
+            let smoothed = self.by_kernels(kernels, values, |kernel| &kernel.value);
+            (kernels, smoothed)
+        });
         let errors = looks.filter_map(|k| {
             let shared = shared.as_ref().and_then(|(kernels, smoothed)| {
                 let leverage = kernels[k - self.ends(k, len).0].leverage;
@@ -147,9 +150,13 @@ impl<'t> Windows<'t> {
         (first, (first + 2 * self.half).min(len - 1))
     }
 
-    /// What the weights make of the window of each sample; there must be kernels.
-    fn by_kernels(&self, values: &[f64], weights: fn(&Kernel) -> &[f64]) -> Vec<f64> {
-        let kernels = self.kernels.as_deref().unwrap_or_default();
+    /// What the weights make of the window of each sample.
+    fn by_kernels(
+        &self,
+        kernels: &[Kernel],
+        values: &[f64],
+        weights: fn(&Kernel) -> &[f64],
+    ) -> Vec<f64> {
         let (len, half) = (values.len(), self.half);
         let mut result = vec![0.0; len];
         if let (Some(middle), true) = (kernels.get(half), len > 2 * half) {

@@ -7,7 +7,7 @@ use super::super::likelihood::Weighting;
 use super::super::options::{Noise, NoiseStructure};
 use super::super::priors;
 use super::super::problem::Problem;
-use super::super::sums::{Product, Products, ResidualSums, Sums, mirror, pair};
+use super::super::sums::{Product, ResidualSums, Sums, mirror, pair, pairs};
 use super::gain::{Gain, Setting};
 use super::layout::Layout;
 use super::predictor::{Prediction, Predictor};
@@ -268,15 +268,11 @@ struct LocalSums {
 
 impl LocalSums {
     fn new(outputs: usize, width: usize, full: bool) -> Self {
-        let (pairs, others) = if full {
-            (outputs * (outputs + 1) / 2, outputs)
-        } else {
-            (outputs, 1)
-        };
+        let others = if full { outputs } else { 1 };
         Self {
             width,
             full,
-            products: vec![vec![0.0; width * width]; pairs],
+            products: vec![vec![0.0; width * width]; pairs(outputs, full).count()],
             gradients: vec![vec![vec![0.0; width]; others]; outputs],
         }
     }
@@ -311,15 +307,9 @@ impl LocalSums {
         let places: Vec<Option<usize>> = places.iter().copied().map(Some).collect();
         let places = vec![places; self.gradients.len()];
         let gradients = self.gradients.iter();
-        total.add_gradients(
-            &places,
-            gradients.map(|of_output| of_output.iter().map(Vec::as_slice)),
-        );
+        let gradients = gradients.map(|of_output| of_output.iter().map(Vec::as_slice));
         let width = self.width;
         let product = |values: Vec<f64>| Product { values, width };
-        total.products.push(Products {
-            of_pairs: self.products.into_iter().map(product).collect(),
-            places,
-        });
+        total.add(places, gradients, self.products.into_iter().map(product));
     }
 }
