@@ -10,18 +10,18 @@ pub struct Bundled {
 
 pub const ELEVATOR: Bundled = Bundled {
     name: "elevator",
-    csv: include_str!("../../data/elevator.csv"),
-    scenario: include_str!("../../data/elevator.toml"),
+    csv: include_str!("../../../data/elevator.csv"),
+    scenario: include_str!("../../../data/elevator.toml"),
 };
 pub const AILERON: Bundled = Bundled {
     name: "aileron",
-    csv: include_str!("../../data/aileron.csv"),
-    scenario: include_str!("../../data/aileron.toml"),
+    csv: include_str!("../../../data/aileron.csv"),
+    scenario: include_str!("../../../data/aileron.toml"),
 };
 pub const RUDDER: Bundled = Bundled {
     name: "rudder",
-    csv: include_str!("../../data/rudder.csv"),
-    scenario: include_str!("../../data/rudder.toml"),
+    csv: include_str!("../../../data/rudder.csv"),
+    scenario: include_str!("../../../data/rudder.toml"),
 };
 
 /// Flights of an aircraft whose elevator linkage has play, which no model in the catalog knows of: to fit, to check, and
@@ -29,17 +29,17 @@ pub const RUDDER: Bundled = Bundled {
 pub const UNDECLARED: [Bundled; 3] = [
     Bundled {
         name: "elevator-backlash-fit",
-        csv: include_str!("../../data/effects/elevator-backlash-fit.csv"),
-        scenario: include_str!("../../data/effects/elevator-backlash-fit.toml"),
+        csv: include_str!("../../../data/effects/elevator-backlash-fit.csv"),
+        scenario: include_str!("../../../data/effects/elevator-backlash-fit.toml"),
     },
     Bundled {
         name: "elevator-backlash-check",
-        csv: include_str!("../../data/effects/elevator-backlash-check.csv"),
-        scenario: include_str!("../../data/effects/elevator-backlash-check.toml"),
+        csv: include_str!("../../../data/effects/elevator-backlash-check.csv"),
+        scenario: include_str!("../../../data/effects/elevator-backlash-check.toml"),
     },
     Bundled {
         name: "elevator-backlash-final",
-        csv: include_str!("../../data/effects/elevator-backlash-final.csv"),
-        scenario: include_str!("../../data/effects/elevator-backlash-final.toml"),
+        csv: include_str!("../../../data/effects/elevator-backlash-final.csv"),
+        scenario: include_str!("../../../data/effects/elevator-backlash-final.toml"),
     },
 ];
