@@ -18,14 +18,14 @@ use crate::diagnose::Diagnosis;
 use crate::estimate::{Estimate, TimeHistory};
 use crate::job::{Event, JobSpec};
 
-pub struct Client {
+pub(super) struct Client {
     http: reqwest::Client,
     server: Url,
 }
 
 /// What of a stored maneuver or job a client needs to go on.
 #[derive(Deserialize)]
-pub struct Stored {
+pub(super) struct Stored {
     pub id: String,
 }
 
@@ -37,11 +37,11 @@ const RECONNECT_AFTER: Duration = Duration::from_secs(1);
 const READY_WITHIN: Duration = Duration::from_secs(4);
 
 impl Client {
-    pub fn of(server: &Server) -> Result<Self, Failure> {
+    pub(super) fn of(server: &Server) -> Result<Self, Failure> {
         Self::new(&server.url, server.key.as_deref())
     }
 
-    pub fn new(server: &str, key: Option<&str>) -> Result<Self, Failure> {
+    pub(super) fn new(server: &str, key: Option<&str>) -> Result<Self, Failure> {
         let server: Url = server
             .parse()
             .map_err(|error| Failure::new(format!("'{server}' is no URL: {error}")))?;
@@ -66,21 +66,21 @@ impl Client {
         Ok(Self { http, server })
     }
 
-    pub fn url(&self, path: &str) -> Result<Url, Failure> {
+    pub(super) fn url(&self, path: &str) -> Result<Url, Failure> {
         self.server
             .join(path)
             .map_err(|error| Failure::new(format!("{path}: {error}")))
     }
 
     /// Fails unless the server can serve requests, and says so in time.
-    pub async fn ready(&self) -> Result<(), Failure> {
+    pub(super) async fn ready(&self) -> Result<(), Failure> {
         let url = self.url("/health/ready")?;
         self.send(self.http.get(url).timeout(READY_WITHIN)).await?;
         Ok(())
     }
 
     /// Uploads a recording, with the mapping that it may need; the same one again is no harm.
-    pub async fn upload(
+    pub(super) async fn upload(
         &self,
         name: &str,
         file: &Path,
@@ -100,7 +100,7 @@ impl Client {
         json(self.send(request).await?).await
     }
 
-    pub async fn submit(&self, spec: &JobSpec) -> Result<Stored, Failure> {
+    pub(super) async fn submit(&self, spec: &JobSpec) -> Result<Stored, Failure> {
         json(
             self.send(self.http.post(self.url("/v1/jobs")?).json(spec))
                 .await?,
@@ -108,19 +108,23 @@ impl Client {
         .await
     }
 
-    pub async fn estimate(&self, job: &str) -> Result<Estimate, Failure> {
+    pub(super) async fn estimate(&self, job: &str) -> Result<Estimate, Failure> {
         let url = self.url(&format!("/v1/jobs/{job}/estimate"))?;
         json(self.send(self.http.get(url)).await?).await
     }
 
     /// Of a job of the kind `diagnose` that came to its end.
-    pub async fn diagnosis(&self, job: &str) -> Result<Diagnosis, Failure> {
+    pub(super) async fn diagnosis(&self, job: &str) -> Result<Diagnosis, Failure> {
         let url = self.url(&format!("/v1/jobs/{job}/diagnosis"))?;
         json(self.send(self.http.get(url)).await?).await
     }
 
     /// Inputs and outputs over time, of each flight about so many samples.
-    pub async fn histories(&self, job: &str, most: usize) -> Result<Vec<TimeHistory>, Failure> {
+    pub(super) async fn histories(
+        &self,
+        job: &str,
+        most: usize,
+    ) -> Result<Vec<TimeHistory>, Failure> {
         #[derive(serde::Deserialize)]
         struct Histories {
             segments: Vec<TimeHistory>,
@@ -130,13 +134,17 @@ impl Client {
         Ok(histories.segments)
     }
 
-    pub async fn spec(&self, job: &str) -> Result<JobSpec, Failure> {
+    pub(super) async fn spec(&self, job: &str) -> Result<JobSpec, Failure> {
         let url = self.url(&format!("/v1/jobs/{job}/spec"))?;
         json(self.send(self.http.get(url)).await?).await
     }
 
     /// Hands every event of a job to `sink`, from the first to the last, each once, over lost connections.
-    pub async fn follow(&self, job: &str, mut sink: impl FnMut(&Event)) -> Result<(), Failure> {
+    pub(super) async fn follow(
+        &self,
+        job: &str,
+        mut sink: impl FnMut(&Event),
+    ) -> Result<(), Failure> {
         let url = self.url(&format!("/v1/jobs/{job}/events"))?;
         let mut seen = 0;
         let mut failures = 0;

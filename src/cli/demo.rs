@@ -18,7 +18,7 @@ use crate::simulate::Scenario;
 /// Starts a server, uploads the bundled maneuvers, fits them, and shows the estimates beside the truth. Then finds what
 /// a model lacks of which the flights had an effect in them.
 #[derive(clap::Args, Debug)]
-pub struct Demo {
+pub(super) struct Demo {
     /// Where the server keeps its data; a file of its own without it, removed at the end.
     #[arg(long)]
     database: Option<String>,
@@ -51,7 +51,7 @@ async fn upload(client: &Client, maneuver: &Bundled) -> Result<String, Failure> 
 }
 
 impl Demo {
-    pub async fn run(&self) -> Result<(), Failure> {
+    pub(super) async fn run(&self) -> Result<(), Failure> {
         let server = Local::start(&self.listen, self.database.as_deref()).await?;
         eprintln!("server on {}", server.url);
         // nobody looks where nobody is: a script is not kept waiting, unless it asks for that

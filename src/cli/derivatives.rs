@@ -13,7 +13,7 @@ use crate::model::{Model, catalog};
 
 /// Nondimensional coefficients, with error bounds, from a fit; or start values for a model from coefficients.
 #[derive(clap::Args, Debug)]
-pub struct Derivatives {
+pub(super) struct Derivatives {
     /// A result: what `trimtab fit --json` prints, or a job's /estimate. With --model a list of
     /// coefficients: "Cma = -0.68", one a line (.toml), or the same as JSON.
     file: PathBuf,
@@ -37,7 +37,7 @@ enum Answer {
 }
 
 impl Derivatives {
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Failure> {
         let aircraft: Aircraft = read(&self.aircraft)?;
         let place = self.aircraft.display().to_string();
         let faults = aircraft.faults();

@@ -16,7 +16,7 @@ use crate::job::{self, JobKind};
 
 /// Fits a model, finds what it lacks, adds that, and shows the error before and after.
 #[derive(clap::Args, Debug)]
-pub struct Diagnose {
+pub(super) struct Diagnose {
     #[command(flatten)]
     request: Request,
     /// Show every candidate that was refused, with the reason.
@@ -31,7 +31,7 @@ pub struct Diagnose {
 }
 
 impl Diagnose {
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Failure> {
         let maneuvers = self.request.recordings()?;
         let ids: Vec<String> = maneuvers.iter().map(|maneuver| maneuver.digest()).collect();
         let mut spec = self.request.spec(&ids)?;
@@ -80,7 +80,7 @@ fn pictures(
 }
 
 /// The refused candidates, the error before and after, and the verdict last.
-pub fn conclusion(diagnosis: &Diagnosis, all: bool) -> String {
+pub(super) fn conclusion(diagnosis: &Diagnosis, all: bool) -> String {
     let mut text = String::new();
     let shown =
         |reason: Refusal| all || !matches!(reason, Refusal::NotSignificant | Refusal::NotFitted);

@@ -4,15 +4,15 @@ use std::fmt;
 
 /// A message for a person; the command ends with exit code 1.
 #[derive(Debug)]
-pub struct Failure(String);
+pub(super) struct Failure(String);
 
 impl Failure {
-    pub fn new(message: impl Into<String>) -> Self {
+    pub(super) fn new(message: impl Into<String>) -> Self {
         Self(message.into())
     }
 
     /// Faults of `what`, one a line.
-    pub fn faults<F: fmt::Display>(what: &str, faults: &[F]) -> Self {
+    pub(super) fn faults<F: fmt::Display>(what: &str, faults: &[F]) -> Self {
         let lines: Vec<String> = faults.iter().map(|fault| format!("  {fault}")).collect();
         Self(format!("{what}:\n{}", lines.join("\n")))
     }

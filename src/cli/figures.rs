@@ -5,7 +5,7 @@ use std::path::Path;
 use super::Failure;
 
 /// Writes SVGs under their names, in a directory that is made where it is not.
-pub fn write(
+pub(super) fn write(
     directory: &Path,
     figures: impl IntoIterator<Item = (String, Result<String, String>)>,
 ) -> Result<(), Failure> {

@@ -9,7 +9,7 @@ use crate::job;
 
 /// Fits a model to recordings and prints the parameter table.
 #[derive(clap::Args, Debug)]
-pub struct Fit {
+pub(super) struct Fit {
     #[command(flatten)]
     request: Request,
     /// Print the whole result as JSON instead.
@@ -18,7 +18,7 @@ pub struct Fit {
 }
 
 impl Fit {
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Failure> {
         let maneuvers = self.request.recordings()?;
         let ids: Vec<String> = maneuvers.iter().map(|maneuver| maneuver.digest()).collect();
         let spec = self.request.spec(&ids)?;

@@ -6,13 +6,13 @@ use super::server::Server;
 
 /// Says whether a server can serve requests, its database included; the exit code is 0 or 1.
 #[derive(clap::Args, Debug)]
-pub struct Health {
+pub(super) struct Health {
     #[command(flatten)]
     server: Server,
 }
 
 impl Health {
-    pub async fn run(&self) -> Result<(), Failure> {
+    pub(super) async fn run(&self) -> Result<(), Failure> {
         Client::of(&self.server)?.ready().await?;
         println!("ready");
         Ok(())

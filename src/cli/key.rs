@@ -15,7 +15,7 @@ use crate::store::{DEFAULT_PROJECT, Key, KeyRecord, NewKey, Scope, Store};
 
 /// Make, list, replace and revoke keys. As soon as there is one, every request needs one.
 #[derive(Args)]
-pub struct Keys {
+pub(super) struct Keys {
     #[command(subcommand)]
     action: Action,
 }
@@ -106,7 +106,7 @@ struct Revoke {
 }
 
 impl Keys {
-    pub async fn run(&self) -> Result<(), Failure> {
+    pub(super) async fn run(&self) -> Result<(), Failure> {
         match &self.action {
             Action::New(new) => new.run().await,
             Action::List(list) => list.run().await,

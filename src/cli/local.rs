@@ -9,7 +9,7 @@ use crate::store::Store;
 use crate::{http, work};
 
 /// Nothing of it is logged.
-pub struct Local {
+pub(super) struct Local {
     pub url: String,
     shutdown: CancellationToken,
     running: tokio::task::JoinHandle<()>,
@@ -20,7 +20,7 @@ pub struct Local {
 
 impl Local {
     /// On `listen`, with `database` or with one that goes away again.
-    pub async fn start(listen: &str, database: Option<&str>) -> Result<Self, Failure> {
+    pub(super) async fn start(listen: &str, database: Option<&str>) -> Result<Self, Failure> {
         let (database, directory) = match database {
             Some(database) => (database.to_string(), None),
             None => {
@@ -59,7 +59,7 @@ impl Local {
         })
     }
 
-    pub async fn stop(self) -> Result<(), Failure> {
+    pub(super) async fn stop(self) -> Result<(), Failure> {
         self.shutdown.cancel();
         self.running.await?;
         self.store.close().await;

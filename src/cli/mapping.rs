@@ -7,7 +7,7 @@ use super::request::read_text;
 use crate::ingest::{Format, Mapping};
 
 #[derive(clap::Args, Debug)]
-pub struct MappingOption {
+pub(super) struct MappingOption {
     /// Where MAT files and ASCII matrices have time and channels: fvsysid-attas, fvsysid-hfb320, sidpac, or a mapping
     /// document (.toml, .json).
     #[arg(long, value_name = "FILE|NAME")]
@@ -17,7 +17,7 @@ pub struct MappingOption {
 impl MappingOption {
     /// As a server reads it: the name of a bundled mapping, or a JSON document. `None` for a recording that says names
     /// and units itself.
-    pub fn text(&self, recording: &Path) -> Result<Option<String>, Failure> {
+    pub(super) fn text(&self, recording: &Path) -> Result<Option<String>, Failure> {
         let needs_one = matches!(format_of(recording), Format::Mat | Format::Ascii);
         let Some(mapping) = self.mapping.as_ref().filter(|_| needs_one) else {
             return Ok(None);
@@ -39,7 +39,7 @@ impl MappingOption {
     }
 
     /// The mapping of a recording; `None` for one that says names and units itself.
-    pub fn of(&self, recording: &Path) -> Result<Option<Mapping>, Failure> {
+    pub(super) fn of(&self, recording: &Path) -> Result<Option<Mapping>, Failure> {
         let read = |text: String| {
             Mapping::named_or_json(&text)
                 .map_err(|fault| Failure::new(format!("--mapping: {fault}")))
@@ -49,7 +49,7 @@ impl MappingOption {
 }
 
 /// The format of a recording, by the end of its name; CSV if that says nothing.
-pub fn format_of(file: &Path) -> Format {
+pub(super) fn format_of(file: &Path) -> Format {
     let extension = file.extension().and_then(|extension| extension.to_str());
     extension
         .and_then(Format::from_extension)

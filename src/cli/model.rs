@@ -5,13 +5,13 @@ use crate::model::catalog;
 
 /// Lists the catalog, or prints one model document of it as TOML.
 #[derive(clap::Args, Debug)]
-pub struct ShowModel {
+pub(super) struct ShowModel {
     /// A name of the list.
     name: Option<String>,
 }
 
 impl ShowModel {
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Failure> {
         let Some(name) = &self.name else {
             for document in catalog::all() {
                 println!("{:36} {}", document.name, document.title);

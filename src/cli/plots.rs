@@ -19,7 +19,7 @@ const MEASURED: (u8, u8, u8) = (86, 180, 233);
 const MODEL: (u8, u8, u8) = (230, 140, 30);
 
 /// Shows the flights of a job, to who sits before a terminal: in a file the colours would be gone, and with them what is what.
-pub async fn show(client: &Client, job: &str) -> Result<(), Failure> {
+pub(super) async fn show(client: &Client, job: &str) -> Result<(), Failure> {
     if std::io::stdout().is_terminal() {
         for history in client.histories(job, WIDTH as usize * 4).await? {
             println!("{}", flight(&history));

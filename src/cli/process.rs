@@ -19,7 +19,7 @@ const LONGEST_END: Duration = Duration::from_millis(4200);
 const THREADS_GRACE: Duration = Duration::from_millis(300);
 
 #[derive(Args)]
-pub struct Database {
+pub(super) struct Database {
     /// The database: a file, made if it is not there (a path, or sqlite:PATH), or a PostgreSQL that many machines share
     /// (postgres://USER:PASSWORD@HOST/DATABASE; its password is safer in the environment).
     #[arg(
@@ -34,22 +34,22 @@ pub struct Database {
 
 impl Database {
     /// Its address, without its password.
-    pub fn shown(&self) -> String {
+    pub(super) fn shown(&self) -> String {
         store::without_password(&self.database)
     }
 
     /// Whether it is a file that is not there yet.
-    pub fn is_missing(&self) -> bool {
+    pub(super) fn is_missing(&self) -> bool {
         store::is_missing(&self.database)
     }
 
-    pub async fn open(&self) -> Result<Store, Failure> {
+    pub(super) async fn open(&self) -> Result<Store, Failure> {
         Ok(Store::open(&self.database).await?)
     }
 }
 
 #[derive(Args)]
-pub struct Process {
+pub(super) struct Process {
     #[command(flatten)]
     pub database: Database,
 
@@ -78,13 +78,13 @@ enum LogFormat {
 }
 
 impl Process {
-    pub fn workers(&self) -> usize {
+    pub(super) fn workers(&self) -> usize {
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         self.workers.unwrap_or_else(cores)
     }
 
     /// Runs `command`, whose token says when it has to end, and does not wait for it much longer.
-    pub fn run<F: Future<Output = Result<(), Failure>>>(
+    pub(super) fn run<F: Future<Output = Result<(), Failure>>>(
         &self,
         command: impl FnOnce(CancellationToken) -> F,
     ) -> Result<(), Failure> {

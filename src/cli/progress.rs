@@ -11,34 +11,34 @@ const LONGEST_STEP: f64 = 100.0;
 const LENGTH: u64 = 1000;
 
 /// Shows iterations as they come; where output is no terminal, one line each.
-pub struct Progress {
+pub(super) struct Progress {
     bar: ProgressBar,
     tolerance: f64,
 }
 
 impl Progress {
     /// `tolerance` is the length of step, in standard errors, at which the solver stops.
-    pub fn new(tolerance: f64) -> Self {
+    pub(super) fn new(tolerance: f64) -> Self {
         let bar = ProgressBar::with_draw_target(Some(LENGTH), ProgressDrawTarget::stderr());
         let style = ProgressStyle::with_template("{bar:30} {msg}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         Self { bar, tolerance }
     }
 
-    pub fn say(&self, text: &str) {
+    pub(super) fn say(&self, text: &str) {
         self.line(text);
         self.bar.set_message(text.to_string());
     }
 
     /// What an estimation tells on its way.
-    pub fn told(&self, told: estimate::Progress<'_>) {
+    pub(super) fn told(&self, told: estimate::Progress<'_>) {
         match told {
             estimate::Progress::Start(report) => self.say(&report.text),
             estimate::Progress::Iteration(iteration) => self.iteration(iteration),
         }
     }
 
-    pub fn iteration(&self, iteration: &Iteration) {
+    pub(super) fn iteration(&self, iteration: &Iteration) {
         let text = format!(
             "iteration {:2}   -ln L {:.4}   step {:.1e} standard errors",
             iteration.number, iteration.cost, iteration.step
@@ -54,7 +54,7 @@ impl Progress {
     }
 
     /// A step of a diagnosis.
-    pub fn diagnosis(&self, step: &Step) {
+    pub(super) fn diagnosis(&self, step: &Step) {
         match step {
             Step::Fitted { cost, iterations, .. } => {
                 self.say(&format!("declared model fitted: -ln L {cost:.4}, {iterations} iterations"));
@@ -72,7 +72,7 @@ impl Progress {
         }
     }
 
-    pub fn finish(&self, text: &str) {
+    pub(super) fn finish(&self, text: &str) {
         self.line(text);
         self.bar.set_position(LENGTH);
         self.bar.finish_with_message(text.to_string());

@@ -15,7 +15,7 @@ use crate::job::{Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOver
 use crate::model::{ModelDocument, Start, catalog};
 
 #[derive(clap::Args, Debug)]
-pub struct Request {
+pub(super) struct Request {
     /// Recordings: CSV with `name[unit]` headers (.csv), JSON (.json), MAT files (.mat) or ASCII matrices (.asc), the last
     /// two with --mapping; rows count from 1. Several are fitted together.
     #[arg(required = true, value_name = "FILE[:FIRST-LAST]")]
@@ -67,19 +67,19 @@ pub struct Request {
 
 impl Request {
     /// All recordings: those to fit, then those to predict.
-    pub fn stretches(&self) -> impl Iterator<Item = &Stretch> {
+    pub(super) fn stretches(&self) -> impl Iterator<Item = &Stretch> {
         self.files.iter().chain(&self.validate).chain(&self.last)
     }
 
     /// The file of each recording, once where several rows of it are used.
-    pub fn files(&self) -> IndexSet<&Path> {
+    pub(super) fn files(&self) -> IndexSet<&Path> {
         self.stretches()
             .map(|stretch| stretch.file.as_path())
             .collect()
     }
 
     /// The recording of each stretch.
-    pub fn recordings(&self) -> Result<Vec<Arc<Maneuver>>, Failure> {
+    pub(super) fn recordings(&self) -> Result<Vec<Arc<Maneuver>>, Failure> {
         let read = |file: &Path| {
             let (bytes, mapping) = (read_bytes(file)?, self.mapping.of(file)?);
             ingest::read_mapped(
@@ -98,7 +98,7 @@ impl Request {
     }
 
     /// The model: a name that the catalog (or the server) knows, or the document in a file.
-    pub fn model(&self) -> Result<ModelSource, Failure> {
+    pub(super) fn model(&self) -> Result<ModelSource, Failure> {
         let path = Path::new(&self.model);
         let extension = path.extension().and_then(|extension| extension.to_str());
         let document: ModelDocument = match extension {
@@ -112,7 +112,7 @@ impl Request {
     }
 
     /// The document that `model` stands for here, without a server.
-    pub fn document(&self) -> Result<ModelDocument, Failure> {
+    pub(super) fn document(&self) -> Result<ModelDocument, Failure> {
         match self.model()? {
             ModelSource::Document(document) => Ok(*document),
             ModelSource::Reference(name) => catalog::find(&name).ok_or_else(|| {
@@ -142,7 +142,7 @@ impl Request {
     }
 
     /// The job, for recordings that are known by `ids`.
-    pub fn spec(&self, ids: &[String]) -> Result<JobSpec, Failure> {
+    pub(super) fn spec(&self, ids: &[String]) -> Result<JobSpec, Failure> {
         let mut parameters: IndexMap<String, ParameterOverride> = IndexMap::new();
         for text in &self.starts {
             let (name, value) = pair(text, "--start")?;
@@ -214,11 +214,11 @@ impl Request {
     }
 }
 
-pub fn read_bytes(file: &Path) -> Result<Vec<u8>, Failure> {
+pub(super) fn read_bytes(file: &Path) -> Result<Vec<u8>, Failure> {
     std::fs::read(file).map_err(|error| Failure::new(format!("{}: {error}", file.display())))
 }
 
-pub fn read_text(file: &Path) -> Result<String, Failure> {
+pub(super) fn read_text(file: &Path) -> Result<String, Failure> {
     std::fs::read_to_string(file)
         .map_err(|error| Failure::new(format!("{}: {error}", file.display())))
 }

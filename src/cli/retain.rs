@@ -11,7 +11,7 @@ use crate::store::{Expired, Rule};
 
 /// Delete jobs that ended long ago, and maneuvers that no job uses any more.
 #[derive(Args)]
-pub struct Retain {
+pub(super) struct Retain {
     #[command(flatten)]
     database: Database,
     /// Days that everything is kept.
@@ -29,7 +29,7 @@ pub struct Retain {
 }
 
 impl Retain {
-    pub async fn run(&self) -> Result<(), Failure> {
+    pub(super) async fn run(&self) -> Result<(), Failure> {
         let store = self.database.open().await?;
         let age: Duration = days(self.older_than);
         let rule = Rule {

@@ -8,7 +8,7 @@ use super::process::Process;
 use crate::{http, ingest, webhook, work};
 
 #[derive(Args)]
-pub struct Serve {
+pub(super) struct Serve {
     /// Address to listen on; port 0 takes a free one. One that other machines can reach is refused as long as there are no
     /// keys (`trimtab key new`).
     #[arg(
@@ -90,7 +90,7 @@ pub struct Serve {
 }
 
 impl Serve {
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Failure> {
         self.process.run(|shutdown| self.serve(shutdown))
     }
 

@@ -10,7 +10,7 @@ use crate::simulate::{Scenario, ScenarioEffect};
 
 /// Simulates a maneuver from a scenario and writes it as CSV. The same scenario gives the same file.
 #[derive(clap::Args, Debug)]
-pub struct Simulate {
+pub(super) struct Simulate {
     /// The scenario, TOML: model, truth, inputs, noise. See data/elevator.toml.
     scenario: PathBuf,
     /// An effect that is not in the model, besides those of the scenario: kind:target=value or kind:target:term=value,
@@ -23,7 +23,7 @@ pub struct Simulate {
 }
 
 impl Simulate {
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Failure> {
         let path = self.scenario.display();
         let text = std::fs::read_to_string(&self.scenario)
             .map_err(|e| Failure::new(format!("{path}: {e}")))?;

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 /// `FILE`, or `FILE:FIRST-LAST` for rows counted from 1, both included.
 #[derive(Clone, PartialEq, Debug)]
-pub struct Stretch {
+pub(super) struct Stretch {
     pub file: PathBuf,
     pub rows: Option<[usize; 2]>,
 }
@@ -40,7 +40,7 @@ impl FromStr for Stretch {
 
 impl Stretch {
     /// What it is called in tables.
-    pub fn label(&self) -> Option<String> {
+    pub(super) fn label(&self) -> Option<String> {
         let stem = self.file.file_stem()?.to_string_lossy().into_owned();
         Some(match self.rows {
             Some([first, last]) => format!("{stem}:{first}-{last}"),

@@ -17,7 +17,7 @@ use crate::work::ThreadClock;
 
 /// Estimates, and compares all derivative techniques on the same problem: errors, costs, iterations.
 #[derive(clap::Args, Debug)]
-pub struct Study {
+pub(super) struct Study {
     #[command(flatten)]
     request: Request,
     /// Where to write gradient-error.svg and gradient-cost.svg.
@@ -29,7 +29,7 @@ pub struct Study {
 }
 
 impl Study {
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Failure> {
         let maneuvers = self.request.recordings()?;
         let ids: Vec<String> = maneuvers.iter().map(|maneuver| maneuver.digest()).collect();
         let mut spec = self.request.spec(&ids)?;

@@ -11,7 +11,7 @@ use crate::job::JobKind;
 
 /// Uploads recordings, submits a job and prints its id.
 #[derive(clap::Args, Debug)]
-pub struct Submit {
+pub(super) struct Submit {
     #[command(flatten)]
     request: Request,
     #[command(flatten)]
@@ -25,7 +25,7 @@ pub struct Submit {
 }
 
 impl Submit {
-    pub async fn run(&self) -> Result<(), Failure> {
+    pub(super) async fn run(&self) -> Result<(), Failure> {
         let client = Client::of(&self.server)?;
         let mut uploaded = IndexMap::new();
         for file in self.request.files() {

@@ -10,7 +10,7 @@ use crate::estimate::{
 };
 
 /// All tables of an estimate, and what to know beside them.
-pub fn result(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) -> String {
+pub(super) fn result(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) -> String {
     let mut parts = vec![parameters(estimate, truth), outputs(&estimate.outputs)];
     parts.extend(estimate.filter.as_ref().map(process_noise));
     if !estimate.modes.is_empty() {
@@ -139,7 +139,7 @@ fn process_noise(filter: &FilterEstimate) -> String {
 }
 
 /// Nondimensional coefficients.
-pub fn coefficients(coefficients: &[Coefficient]) -> String {
+pub(super) fn coefficients(coefficients: &[Coefficient]) -> String {
     let rows = coefficients.iter().map(|coefficient| {
         let error = coefficient.standard_error;
         vec![

@@ -9,7 +9,7 @@ use crate::job::{EventBody, JobKind};
 
 /// Follows a job and prints its parameter table, and of a diagnosis what it comes to.
 #[derive(clap::Args, Debug)]
-pub struct Watch {
+pub(super) struct Watch {
     /// The job's id.
     job: String,
     #[command(flatten)]
@@ -17,7 +17,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    pub async fn run(&self) -> Result<(), Failure> {
+    pub(super) async fn run(&self) -> Result<(), Failure> {
         let client = Client::of(&self.server)?;
         let estimate = follow(&client, &self.job).await?;
         println!("{}", table::result(&estimate, None));
@@ -26,7 +26,11 @@ impl Watch {
 }
 
 /// Shows the flights, and prints what a diagnosis comes to, unless it was stopped before its conclusion.
-pub async fn conclude(client: &Client, job: &str, estimate: &Estimate) -> Result<(), Failure> {
+pub(super) async fn conclude(
+    client: &Client,
+    job: &str,
+    estimate: &Estimate,
+) -> Result<(), Failure> {
     plots::show(client, job).await?;
     let is_diagnosis = client.spec(job).await?.kind == JobKind::Diagnose;
     if is_diagnosis && estimate.outcome != Outcome::Cancelled {
@@ -37,7 +41,7 @@ pub async fn conclude(client: &Client, job: &str, estimate: &Estimate) -> Result
 }
 
 /// Follows a job with a progress bar; the estimate, when there is one.
-pub async fn follow(client: &Client, job: &str) -> Result<Estimate, Failure> {
+pub(super) async fn follow(client: &Client, job: &str) -> Result<Estimate, Failure> {
     let tolerance = client.spec(job).await?.options.tolerance;
     let progress = Progress::new(tolerance);
     let mut ending = None;

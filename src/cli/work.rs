@@ -9,13 +9,13 @@ use crate::work;
 
 /// Run workers alone: they take jobs from a database that `serve` processes and other workers share.
 #[derive(Args)]
-pub struct Work {
+pub(super) struct Work {
     #[command(flatten)]
     process: Process,
 }
 
 impl Work {
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Failure> {
         self.process.run(|shutdown| self.work(shutdown))
     }
 

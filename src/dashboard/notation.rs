@@ -66,7 +66,7 @@ const SHORT: [(&str, &str); 3] = [("a", "alpha"), ("b", "beta"), ("ad", "alphado
 
 impl Notation {
     /// Of all names of the document.
-    pub fn of(document: &ModelDocument) -> Self {
+    pub(super) fn of(document: &ModelDocument) -> Self {
         let names: HashSet<&String> = (document.constants.keys())
             .chain(document.inputs.keys())
             .chain(document.parameters.keys())
@@ -90,12 +90,12 @@ impl Notation {
     }
 
     /// A name as a symbol.
-    pub fn name(&self, name: &str) -> Markup {
+    pub(super) fn name(&self, name: &str) -> Markup {
         self.symbol(name).markup(name)
     }
 
     /// The name's rate of change: with a dot over it.
-    pub fn rate(&self, name: &str) -> Markup {
+    pub(super) fn rate(&self, name: &str) -> Markup {
         let mut symbol = self.symbol(name);
         if symbol.accent.is_some() {
             return html! { mfrac { mrow { mi mathvariant="normal" { "d" } (symbol.markup(name)) } mrow { mi mathvariant="normal" { "d" } mi { "t" } } } };
@@ -105,7 +105,7 @@ impl Notation {
     }
 
     /// What the model says of an output, which may be called like a state.
-    pub fn output(&self, name: &str) -> Markup {
+    pub(super) fn output(&self, name: &str) -> Markup {
         if self.symbols.contains_key(&format!("{name}_out")) {
             return html! { mrow { mtext { "output " } (self.name(name)) } };
         }

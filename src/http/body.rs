@@ -23,7 +23,7 @@ const DISCARD: Duration = Duration::from_secs(5);
 
 /// What bodies take that are on their way in or being worked on, all together.
 #[derive(Clone)]
-pub struct Room(Arc<Semaphore>);
+pub(super) struct Room(Arc<Semaphore>);
 
 /// Room is given out by so many bytes.
 const STEP: usize = 65_536;
@@ -32,7 +32,7 @@ const STEP: usize = 65_536;
 const PATIENCE: Duration = Duration::from_secs(5);
 
 impl Room {
-    pub fn new(bytes: usize) -> Self {
+    pub(super) fn new(bytes: usize) -> Self {
         Self(Arc::new(Semaphore::new(
             (bytes / STEP).clamp(1, Semaphore::MAX_PERMITS),
         )))
@@ -50,13 +50,13 @@ impl Room {
 }
 
 /// A body, and its room: to be kept as long as the bytes are.
-pub struct Received {
+pub(super) struct Received {
     pub bytes: Vec<u8>,
     pub room: Option<OwnedSemaphorePermit>,
 }
 
 /// The whole body, if it is no longer than `limit` bytes. No more than that is ever held.
-pub async fn read(
+pub(super) async fn read(
     headers: &HeaderMap,
     mut body: Body,
     limit: usize,
@@ -134,7 +134,7 @@ fn too_large(limit: usize, setting: &str) -> Problem {
 }
 
 /// The media type of a request, without its parameters, in lower case.
-pub fn media_type(headers: &HeaderMap) -> String {
+pub(super) fn media_type(headers: &HeaderMap) -> String {
     let value = headers
         .get(header::CONTENT_TYPE)
         .and_then(|value| value.to_str().ok());
@@ -147,7 +147,7 @@ pub fn media_type(headers: &HeaderMap) -> String {
 }
 
 /// The answer to a media type that is not read here.
-pub fn unsupported(found: &str, expected: &[&str]) -> Problem {
+pub(super) fn unsupported(found: &str, expected: &[&str]) -> Problem {
     let expected = expected.join(" or ");
     let detail = match found {
         "" => format!("there is no Content-Type; send {expected}"),

@@ -21,7 +21,7 @@ use super::{Server, Service};
 use crate::job::{Fault, JobSpec, ManeuverUse};
 use crate::store::NewJob;
 
-pub fn router() -> OpenApiRouter<Server> {
+pub(super) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(submit_jobs))
 }
 

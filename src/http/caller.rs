@@ -23,7 +23,7 @@ use crate::store::{DEFAULT_PROJECT, Scope, Shown};
 
 /// Who sent a request.
 #[derive(Clone, PartialEq, Debug)]
-pub struct Caller {
+pub(super) struct Caller {
     pub project: String,
     /// Without one nobody needs one.
     pub key: Option<Uuid>,
@@ -42,13 +42,13 @@ impl Caller {
     }
 
     /// How the store knows the sender.
-    pub fn submitter(&self) -> String {
+    pub(super) fn submitter(&self) -> String {
         self.key.map(|id| id.to_string()).unwrap_or_default()
     }
 }
 
 /// What a request needs; nothing, if it tells nothing of any project.
-pub fn needed(method: &Method, path: &str) -> Option<Scope> {
+pub(super) fn needed(method: &Method, path: &str) -> Option<Scope> {
     let under = |root: &str| path == root || path.starts_with(&format!("{root}/"));
     if ["/health", "/docs", "/openapi.json", "/v1/problems"]
         .into_iter()
@@ -75,7 +75,11 @@ pub fn needed(method: &Method, path: &str) -> Option<Scope> {
 }
 
 /// Lets a request through to its handler if it may, and tells the handler who sent it.
-pub async fn admit(State(server): State<Server>, mut request: Request, next: Next) -> Response {
+pub(super) async fn admit(
+    State(server): State<Server>,
+    mut request: Request,
+    next: Next,
+) -> Response {
     let Some(needed) = needed(request.method(), request.uri().path()) else {
         return next.run(request).await;
     };

@@ -14,7 +14,7 @@ use crate::estimate::{Coefficient, Estimate, coefficients};
 use crate::flight::Aircraft;
 use crate::store::Part;
 
-pub fn router() -> OpenApiRouter<Server> {
+pub(super) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(get_coefficients))
 }
 

@@ -9,15 +9,15 @@ use super::problem::Problem;
 /// A gate to the blocking threads: as many at a time as there are cores, so that a burst of requests
 /// waits in line instead of taking memory and time from each other and from the solver.
 #[derive(Clone)]
-pub struct Compute(Arc<Semaphore>);
+pub(super) struct Compute(Arc<Semaphore>);
 
 impl Compute {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         let cores = std::thread::available_parallelism().map_or(2, usize::from);
         Self(Arc::new(Semaphore::new(cores.max(2))))
     }
 
-    pub async fn run<T: Send + 'static>(
+    pub(super) async fn run<T: Send + 'static>(
         &self,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> Result<T, Problem> {

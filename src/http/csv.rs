@@ -5,13 +5,15 @@ use std::fmt::Write;
 use super::problem::Problem;
 
 /// Cells in rows; an empty cell is a missing value.
-pub struct Csv {
+pub(super) struct Csv {
     writer: csv::Writer<Vec<u8>>,
     number: String,
 }
 
 impl Csv {
-    pub fn with_header<S: AsRef<[u8]>>(names: impl IntoIterator<Item = S>) -> csv::Result<Self> {
+    pub(super) fn with_header<S: AsRef<[u8]>>(
+        names: impl IntoIterator<Item = S>,
+    ) -> csv::Result<Self> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer.write_record(names)?;
         Ok(Self {
@@ -20,12 +22,12 @@ impl Csv {
         })
     }
 
-    pub fn text(&mut self, cell: &str) -> csv::Result<()> {
+    pub(super) fn text(&mut self, cell: &str) -> csv::Result<()> {
         self.writer.write_field(cell)
     }
 
     /// The shortest text that reads back to the same number; a missing one is empty.
-    pub fn number(&mut self, value: Option<f64>) -> csv::Result<()> {
+    pub(super) fn number(&mut self, value: Option<f64>) -> csv::Result<()> {
         self.number.clear();
         if let Some(value) = value.filter(|value| !value.is_nan()) {
             // writing to a string does not fail
@@ -34,11 +36,11 @@ impl Csv {
         self.writer.write_field(&self.number)
     }
 
-    pub fn end_row(&mut self) -> csv::Result<()> {
+    pub(super) fn end_row(&mut self) -> csv::Result<()> {
         self.writer.write_record(None::<&[u8]>)
     }
 
-    pub fn into_bytes(self) -> csv::Result<Vec<u8>> {
+    pub(super) fn into_bytes(self) -> csv::Result<Vec<u8>> {
         self.writer
             .into_inner()
             .map_err(|error| csv::Error::from(error.into_error()))
@@ -46,7 +48,7 @@ impl Csv {
 }
 
 /// `name[unit]`; a pure number has no unit.
-pub fn header(name: &str, unit: &str) -> String {
+pub(super) fn header(name: &str, unit: &str) -> String {
     match unit {
         "" | "-" => name.to_string(),
         unit => format!("{name}[{unit}]"),

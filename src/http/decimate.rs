@@ -2,7 +2,7 @@
 
 /// What is wanted of long columns: a stretch of time, and of it about so many rows.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Wanted {
+pub(super) struct Wanted {
     /// Seconds of the recording; absent: from the first.
     pub from: Option<f64>,
     /// Absent: to the last.
@@ -13,7 +13,7 @@ pub struct Wanted {
 
 impl Wanted {
     /// The rows to answer with, of columns over a time that grows.
-    pub fn rows(&self, time: &[f64], columns: &[&[f64]]) -> Vec<usize> {
+    pub(super) fn rows(&self, time: &[f64], columns: &[&[f64]]) -> Vec<usize> {
         let begin = self
             .from
             .map_or(0, |from| time.partition_point(|&t| t < from));
@@ -65,7 +65,7 @@ fn rows(columns: &[&[f64]], length: usize, most: usize) -> Vec<usize> {
 }
 
 /// The values in those rows.
-pub fn pick(values: &[f64], rows: &[usize]) -> Vec<f64> {
+pub(super) fn pick(values: &[f64], rows: &[usize]) -> Vec<f64> {
     rows.iter().map(|&row| values[row]).collect()
 }
 

@@ -17,7 +17,7 @@ const MOST: usize = 256 * 1024;
 const LONGEST: Duration = Duration::from_secs(2);
 
 /// Sees to the rest of the request's body. A client that waits for leave to send need not be let send.
-pub async fn drain(request: Request<Body>) -> Request<Body> {
+pub(super) async fn drain(request: Request<Body>) -> Request<Body> {
     if request.headers().contains_key(header::EXPECT) {
         return request;
     }

@@ -23,7 +23,7 @@ use crate::estimate::Iteration;
 use crate::job::Event;
 use crate::store::{Signal, StoredEvent};
 
-pub fn router() -> OpenApiRouter<Server> {
+pub(super) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(list_events))
         .routes(routes!(list_iterations))
@@ -42,7 +42,7 @@ const LONGEST_PAGE: usize = 1000;
 
 /// Events of a job, in order.
 #[derive(Serialize, ToSchema)]
-pub struct EventPage {
+pub(super) struct EventPage {
     #[schema(value_type = Vec<Event>)]
     events: Vec<Box<RawValue>>,
     /// What to say in `after` for the next page.
@@ -191,7 +191,7 @@ fn follow(
 
 /// The iterations of a job's latest attempt.
 #[derive(Serialize, ToSchema)]
-pub struct Iterations {
+pub(super) struct Iterations {
     #[schema(value_type = Vec<Iteration>)]
     iterations: Vec<serde_json::Map<String, serde_json::Value>>,
 }

@@ -11,7 +11,7 @@ use super::problem::Problem;
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
-pub enum Format {
+pub(super) enum Format {
     Json,
     Csv,
     Toml,
@@ -41,7 +41,7 @@ impl Format {
 
 /// What the client wants out of what is `offered`, the first being the default: `?format=` if it
 /// is there, or else what `Accept` likes best.
-pub fn choose(
+pub(super) fn choose(
     asked: Option<Format>,
     headers: &HeaderMap,
     offered: &[Format],
@@ -113,12 +113,12 @@ fn quality(accept: &str, media_type: &str) -> f32 {
 }
 
 /// An answer that never changes: with an `ETag`, or without a body if the client has it already.
-pub fn cacheable(request: &HeaderMap, format: Format, body: impl Into<Vec<u8>>) -> Response {
+pub(super) fn cacheable(request: &HeaderMap, format: Format, body: impl Into<Vec<u8>>) -> Response {
     cacheable_as(request, format.content_type(), body)
 }
 
 /// As [`cacheable`], of any media type.
-pub fn cacheable_as(
+pub(super) fn cacheable_as(
     request: &HeaderMap,
     media_type: HeaderValue,
     body: impl Into<Vec<u8>>,

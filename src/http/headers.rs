@@ -23,7 +23,7 @@ const ALWAYS: [(HeaderName, &str); 4] = [
 ];
 
 /// Adds what every answer carries. What is under a key is for no shared cache, and to be asked for again.
-pub async fn guard(request: Request, next: Next) -> Response {
+pub(super) async fn guard(request: Request, next: Next) -> Response {
     let mut response = next.run(request).await;
     let headers = response.headers_mut();
     for (name, value) in ALWAYS {
@@ -65,7 +65,7 @@ impl FromStr for Origin {
 }
 
 /// Lets pages of these origins, and of no other, read answers. They bring their own keys: browsers add none.
-pub fn cross_origin(origins: &[Origin]) -> CorsLayer {
+pub(super) fn cross_origin(origins: &[Origin]) -> CorsLayer {
     let origins = origins.iter().map(|origin| origin.0.clone());
     CorsLayer::new()
         .allow_origin(AllowOrigin::list(origins))

@@ -10,14 +10,14 @@ use utoipa_axum::routes;
 use super::Server;
 use super::problem::{Problem, ProblemDocument};
 
-pub fn router() -> OpenApiRouter<Server> {
+pub(super) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(live))
         .routes(routes!(ready))
 }
 
 #[derive(Serialize, ToSchema)]
-pub struct Health {
+pub(super) struct Health {
     #[schema(example = "ok")]
     status: &'static str,
     /// The version of the program.

@@ -16,7 +16,7 @@ use super::query::{JobId, Parameters};
 use super::{Server, Service, jobs, results};
 use crate::estimate::{OutputSeries, Role, Series, TimeHistory};
 
-pub fn router() -> OpenApiRouter<Server> {
+pub(super) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(get_residuals))
         .routes(routes!(get_time_histories))
@@ -44,7 +44,7 @@ struct HistoryQuery {
 
 /// Residuals, measured minus model, SI.
 #[derive(Serialize, ToSchema)]
-pub struct Residuals {
+pub(super) struct Residuals {
     segments: Vec<SegmentResiduals>,
 }
 
@@ -64,7 +64,7 @@ struct SegmentResiduals {
 
 /// Inputs, and outputs as measured and as modelled, SI.
 #[derive(Serialize, ToSchema)]
-pub struct TimeHistories {
+pub(super) struct TimeHistories {
     segments: Vec<SegmentHistory>,
 }
 

@@ -18,7 +18,7 @@ use crate::estimate::Outcome;
 use crate::job::{EventBody, Fault, JobKind, JobSpec, Status};
 use crate::store::{CancelReply, Clock, JobFilter, JobRecord};
 
-pub fn router() -> OpenApiRouter<Server> {
+pub(super) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(list_jobs))
         .routes(routes!(get_job))
@@ -29,7 +29,7 @@ pub fn router() -> OpenApiRouter<Server> {
 /// A job.
 #[derive(Serialize, ToSchema)]
 #[schema(as = Job)]
-pub struct JobResource {
+pub(super) struct JobResource {
     #[schema(example = "0193518e-6b6f-7d3c-9c53-b1cbb2b7a1f4")]
     id: Uuid,
     #[schema(value_type = JobKind)]
@@ -106,7 +106,7 @@ impl JobLinks {
 }
 
 impl JobResource {
-    pub fn of(job: JobRecord) -> Self {
+    pub(super) fn of(job: JobRecord) -> Self {
         let (mut outcome, mut reason, mut faults, mut has_result) = (None, None, Vec::new(), false);
         match job.ending {
             Some(EventBody::Succeeded {
@@ -140,13 +140,13 @@ impl JobResource {
         }
     }
 
-    pub fn path(&self) -> String {
+    pub(super) fn path(&self) -> String {
         self.links.this.clone()
     }
 }
 
 #[derive(Serialize, ToSchema)]
-pub struct JobPage {
+pub(super) struct JobPage {
     jobs: Vec<JobResource>,
     next_cursor: Option<String>,
 }
@@ -218,7 +218,7 @@ async fn get_job(service: Service, JobId(id): JobId) -> Result<Json<JobResource>
     Ok(Json(JobResource::of(find(&service, id).await?)))
 }
 
-pub async fn find(service: &Service, id: Uuid) -> Result<JobRecord, Problem> {
+pub(super) async fn find(service: &Service, id: Uuid) -> Result<JobRecord, Problem> {
     service.store.job(id).await?.ok_or_else(|| unknown_job(id))
 }
 

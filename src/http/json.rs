@@ -9,7 +9,7 @@ use super::problem::Problem;
 use super::{Server, body};
 
 /// A JSON body, within [`super::Config::max_json_body`].
-pub struct JsonBody<T> {
+pub(super) struct JsonBody<T> {
     pub value: T,
     /// As it was sent.
     pub text: String,
@@ -36,7 +36,7 @@ impl<T: DeserializeOwned> FromRequest<Server> for JsonBody<T> {
 }
 
 /// Bytes as text.
-pub fn text(bytes: Vec<u8>) -> Result<String, Problem> {
+pub(super) fn text(bytes: Vec<u8>) -> Result<String, Problem> {
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to() + 1;
         Problem::new(Code::InvalidJson, format!("byte {at} is not UTF-8"))
@@ -44,7 +44,7 @@ pub fn text(bytes: Vec<u8>) -> Result<String, Problem> {
 }
 
 /// Reads JSON; a fault of shape comes with its JSON pointer.
-pub fn parse<T: DeserializeOwned>(text: &str) -> Result<T, Problem> {
+pub(super) fn parse<T: DeserializeOwned>(text: &str) -> Result<T, Problem> {
     refuse_nul(text)?;
     let invalid = |error: serde_json::Error| Problem::new(Code::InvalidJson, error.to_string());
     let mut deserializer = serde_json::Deserializer::from_str(text);
@@ -62,7 +62,7 @@ pub fn parse<T: DeserializeOwned>(text: &str) -> Result<T, Problem> {
 }
 
 /// A database may not be able to keep the character U+0000, which only an escape can bring into JSON or TOML.
-pub fn refuse_nul(text: &str) -> Result<(), Problem> {
+pub(super) fn refuse_nul(text: &str) -> Result<(), Problem> {
     let is_escape = |at: usize| {
         let before = text.as_bytes()[..at].iter().rev();
         before.take_while(|byte| **byte == b'\\').count() % 2 == 0

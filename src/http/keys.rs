@@ -21,7 +21,7 @@ use super::{Server, Service};
 use crate::job::{Fault, HIGHEST_PRIORITY};
 use crate::store::{Key, KeyRecord, NewKey, Scope};
 
-pub fn router() -> OpenApiRouter<Server> {
+pub(super) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(list_keys, make_key))
         .routes(routes!(revoke_key))

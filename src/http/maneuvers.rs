@@ -23,7 +23,7 @@ use crate::ingest::{self, Summary};
 use crate::job::Fault;
 use crate::store::{ManeuverRecord, Uploaded};
 
-pub fn router() -> OpenApiRouter<Server> {
+pub(super) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(upload_maneuver, list_maneuvers))
         .routes(routes!(get_maneuver))
@@ -35,7 +35,7 @@ const LONGEST_NAME: usize = 200;
 /// A recording that was uploaded.
 #[derive(Serialize, ToSchema)]
 #[schema(as = Maneuver)]
-pub struct ManeuverResource {
+pub(super) struct ManeuverResource {
     /// SHA-256 of the content: the same recording has the same id.
     #[schema(example = "3f0a1c0f6f5a7a0e8f3a0f0c8f7a1b2c3d4e5f60718293a4b5c6d7e8f9a0b1c2")]
     id: String,
@@ -72,7 +72,7 @@ impl ManeuverResource {
 }
 
 #[derive(Serialize, ToSchema)]
-pub struct ManeuverPage {
+pub(super) struct ManeuverPage {
     maneuvers: Vec<ManeuverResource>,
     next_cursor: Option<String>,
 }
@@ -198,7 +198,7 @@ async fn list_maneuvers(
     }))
 }
 
-pub fn unknown_maneuver(id: &str) -> Problem {
+pub(super) fn unknown_maneuver(id: &str) -> Problem {
     let id: String = id.chars().take(80).collect();
     Problem::new(
         Code::UnknownManeuver,

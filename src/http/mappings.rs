@@ -16,7 +16,7 @@ use super::query::{Id, Parameters};
 use super::{Server, Service};
 use crate::ingest::Mapping;
 
-pub fn router() -> OpenApiRouter<Server> {
+pub(super) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(list_mappings, add_mapping))
         .routes(routes!(get_mapping, delete_mapping))
@@ -36,7 +36,7 @@ struct NameQuery {
 /// A mapping as lists show it.
 #[derive(Serialize, ToSchema)]
 #[schema(as = MappingEntry)]
-pub struct MappingResource {
+pub(super) struct MappingResource {
     #[schema(example = "lab-logger-3")]
     pub name: String,
     /// Which recordings it is for.
@@ -59,7 +59,7 @@ async fn list_mappings(service: Service) -> Result<Json<MappingList>, Problem> {
 }
 
 /// Those that come with Trimtab, and then the project's own.
-pub async fn all(service: &Service) -> Result<Vec<MappingResource>, Problem> {
+pub(super) async fn all(service: &Service) -> Result<Vec<MappingResource>, Problem> {
     let about = |mapping: &Mapping| mapping.about().to_string();
     let mut mappings = Vec::new();
     for name in Mapping::names() {
@@ -155,7 +155,7 @@ async fn delete_mapping(service: Service, Id(name): Id) -> Result<StatusCode, Pr
 }
 
 /// What an upload says in `mapping`: a document, or the name of a mapping that is bundled or kept.
-pub async fn find(service: &Service, text: &str) -> Result<Mapping, Problem> {
+pub(super) async fn find(service: &Service, text: &str) -> Result<Mapping, Problem> {
     if !text.trim_start().starts_with('{')
         && let Some(record) = service.store.mapping(text.trim()).await?
     {

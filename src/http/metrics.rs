@@ -26,7 +26,7 @@ use super::Server;
 use super::problem::Problem;
 use crate::store::{BUCKETS, Census, Histogram as Durations};
 
-pub fn router() -> OpenApiRouter<Server> {
+pub(super) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(get_metrics))
 }
 
@@ -34,7 +34,7 @@ const MEDIA_TYPE: &str = "application/openmetrics-text; version=1.0.0; charset=u
 
 /// What this process counts.
 #[derive(Clone)]
-pub struct Metrics {
+pub(super) struct Metrics {
     registry: Arc<Registry>,
     requests: Family<Route, Counter>,
     seconds: Family<Route, Histogram, fn() -> Histogram>,
@@ -50,7 +50,7 @@ struct Route {
 }
 
 impl Metrics {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         let mut registry = Registry::with_prefix("trimtab");
         let requests = Family::default();
         let buckets: fn() -> Histogram = || Histogram::new(BUCKETS);
@@ -71,13 +71,13 @@ impl Metrics {
     }
 
     /// Counts a follower until what is returned goes away.
-    pub fn follower(&self) -> Follower {
+    pub(super) fn follower(&self) -> Follower {
         self.followers.inc();
         Follower(self.followers.clone())
     }
 }
 
-pub struct Follower(Gauge);
+pub(super) struct Follower(Gauge);
 
 impl Drop for Follower {
     fn drop(&mut self) {
@@ -86,7 +86,7 @@ impl Drop for Follower {
 }
 
 /// Counts every request.
-pub async fn count(State(server): State<Server>, request: Request, next: Next) -> Response {
+pub(super) async fn count(State(server): State<Server>, request: Request, next: Next) -> Response {
     let began = Instant::now();
     let route = request.extensions().get::<MatchedPath>();
     let route = route.map_or("none", MatchedPath::as_str).to_string();

@@ -22,7 +22,7 @@ use crate::store::{BadCursor, ModelRecord, Page, StoreError};
 /// Of what a TOML reader says, in characters.
 const LONGEST_DETAIL: usize = 500;
 
-pub fn router() -> OpenApiRouter<Server> {
+pub(super) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(add_model, list_models))
         .routes(routes!(get_model))
@@ -30,7 +30,7 @@ pub fn router() -> OpenApiRouter<Server> {
 
 /// A model as lists show it; the document itself is at `links.self`.
 #[derive(Serialize, ToSchema)]
-pub struct ModelResource {
+pub(super) struct ModelResource {
     /// What a job says in `model`: a catalog name, or the id of a stored model.
     #[schema(example = "short-period")]
     id: String,
@@ -53,7 +53,7 @@ pub struct ModelResource {
 
 #[derive(Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Origin {
+pub(super) enum Origin {
     /// Comes with Trimtab.
     Catalog,
     /// Was stored here.
@@ -67,7 +67,7 @@ struct ModelLinks {
 }
 
 /// A model of the list, whole.
-pub struct Listed {
+pub(super) struct Listed {
     /// A catalog name, or the id of a stored model.
     pub id: String,
     /// When it was stored; absent of a catalog model.
@@ -116,7 +116,7 @@ impl From<Listed> for ModelResource {
 }
 
 #[derive(Serialize, ToSchema)]
-pub struct ModelPage {
+pub(super) struct ModelPage {
     models: Vec<ModelResource>,
     next_cursor: Option<String>,
 }
@@ -194,7 +194,7 @@ async fn list_models(
 }
 
 /// The catalog, then what was stored. The cursor of a catalog model is its name, that of a stored one its id.
-pub async fn page(
+pub(super) async fn page(
     service: &Service,
     cursor: Option<&str>,
     limit: usize,
@@ -260,7 +260,7 @@ async fn get_model(
     document_as(format, &headers, &document)
 }
 
-pub fn unknown_model(id: &str) -> Problem {
+pub(super) fn unknown_model(id: &str) -> Problem {
     let id: String = id.chars().take(80).collect();
     let detail =
         format!("there is no model '{id}'; the catalog goes by name, stored models by their id");
@@ -268,7 +268,7 @@ pub fn unknown_model(id: &str) -> Problem {
 }
 
 /// A model by its catalog name or its id.
-pub async fn find(service: &Service, id: &str) -> Result<Option<ModelDocument>, StoreError> {
+pub(super) async fn find(service: &Service, id: &str) -> Result<Option<ModelDocument>, StoreError> {
     if let Some(document) = catalog::find(id) {
         return Ok(Some(document));
     }
@@ -278,7 +278,7 @@ pub async fn find(service: &Service, id: &str) -> Result<Option<ModelDocument>, 
     Ok(service.store.model(id).await?.map(|record| record.document))
 }
 
-pub fn document_as(
+pub(super) fn document_as(
     format: Format,
     headers: &HeaderMap,
     document: &ModelDocument,

@@ -15,15 +15,15 @@ use super::problem::Problem;
 use super::{Server, Service, body};
 use crate::store::{KeptAnswer, Once};
 
-pub const KEY: HeaderName = HeaderName::from_static("idempotency-key");
-pub const REPLAYED: HeaderName = HeaderName::from_static("idempotency-replayed");
+pub(super) const KEY: HeaderName = HeaderName::from_static("idempotency-key");
+pub(super) const REPLAYED: HeaderName = HeaderName::from_static("idempotency-replayed");
 const LONGEST_KEY: usize = 255;
 
 /// Headers that an answer has when it is given again.
 const KEPT: [HeaderName; 3] = [header::CONTENT_TYPE, header::LOCATION, header::ETAG];
 
 /// The id for what a request makes: that of its key, so that it is made once, or a new one.
-pub struct NewId(pub Uuid);
+pub(super) struct NewId(pub Uuid);
 
 #[derive(Clone, Copy)]
 struct Reserved(Uuid);
@@ -42,7 +42,7 @@ impl FromRequestParts<Server> for NewId {
 
 /// Answers a POST with a key from what is kept, or does it and keeps the answer. What fails is not kept, and neither is an
 /// answer that is to be stored nowhere: it holds a secret.
-pub async fn once(State(server): State<Server>, request: Request, next: Next) -> Response {
+pub(super) async fn once(State(server): State<Server>, request: Request, next: Next) -> Response {
     if request.method() != Method::POST || !request.headers().contains_key(KEY) {
         return next.run(request).await;
     }

@@ -9,8 +9,8 @@ use super::Service;
 use super::problem::Problem;
 use crate::store::{JobRecord, Signal};
 
-pub const PREFER: HeaderName = HeaderName::from_static("prefer");
-pub const APPLIED: HeaderName = HeaderName::from_static("preference-applied");
+pub(super) const PREFER: HeaderName = HeaderName::from_static("prefer");
+pub(super) const APPLIED: HeaderName = HeaderName::from_static("preference-applied");
 
 /// Nobody waits longer than this; proxies hang up after about as long.
 const LONGEST: Duration = Duration::from_secs(60);
@@ -19,7 +19,7 @@ const LONGEST: Duration = Duration::from_secs(60);
 const LOOK_AGAIN: Duration = Duration::from_secs(1);
 
 /// How long the client would wait. A preference that cannot be read is none, as the RFC has it.
-pub fn wait(headers: &HeaderMap) -> Option<Duration> {
+pub(super) fn wait(headers: &HeaderMap) -> Option<Duration> {
     let preferences = headers.get_all(PREFER).into_iter();
     let seconds = preferences
         .filter_map(|value| value.to_str().ok())
@@ -31,14 +31,14 @@ pub fn wait(headers: &HeaderMap) -> Option<Duration> {
 }
 
 /// Says that the wait was granted, if not always to its end.
-pub fn applied(wait: Duration) -> (HeaderName, HeaderValue) {
+pub(super) fn applied(wait: Duration) -> (HeaderName, HeaderValue) {
     let text = format!("wait={}", wait.as_secs());
     let value = HeaderValue::from_str(&text).unwrap_or(HeaderValue::from_static("wait"));
     (APPLIED, value)
 }
 
 /// The job when it is over, or when the time is.
-pub async fn until_over(
+pub(super) async fn until_over(
     service: &Service,
     mut job: JobRecord,
     wait: Duration,

@@ -12,7 +12,7 @@ use super::problem::{Problem, ProblemDocument};
 use super::query::Id;
 use crate::ingest;
 
-pub fn router() -> OpenApiRouter<Server> {
+pub(super) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(list_problems))
         .routes(routes!(get_problem))
@@ -20,7 +20,7 @@ pub fn router() -> OpenApiRouter<Server> {
 
 /// One code.
 #[derive(Serialize, ToSchema)]
-pub struct Explanation {
+pub(super) struct Explanation {
     #[schema(example = "not_finished")]
     code: &'static str,
     #[schema(example = 409)]
@@ -45,7 +45,7 @@ impl Explanation {
 
 /// One code of an entry of `errors`.
 #[derive(Serialize, ToSchema)]
-pub struct FaultExplanation {
+pub(super) struct FaultExplanation {
     #[schema(example = "time_not_increasing")]
     code: &'static str,
     #[schema(example = "Time does not increase.")]
@@ -53,7 +53,7 @@ pub struct FaultExplanation {
 }
 
 #[derive(Serialize, ToSchema)]
-pub struct Explanations {
+pub(super) struct Explanations {
     /// What `code` of a problem can be.
     problems: Vec<Explanation>,
     /// What `code` of an entry of `errors` can be where a recording is refused.

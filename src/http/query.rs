@@ -11,7 +11,7 @@ use super::code::Code;
 use super::problem::Problem;
 
 /// The query of a request.
-pub struct Parameters<T>(pub T);
+pub(super) struct Parameters<T>(pub T);
 
 impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
     type Rejection = Problem;
@@ -34,7 +34,7 @@ impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
 }
 
 /// The `{id}` of a path, as text.
-pub struct Id(pub String);
+pub(super) struct Id(pub String);
 
 impl<S: Send + Sync> FromRequestParts<S> for Id {
     type Rejection = Problem;
@@ -52,7 +52,7 @@ impl<S: Send + Sync> FromRequestParts<S> for Id {
 }
 
 /// The `{id}` of a job. Text that is no id is the id of no job.
-pub struct JobId(pub Uuid);
+pub(super) struct JobId(pub Uuid);
 
 impl<S: Send + Sync> FromRequestParts<S> for JobId {
     type Rejection = Problem;
@@ -65,7 +65,7 @@ impl<S: Send + Sync> FromRequestParts<S> for JobId {
     }
 }
 
-pub fn unknown_job(id: impl std::fmt::Display) -> Problem {
+pub(super) fn unknown_job(id: impl std::fmt::Display) -> Problem {
     Problem::new(Code::UnknownJob, format!("there is no job '{id}'"))
 }
 
@@ -73,7 +73,7 @@ pub fn unknown_job(id: impl std::fmt::Display) -> Problem {
 #[derive(Clone, Debug, Default, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
-pub struct PageQuery {
+pub(super) struct PageQuery {
     /// `next_cursor` of the page before; absent: the first page.
     pub cursor: Option<String>,
     /// Entries of the page, 1 to 200; 50 if absent.
@@ -81,11 +81,11 @@ pub struct PageQuery {
     pub limit: Option<usize>,
 }
 
-pub const PAGE: usize = 50;
-pub const LONGEST_PAGE: usize = 200;
+pub(super) const PAGE: usize = 50;
+pub(super) const LONGEST_PAGE: usize = 200;
 
 /// The number of entries that a page may have.
-pub fn page_limit(asked: Option<usize>) -> Result<usize, Problem> {
+pub(super) fn page_limit(asked: Option<usize>) -> Result<usize, Problem> {
     match asked.unwrap_or(PAGE) {
         limit @ 1..=LONGEST_PAGE => Ok(limit),
         limit => Err(Problem::new(
@@ -95,7 +95,7 @@ pub fn page_limit(asked: Option<usize>) -> Result<usize, Problem> {
     }
 }
 
-pub fn bad_cursor(error: crate::store::BadCursor) -> Problem {
+pub(super) fn bad_cursor(error: crate::store::BadCursor) -> Problem {
     Problem::new(
         Code::InvalidCursor,
         format!("cursor: {error}; begin the list without it"),

@@ -13,14 +13,14 @@ use super::problem::Problem;
 
 /// Counts the requests of each key; those without keys are not counted.
 #[derive(Clone)]
-pub struct Rates {
+pub(super) struct Rates {
     per_second: u32,
     limiter: Option<Arc<DefaultKeyedRateLimiter<Uuid>>>,
 }
 
 impl Rates {
     /// Each key may ask so often in a second, and twice as often at once; with 0 as often as it will.
-    pub fn new(per_second: u32) -> Self {
+    pub(super) fn new(per_second: u32) -> Self {
         let quota = NonZeroU32::new(per_second).map(|rate| {
             let at_once = rate.saturating_add(per_second);
             Quota::per_second(rate).allow_burst(at_once)
@@ -31,7 +31,7 @@ impl Rates {
         }
     }
 
-    pub fn check(&self, key: Uuid) -> Result<(), Problem> {
+    pub(super) fn check(&self, key: Uuid) -> Result<(), Problem> {
         let Some(limiter) = &self.limiter else {
             return Ok(());
         };

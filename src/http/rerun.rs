@@ -20,7 +20,7 @@ use crate::job::{JobSpec, Maker};
 use crate::model::ModelDocument;
 use crate::store::Part;
 
-pub fn router() -> OpenApiRouter<Server> {
+pub(super) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(get_provenance))
         .routes(routes!(rerun_job))

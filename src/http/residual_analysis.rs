@@ -15,7 +15,7 @@ use super::{Server, Service, jobs};
 use crate::diagnose::{ResidualAnalysis, analyse};
 use crate::estimate::Role;
 
-pub fn router() -> OpenApiRouter<Server> {
+pub(super) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(get_residual_analysis))
 }
 

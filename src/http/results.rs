@@ -22,7 +22,7 @@ use crate::job::EventBody;
 use crate::model::ModelDocument;
 use crate::store::{JobRecord, Part};
 
-pub fn router() -> OpenApiRouter<Server> {
+pub(super) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(get_estimate))
         .routes(routes!(get_parameters))
@@ -30,7 +30,7 @@ pub fn router() -> OpenApiRouter<Server> {
 }
 
 /// Why there is no result (yet).
-pub fn without_result(job: &JobRecord) -> Problem {
+pub(super) fn without_result(job: &JobRecord) -> Problem {
     let status = job.status.name();
     if !job.status.is_over() {
         let id = job.id;
@@ -49,7 +49,7 @@ pub fn without_result(job: &JobRecord) -> Problem {
 }
 
 /// One part of a result, as JSON.
-pub async fn part(service: &Service, id: Uuid, part: Part) -> Result<String, Problem> {
+pub(super) async fn part(service: &Service, id: Uuid, part: Part) -> Result<String, Problem> {
     match service.store.result_part(id, part).await? {
         Some(json) => Ok(json),
         None => Err(without_result(&jobs::find(service, id).await?)),
@@ -76,7 +76,7 @@ async fn get_estimate(
 
 /// The parameter table, with what is needed to judge it.
 #[derive(Serialize, Deserialize, ToSchema)]
-pub struct ParameterTable {
+pub(super) struct ParameterTable {
     outcome: Outcome,
     reason: String,
     parameters: Vec<ParameterEstimate>,

@@ -16,7 +16,7 @@ use super::query::{Id, JobId, unknown_job};
 use super::{Server, Service};
 use crate::store::{Deleted, Expired};
 
-pub fn router() -> OpenApiRouter<Server> {
+pub(super) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(delete_job))
         .routes(routes!(delete_maneuver))

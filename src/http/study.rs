@@ -15,7 +15,7 @@ use crate::estimate::study::DerivativeStudy;
 use crate::job::Status;
 use crate::store::Part;
 
-pub fn router() -> OpenApiRouter<Server> {
+pub(super) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(get_derivative_study))
 }
 

@@ -23,7 +23,7 @@ use crate::job::{self, Fault, HIGHEST_PRIORITY, JobSpec, MOST_MANEUVERS, ModelSo
 use crate::model::{Model, ModelDocument};
 use crate::store::NewJob;
 
-pub fn router() -> OpenApiRouter<Server> {
+pub(super) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(submit_job))
 }
 
@@ -94,7 +94,11 @@ async fn submit_job(
 }
 
 /// What is kept of a job that was checked; `text` is its spec as it was sent.
-pub fn new_job(spec: &JobSpec, text: String, model: &ModelDocument) -> Result<NewJob, Problem> {
+pub(super) fn new_job(
+    spec: &JobSpec,
+    text: String,
+    model: &ModelDocument,
+) -> Result<NewJob, Problem> {
     Ok(NewJob {
         kind: spec.kind.name().to_string(),
         name: spec.name.clone(),
@@ -106,7 +110,7 @@ pub fn new_job(spec: &JobSpec, text: String, model: &ModelDocument) -> Result<Ne
 }
 
 /// Whether so many more jobs may wait. Several that ask at once may each be let in: it is a bound against floods.
-pub async fn room(service: &Service, jobs: usize) -> Result<(), Problem> {
+pub(super) async fn room(service: &Service, jobs: usize) -> Result<(), Problem> {
     let config = &service.config;
     let waiting = service.store.waiting(config.max_queued).await?;
     let refuse = |of: &str, use_: usize, limit: usize, setting: &str| {
@@ -127,7 +131,7 @@ pub async fn room(service: &Service, jobs: usize) -> Result<(), Problem> {
 }
 
 /// What the job amounts to, and the model that it names or holds; or all that is wrong with it.
-pub async fn check(
+pub(super) async fn check(
     service: &Service,
     spec: &Arc<JobSpec>,
 ) -> Result<(ModelDocument, Prepared), Problem> {
@@ -165,7 +169,7 @@ pub async fn check(
 }
 
 /// Compiles a model by itself; the pointers of its faults are into the document.
-pub fn check_model(document: &ModelDocument) -> Result<(), Vec<Fault>> {
+pub(super) fn check_model(document: &ModelDocument) -> Result<(), Vec<Fault>> {
     Model::compile(document).map(drop)
 }
 

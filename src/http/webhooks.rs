@@ -21,7 +21,7 @@ use super::{Server, Service};
 use crate::store::{DeliveryRecord, Webhook};
 use crate::webhook::new_secret;
 
-pub fn router() -> OpenApiRouter<Server> {
+pub(super) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(list_webhooks, add_webhook))
         .routes(routes!(delete_webhook))

@@ -16,10 +16,10 @@ const PREFIX: usize = 4 + 8 + 4 + 4;
 /// Why bytes cannot be read back. The store wrote them: the file was damaged, or is of a later version.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 #[error("not a table of columns: {0}")]
-pub struct Unreadable(&'static str);
+pub(super) struct Unreadable(&'static str);
 
 /// All `columns` have one length.
-pub fn encode(header: &impl Serialize, columns: &[&[f64]]) -> serde_json::Result<Vec<u8>> {
+pub(super) fn encode(header: &impl Serialize, columns: &[&[f64]]) -> serde_json::Result<Vec<u8>> {
     let header = serde_json::to_vec(header)?;
     let rows = columns.first().map_or(0, |column| column.len());
     debug_assert!(columns.iter().all(|column| column.len() == rows));
@@ -36,7 +36,7 @@ pub fn encode(header: &impl Serialize, columns: &[&[f64]]) -> serde_json::Result
 }
 
 /// The header and the columns.
-pub fn decode<H: DeserializeOwned>(bytes: &[u8]) -> Result<(H, Vec<Vec<f64>>), Unreadable> {
+pub(super) fn decode<H: DeserializeOwned>(bytes: &[u8]) -> Result<(H, Vec<Vec<f64>>), Unreadable> {
     let truncated = Unreadable("it is truncated");
     let (prefix, rest) = bytes.split_at_checked(PREFIX).ok_or(truncated.clone())?;
     let (magic, prefix) = prefix.split_at(4);

@@ -27,13 +27,13 @@ const PAUSES: [Duration; 7] = [
 ];
 
 #[derive(Clone)]
-pub struct Sender {
+pub(super) struct Sender {
     allowed: Allowed,
     http: Result<Client, String>,
 }
 
 impl Sender {
-    pub fn new(allowed: Allowed) -> Self {
+    pub(super) fn new(allowed: Allowed) -> Self {
         let client = |tls: bool| {
             let builder = Client::builder()
                 .dns_resolver(Arc::new(allowed.clone()))
@@ -59,7 +59,7 @@ impl Sender {
         }
     }
 
-    pub async fn send(&self, delivery: &Delivery, now: Timestamp) -> Attempt {
+    pub(super) async fn send(&self, delivery: &Delivery, now: Timestamp) -> Attempt {
         match self.try_send(delivery, now.as_second()).await {
             Ok(response) => told(delivery, &response),
             Err(fault) => failed(delivery, None, fault),

@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 use crate::job::Maker;
 
 /// Looked up once; it reads the program file, and so is not for the reactor's threads.
-pub fn this_program() -> &'static Maker {
+pub(super) fn this_program() -> &'static Maker {
     static MAKER: OnceLock<Maker> = OnceLock::new();
     MAKER.get_or_init(|| Maker {
         version: env!("CARGO_PKG_VERSION").to_string(),

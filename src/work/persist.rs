@@ -9,7 +9,7 @@ use crate::store::{LEASE, StoreError};
 ///
 /// # Errors
 /// The last one met.
-pub async fn persist<T, F>(what: &str, mut write: impl FnMut() -> F) -> Result<T, StoreError>
+pub(super) async fn persist<T, F>(what: &str, mut write: impl FnMut() -> F) -> Result<T, StoreError>
 where
     F: Future<Output = Result<T, StoreError>>,
 {

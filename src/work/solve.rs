@@ -16,7 +16,7 @@ use crate::model::ModelDocument;
 use crate::store::{ResultParts, StoreError};
 
 /// What a run that came to a result answers; `outcome` says of what kind.
-pub struct Answer {
+pub(super) struct Answer {
     pub outcome: Outcome,
     pub reason: String,
     pub parts: ResultParts,
@@ -24,7 +24,7 @@ pub struct Answer {
 
 /// Why a run came to no result.
 #[derive(Debug)]
-pub enum Unanswered {
+pub(super) enum Unanswered {
     /// The job cannot be started.
     Refused(Vec<Fault>),
     Store(StoreError),
@@ -53,7 +53,7 @@ impl From<JoinError> for Unanswered {
 
 /// Tells `log` of each step and stops between two iterations when asked. A full log slows the
 /// solver down to the pace at which the store writes, so that memory stays bounded.
-pub fn solve(
+pub(super) fn solve(
     spec: &JobSpec,
     model: &ModelDocument,
     maneuvers: &[Arc<Maneuver>],

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 /// Why a solver should stop.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Reason {
+pub(super) enum Reason {
     /// Somebody asked to cancel the job: what there is of a result is kept.
     Cancel = 1,
     /// The process ends: the job goes back to the queue.
@@ -16,17 +16,17 @@ pub enum Reason {
 
 /// One flag for the solver's thread and those that watch over it. The first reason stands.
 #[derive(Clone, Default)]
-pub struct Stop(Arc<AtomicU8>);
+pub(super) struct Stop(Arc<AtomicU8>);
 
 impl Stop {
-    pub fn ask(&self, reason: Reason) {
+    pub(super) fn ask(&self, reason: Reason) {
         let none = 0;
         let _ = self
             .0
             .compare_exchange(none, reason as u8, Ordering::Relaxed, Ordering::Relaxed);
     }
 
-    pub fn asked(&self) -> Option<Reason> {
+    pub(super) fn asked(&self) -> Option<Reason> {
         [Reason::Cancel, Reason::Shutdown, Reason::LeaseLost]
             .into_iter()
             .find(|reason| *reason as u8 == self.0.load(Ordering::Relaxed))

@@ -32,7 +32,7 @@ const UNLIKELY: f64 = 0.01;
 const LEAST_SAMPLES: usize = 5;
 
 /// `fitted` are the time histories of the declared model on the flights that it was fitted to.
-pub fn answer(
+pub(super) fn answer(
     case: &Case,
     declared: &Fitted,
     fitted: &[TimeHistory],

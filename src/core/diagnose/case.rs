@@ -20,7 +20,7 @@ pub struct Case {
 }
 
 /// Values of parameters, SI: by name, and by segment where each has its own.
-pub type Values = IndexMap<(String, Option<String>), f64>;
+pub(super) type Values = IndexMap<(String, Option<String>), f64>;
 
 /// What is faster than this many samples an explicit integrator cannot follow.
 const SHORTEST_LAG: f64 = 0.45;

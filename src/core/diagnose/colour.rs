@@ -9,7 +9,7 @@ use super::stack::{Layout, Series};
 /// e_k = Σ_m a_m e_(k−m) + w_k for every order up to the model's own, so that the first samples of a segment, and
 /// those behind a gap, are predicted from what there is.
 #[derive(Clone, PartialEq, Debug)]
-pub struct Autoregression {
+pub(super) struct Autoregression {
     /// By order, from 0: the predictor's coefficients, the nearest sample's first.
     predictors: Vec<Vec<f64>>,
     /// By order: variance of the prediction error.
@@ -21,11 +21,11 @@ const MOST_REFLECTION: f64 = 0.999_999;
 
 /// The highest order worth a look: noise of measuring systems is not more complicated, and an effect that is missing
 /// must not be taken for colour.
-pub const MOST_ORDER: usize = 12;
+pub(super) const MOST_ORDER: usize = 12;
 
 impl Autoregression {
     /// Of the order of least Schwarz criterion N ln σ² + order ln N.
-    pub fn of_best_order(series: &[&[f64]]) -> Self {
+    pub(super) fn of_best_order(series: &[&[f64]]) -> Self {
         let full = Self::of_order(series, MOST_ORDER);
         let n: f64 = series
             .iter()
@@ -41,7 +41,7 @@ impl Autoregression {
     }
 
     /// Of one order, or as near to it as the series are long. Samples that are not finite do not count.
-    pub fn of_order(series: &[&[f64]], order: usize) -> Self {
+    pub(super) fn of_order(series: &[&[f64]], order: usize) -> Self {
         let finite = || {
             series
                 .iter()
@@ -93,7 +93,7 @@ impl Autoregression {
         model
     }
 
-    pub fn order(&self) -> usize {
+    pub(super) fn order(&self) -> usize {
         self.predictors.len() - 1
     }
 
@@ -105,7 +105,7 @@ impl Autoregression {
 
     /// Prediction errors over their standard deviations: `w = (x_k − Σ a_m x_(k−m))/σ`, of the order that the finite
     /// samples of `mask` before k allow; 0 where `mask` is not finite. Returns the sum of ln σ².
-    pub fn whiten(&self, mask: &[f64], x: &[f64], to: &mut [f64]) -> f64 {
+    pub(super) fn whiten(&self, mask: &[f64], x: &[f64], to: &mut [f64]) -> f64 {
         let mut ln_variance = 0.0;
         let mut known = 0;
         for k in 0..x.len() {
@@ -127,16 +127,16 @@ impl Autoregression {
 
 /// The colour of all outputs' residuals.
 #[derive(Clone, PartialEq, Debug)]
-pub struct Colour(pub Vec<Autoregression>);
+pub(super) struct Colour(pub Vec<Autoregression>);
 
 impl Colour {
-    pub fn of_best_order(layout: &Layout, residual: &[f64]) -> Self {
+    pub(super) fn of_best_order(layout: &Layout, residual: &[f64]) -> Self {
         let of = |output| Autoregression::of_best_order(&layout.of_output(residual, output));
         Self((0..layout.outputs).map(of).collect())
     }
 
     /// Of given orders, by output: so that two models of the same data are compared on equal terms.
-    pub fn of_orders(layout: &Layout, residual: &[f64], orders: &[usize]) -> Self {
+    pub(super) fn of_orders(layout: &Layout, residual: &[f64], orders: &[usize]) -> Self {
         let of = |(output, &order): (usize, &usize)| {
             Autoregression::of_order(&layout.of_output(residual, output), order)
         };
@@ -144,16 +144,16 @@ impl Colour {
     }
 
     /// No colour: each output by its own variance.
-    pub fn white(layout: &Layout, residual: &[f64]) -> Self {
+    pub(super) fn white(layout: &Layout, residual: &[f64]) -> Self {
         Self::of_orders(layout, residual, &vec![0; layout.outputs])
     }
 
-    pub fn orders(&self) -> Vec<usize> {
+    pub(super) fn orders(&self) -> Vec<usize> {
         self.0.iter().map(Autoregression::order).collect()
     }
 
     /// Whitens a column, series by series; `residual` says which samples there are.
-    pub fn whiten(&self, layout: &Layout, residual: &[f64], column: &[f64]) -> Vec<f64> {
+    pub(super) fn whiten(&self, layout: &Layout, residual: &[f64], column: &[f64]) -> Vec<f64> {
         let mut whitened = vec![0.0; column.len()];
         for Series { output, range, .. } in &layout.series {
             let range = range.clone();
@@ -168,14 +168,14 @@ impl Colour {
     }
 
     /// ln L of the residual, but for a constant: −½ Σ (ln σ² + w²).
-    pub fn ln_likelihood(&self, layout: &Layout, residual: &[f64]) -> f64 {
+    pub(super) fn ln_likelihood(&self, layout: &Layout, residual: &[f64]) -> f64 {
         (0..layout.outputs)
             .map(|output| self.ln_likelihood_of(layout, residual, output))
             .sum()
     }
 
     /// The share of one output.
-    pub fn ln_likelihood_of(&self, layout: &Layout, residual: &[f64], output: usize) -> f64 {
+    pub(super) fn ln_likelihood_of(&self, layout: &Layout, residual: &[f64], output: usize) -> f64 {
         let mut sum = 0.0;
         for series in layout
             .series

@@ -12,7 +12,7 @@ use crate::model::ModelDocument;
 
 /// A model and its fit to the estimation flights.
 #[derive(Clone, Debug)]
-pub struct Fitted {
+pub(super) struct Fitted {
     pub document: ModelDocument,
     pub problem: Problem,
     pub estimate: Estimate,
@@ -30,7 +30,11 @@ impl Fitted {
     ///
     /// # Errors
     /// The model does not fit the recordings, or the fit came to nothing.
-    pub fn trial(case: &Case, document: ModelDocument, start: &Values) -> Result<Self, Unfit> {
+    pub(super) fn trial(
+        case: &Case,
+        document: ModelDocument,
+        start: &Values,
+    ) -> Result<Self, Unfit> {
         Self::within(TRIAL_ITERATIONS, case, document, start)
     }
 
@@ -38,7 +42,7 @@ impl Fitted {
     ///
     /// # Errors
     /// The model does not fit the recordings, or leaves the range of numbers.
-    pub fn at(case: &Case, document: ModelDocument, values: &Values) -> Result<Self, Unfit> {
+    pub(super) fn at(case: &Case, document: ModelDocument, values: &Values) -> Result<Self, Unfit> {
         Self::within(0, case, document, values)
     }
 
@@ -65,7 +69,7 @@ impl Fitted {
         ))
     }
 
-    pub fn of(
+    pub(super) fn of(
         document: ModelDocument,
         problem: Problem,
         estimate: Estimate,
@@ -81,14 +85,14 @@ impl Fitted {
     }
 
     /// Its values, others put beside or in place of them.
-    pub fn values_with(&self, others: &Values) -> Values {
+    pub(super) fn values_with(&self, others: &Values) -> Values {
         let mut values = self.values.clone();
         values.extend(others.iter().map(|(key, value)| (key.clone(), *value)));
         values
     }
 
     /// Names of the parameters added that stand at a bound of their range.
-    pub fn at_bound(&self, base: &Self) -> Vec<(String, Bound)> {
+    pub(super) fn at_bound(&self, base: &Self) -> Vec<(String, Bound)> {
         let declared = &base.problem.model.parameters;
         let rows = self.estimate.parameters.iter();
         rows.filter(|row| !declared.iter().any(|info| info.name == row.name))
@@ -96,7 +100,7 @@ impl Fitted {
             .collect()
     }
 
-    pub fn theta(&self) -> Vec<f64> {
+    pub(super) fn theta(&self) -> Vec<f64> {
         let problem = &self.problem;
         let of = |place: usize| {
             let unknown = problem.unknowns.at(place);
@@ -113,7 +117,7 @@ impl Fitted {
     }
 
     /// ln L of its residuals by output, with noise of given orders.
-    pub fn ln_likelihood(&self, orders: &[usize]) -> f64 {
+    pub(super) fn ln_likelihood(&self, orders: &[usize]) -> f64 {
         let layout = Layout::of(&self.problem);
         Colour::of_orders(&layout, &self.residual, orders).ln_likelihood(&layout, &self.residual)
     }
@@ -122,7 +126,12 @@ impl Fitted {
     ///
     /// # Errors
     /// The prediction leaves the range of numbers.
-    pub fn held_out(&self, case: &Case, role: Role, orders: &[usize]) -> Result<Vec<f64>, Unfit> {
+    pub(super) fn held_out(
+        &self,
+        case: &Case,
+        role: Role,
+        orders: &[usize],
+    ) -> Result<Vec<f64>, Unfit> {
         let mut problem = self.problem.clone();
         problem.options.error_bounds = ErrorBoundsKind::Conventional;
         let mut histories = Vec::new();

@@ -6,14 +6,14 @@ use super::round::Accepted;
 
 /// Effects that were accepted, in their order, and candidates that were not, with the reason.
 #[derive(Default)]
-pub struct Found {
+pub(super) struct Found {
     pub accepted: Vec<Accepted>,
     pub refused: Vec<RefusedEffect>,
 }
 
 impl Found {
     /// Takes over why a round refused candidates. Of each, that is kept which speaks of the most that it explained.
-    pub fn refuse(&mut self, refused: Vec<RefusedEffect>) {
+    pub(super) fn refuse(&mut self, refused: Vec<RefusedEffect>) {
         let explained =
             |refused: &RefusedEffect| refused.likelihood_ratio.unwrap_or(f64::NEG_INFINITY);
         for new in refused {
@@ -26,7 +26,7 @@ impl Found {
     }
 
     /// Candidates that stand in the group of one that was accepted, or were accepted later, were not refused.
-    pub fn truly_refused(&self) -> Vec<RefusedEffect> {
+    pub(super) fn truly_refused(&self) -> Vec<RefusedEffect> {
         let stands = |effect: &Effect| {
             let groups = self.accepted.iter().flat_map(|accepted| &accepted.group);
             groups
@@ -40,7 +40,7 @@ impl Found {
         refused.cloned().collect()
     }
 
-    pub fn needless(&mut self, removed: Accepted, cost: f64) {
+    pub(super) fn needless(&mut self, removed: Accepted, cost: f64) {
         self.refused
             .retain(|refused| refused.effect != removed.effect);
         self.refused.push(RefusedEffect {

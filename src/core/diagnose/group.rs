@@ -5,7 +5,7 @@ use super::report::Member;
 use super::trial::Trial;
 
 /// Twice the difference of two log-likelihoods below which neither of two models is preferred.
-pub const ALIKE: f64 = 6.0;
+pub(super) const ALIKE: f64 = 6.0;
 
 /// What is explained in directions of a larger cosine is one and the same, but for how it is modelled.
 const PARALLEL: f64 = 0.95;
@@ -14,7 +14,7 @@ const PARALLEL: f64 = 0.95;
 const FAR: f64 = 40.0;
 
 /// The members of the group that `best` leads, itself included, the likeliest first, with their weights.
-pub fn group(best: &Trial, others: &[&Trial]) -> Vec<Member> {
+pub(super) fn group(best: &Trial, others: &[&Trial]) -> Vec<Member> {
     let is_alike = |trial: &&&Trial| {
         let worse = best.merit() - trial.merit();
         worse < ALIKE || (worse < FAR && cosine(best, trial) > PARALLEL)

@@ -26,7 +26,7 @@ const MOST: f64 = 0.1;
 const LEAST: usize = 2;
 
 /// The case without such samples (they have no value any more), and the effects; `None` where there are none.
-pub fn clean(case: &Case, declared: &Fitted) -> Option<(Case, Vec<Accepted>)> {
+pub(super) fn clean(case: &Case, declared: &Fitted) -> Option<(Case, Vec<Accepted>)> {
     let layout = Layout::of(&declared.problem);
     let mut cleaned = case.clone();
     let mut found = Vec::new();

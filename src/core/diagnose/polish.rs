@@ -26,7 +26,7 @@ impl Fitted {
     /// The fit moved to where the likelihood with noise of these orders is greatest. As it was where all orders are 0, or
     /// nothing is gained.
     #[must_use]
-    pub fn polished(mut self, orders: &[usize]) -> Self {
+    pub(super) fn polished(mut self, orders: &[usize]) -> Self {
         if orders.iter().all(|&order| order == 0) || self.problem.unknowns.is_empty() {
             return self;
         }

@@ -4,13 +4,13 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// An orthonormal basis of the span of some columns.
 #[derive(Clone, Debug, Default)]
-pub struct Basis(Vec<Vec<f64>>);
+pub(super) struct Basis(Vec<Vec<f64>>);
 
 /// A column of which less than this is left by those before it is one of them.
 const DEPENDENT: f64 = 1e-7;
 
 impl Basis {
-    pub fn of(columns: impl IntoIterator<Item = Vec<f64>>) -> Self {
+    pub(super) fn of(columns: impl IntoIterator<Item = Vec<f64>>) -> Self {
         let mut basis = Self::default();
         for column in columns {
             basis.add(column);
@@ -19,7 +19,7 @@ impl Basis {
     }
 
     /// Adds what a column brings that is new; how long that is, over the length of the column.
-    pub fn add(&mut self, mut column: Vec<f64>) -> f64 {
+    pub(super) fn add(&mut self, mut column: Vec<f64>) -> f64 {
         let before = norm(&column);
         if !(before > 0.0 && before.is_finite()) {
             return 0.0;
@@ -35,7 +35,7 @@ impl Basis {
     }
 
     /// Takes the span's part off a column. Twice, since once leaves rounding errors where little is left.
-    pub fn remove_from(&self, column: &mut [f64]) {
+    pub(super) fn remove_from(&self, column: &mut [f64]) {
         for _ in 0..2 {
             for unit in &self.0 {
                 let share = dot(unit, column);
@@ -50,7 +50,7 @@ impl Basis {
 
 /// x of least length with G x = m, G symmetric and not negative; directions weaker than `weakest` of the strongest are
 /// left out. `None` where G is no matrix of numbers, which an unbounded decomposition would turn over for ever.
-pub fn least_squares(
+pub(super) fn least_squares(
     gram: DMatrix<f64>,
     moment: &DVector<f64>,
     weakest: f64,
@@ -70,11 +70,11 @@ pub fn least_squares(
     Some(&eigen.eigenvectors * inverse.component_mul(&(eigen.eigenvectors.transpose() * moment)))
 }
 
-pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-pub fn norm(a: &[f64]) -> f64 {
+pub(super) fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 

@@ -20,7 +20,7 @@ const FAMILY_ERROR: f64 = 0.005;
 const UNLIKELY_SCATTER: f64 = 1e-4;
 
 /// 80 % power: this many standard deviations beyond the critical value.
-pub const POWER: f64 = 0.84;
+pub(super) const POWER: f64 = 0.84;
 
 /// Fits whose ln L differ by less ended at the same minimum.
 const SAME: f64 = 1e-3;
@@ -29,7 +29,7 @@ const SAME: f64 = 1e-3;
 const BEST: usize = 4;
 
 /// What a likelihood ratio has to pass.
-pub struct Threshold {
+pub(super) struct Threshold {
     /// Independent ones that the candidates ask.
     pub questions: f64,
 }
@@ -37,13 +37,13 @@ pub struct Threshold {
 impl Threshold {
     /// Each start from which a candidate was fitted is a question more: what has no place or frequency before it is
     /// found has many chances to be found in noise (Davies, Biometrika 74, 1987).
-    pub fn of(&self, freedom: usize, starts: usize) -> f64 {
+    pub(super) fn of(&self, freedom: usize, starts: usize) -> f64 {
         critical(FAMILY_ERROR / starts.max(1) as f64, self.questions, freedom)
     }
 }
 
 /// What a candidate has to beat: the model as it is.
-pub struct Rival<'c> {
+pub(super) struct Rival<'c> {
     case: &'c Case,
     base: &'c Fitted,
     orders: &'c [usize],
@@ -53,7 +53,7 @@ pub struct Rival<'c> {
 }
 
 impl<'c> Rival<'c> {
-    pub fn new(case: &'c Case, base: &'c Fitted, orders: &'c [usize]) -> Self {
+    pub(super) fn new(case: &'c Case, base: &'c Fitted, orders: &'c [usize]) -> Self {
         // both sides at the likeliest for coloured noise
         let polished = base.clone().polished(orders);
         let any = case.of_role(Role::Validation).next().is_some();
@@ -69,7 +69,11 @@ impl<'c> Rival<'c> {
         }
     }
 
-    pub fn trial(&self, effect: Effect, screened: Option<Screened>) -> Result<Trial, String> {
+    pub(super) fn trial(
+        &self,
+        effect: Effect,
+        screened: Option<Screened>,
+    ) -> Result<Trial, String> {
         let document = effect
             .apply(&self.base.document)
             .map_err(|error| error.to_string())?;
@@ -160,7 +164,11 @@ impl<'c> Rival<'c> {
     }
 
     /// What speaks against accepting it.
-    pub fn objection(&self, trial: &Trial, threshold: &Threshold) -> Option<(Refusal, String)> {
+    pub(super) fn objection(
+        &self,
+        trial: &Trial,
+        threshold: &Threshold,
+    ) -> Option<(Refusal, String)> {
         let (ratio, least) = (
             trial.likelihood_ratio,
             threshold.of(trial.freedom, trial.starts),
@@ -259,7 +267,12 @@ impl<'c> Rival<'c> {
         ))
     }
 
-    pub fn accepted(&self, best: Trial, group: Vec<Member>, threshold: &Threshold) -> Accepted {
+    pub(super) fn accepted(
+        &self,
+        best: Trial,
+        group: Vec<Member>,
+        threshold: &Threshold,
+    ) -> Accepted {
         let outputs = self.base.problem.model.outputs.iter();
         let gains = best.held_out.iter().flatten();
         let screened = best.screened.as_ref();

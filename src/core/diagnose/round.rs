@@ -34,13 +34,13 @@ const MOST_TRIALS: usize = 16;
 const TOGETHER: usize = 8;
 
 /// What came of a round.
-pub struct Round {
+pub(super) struct Round {
     pub accepted: Option<Accepted>,
     pub refused: Vec<RefusedEffect>,
     pub stopped: bool,
 }
 
-pub struct Accepted {
+pub(super) struct Accepted {
     pub effect: Effect,
     /// Names of the parameters that it added.
     pub added: Vec<String>,
@@ -55,7 +55,7 @@ pub type Watcher<'o> = dyn FnMut(Option<&Step>) -> ControlFlow<()> + 'o;
 /// A screened candidate, or why it was not.
 type Seen = (Effect, Result<Screened, String>);
 
-pub fn round(
+pub(super) fn round(
     case: &Case,
     base: &Fitted,
     candidates: Vec<Effect>,
@@ -333,7 +333,7 @@ fn of_screen(
 }
 
 /// The likelihood ratio that removing an effect costs, and what it would have to be to keep it.
-pub fn cost_of_removal(
+pub(super) fn cost_of_removal(
     case: &Case,
     with: &Fitted,
     without: crate::model::ModelDocument,

@@ -32,7 +32,7 @@ struct Metric {
 }
 
 /// Everything about the declared model that the screen of each candidate needs.
-pub struct Screen<'c> {
+pub(super) struct Screen<'c> {
     case: &'c Case,
     base: &'c Fitted,
     layout: Layout,
@@ -41,7 +41,7 @@ pub struct Screen<'c> {
 
 /// What the screen says of a candidate.
 #[derive(Clone, Debug)]
-pub struct Screened {
+pub(super) struct Screened {
     /// Where a fit of it begins: the one step.
     start: Values,
     /// From where that step was made.
@@ -68,7 +68,7 @@ type Key = (String, Option<String>);
 impl Screened {
     /// Where fits of it begin. Of what the declared parameters imitate closely, the whole step without theirs leads far
     /// astray: then a small share of it too.
-    pub fn starts(&self) -> Vec<Values> {
+    pub(super) fn starts(&self) -> Vec<Values> {
         let mut starts = vec![self.start.clone()];
         if self.visible < IMITATED {
             let of = |(key, value): (&Key, &f64)| {
@@ -94,7 +94,7 @@ const IMITATED: f64 = 0.2;
 const PARTS: usize = 3;
 
 impl<'c> Screen<'c> {
-    pub fn new(case: &'c Case, base: &'c Fitted, colour: &Colour) -> Option<Self> {
+    pub(super) fn new(case: &'c Case, base: &'c Fitted, colour: &Colour) -> Option<Self> {
         let layout = Layout::of(&base.problem);
         let mut free: Vec<usize> = (0..base.problem.unknowns.len())
             .map(|place| base.problem.unknowns.at(place).parameter)
@@ -137,7 +137,7 @@ impl<'c> Screen<'c> {
     ///
     /// # Errors
     /// Why it cannot be screened.
-    pub fn of(&self, document: &ModelDocument, start: &Values) -> Result<Screened, String> {
+    pub(super) fn of(&self, document: &ModelDocument, start: &Values) -> Result<Screened, String> {
         let values = self.base.values_with(start);
         let problem = self
             .case
@@ -263,7 +263,7 @@ impl<'c> Screen<'c> {
 
     /// Whether what is left of an output follows an input, with any shape over the next seconds: tested at a
     /// probability of false alarm.
-    pub fn follows(&self, output: usize, input: usize, probability: f64) -> bool {
+    pub(super) fn follows(&self, output: usize, input: usize, probability: f64) -> bool {
         let Some(metric) = self.metrics.first() else {
             return false;
         };
@@ -299,7 +299,7 @@ impl<'c> Screen<'c> {
 
     /// How far each segment, or part of the only one, would pull one of the model's own parameters, all others
     /// adjusted, and the standard error of that: SI.
-    pub fn pulls(&self, parameter: &str) -> Option<Vec<(f64, f64)>> {
+    pub(super) fn pulls(&self, parameter: &str) -> Option<Vec<(f64, f64)>> {
         let problem = &self.base.problem;
         let index = problem
             .model
@@ -356,7 +356,7 @@ fn marked(column: &[f64], mask: &[f64]) -> Vec<f64> {
 
 /// How many independent questions a set of directions asks: from the eigenvalues of their correlation (Li and Ji,
 /// Heredity 95, 2005).
-pub fn independent_questions(directions: &[&[f64]]) -> f64 {
+pub(super) fn independent_questions(directions: &[&[f64]]) -> f64 {
     let count = directions.len();
     if count < 2 {
         return count as f64;
@@ -376,7 +376,7 @@ pub fn independent_questions(directions: &[&[f64]]) -> f64 {
 }
 
 /// The likelihood ratio that noise alone exceeds in one of `questions` with a given probability.
-pub fn critical(probability: f64, questions: f64, freedom: usize) -> f64 {
+pub(super) fn critical(probability: f64, questions: f64, freedom: usize) -> f64 {
     let Ok(chi_squared) = ChiSquared::new(freedom.max(1) as f64) else {
         return f64::INFINITY;
     };
@@ -384,6 +384,6 @@ pub fn critical(probability: f64, questions: f64, freedom: usize) -> f64 {
 }
 
 /// Probability that noise alone gives a χ² beyond this.
-pub fn tail(chi_squared: f64, freedom: usize) -> f64 {
+pub(super) fn tail(chi_squared: f64, freedom: usize) -> f64 {
     ChiSquared::new(freedom.max(1) as f64).map_or(1.0, |law| law.sf(chi_squared))
 }

@@ -6,7 +6,7 @@ use crate::flight::{Shown, shown_in};
 use crate::model::EditKind;
 
 /// What an effect is, with its size; angles in degrees.
-pub fn of(effect: &Effect, added: &[String], with: &Estimate) -> String {
+pub(super) fn of(effect: &Effect, added: &[String], with: &Estimate) -> String {
     let added: Vec<&ParameterEstimate> = (with.parameters.iter())
         .filter(|row| !row.fixed && added.contains(&row.name))
         .collect();
@@ -36,7 +36,7 @@ pub fn of(effect: &Effect, added: &[String], with: &Estimate) -> String {
 }
 
 /// What an effect is, without its size.
-pub fn words(effect: &Effect) -> String {
+pub(super) fn words(effect: &Effect) -> String {
     let target = effect.target.as_str();
     let term = effect.term.as_deref().unwrap_or_default();
     let kind = match effect.kind {

@@ -7,7 +7,7 @@ use crate::simulate::{Columns, Sensitivities};
 
 /// One output along one segment.
 #[derive(Clone, PartialEq, Debug)]
-pub struct Series {
+pub(super) struct Series {
     pub segment: usize,
     pub output: usize,
     pub range: Range<usize>,
@@ -15,7 +15,7 @@ pub struct Series {
 
 /// Where each series stands in a column.
 #[derive(Clone, PartialEq, Debug)]
-pub struct Layout {
+pub(super) struct Layout {
     pub outputs: usize,
     pub series: Vec<Series>,
     /// Length of a column.
@@ -23,7 +23,7 @@ pub struct Layout {
 }
 
 impl Layout {
-    pub fn of(problem: &Problem) -> Self {
+    pub(super) fn of(problem: &Problem) -> Self {
         let lengths: Vec<usize> = problem
             .segments
             .iter()
@@ -32,7 +32,7 @@ impl Layout {
         Self::of_lengths(&lengths, problem.model.outputs.len())
     }
 
-    pub fn of_lengths(lengths: &[usize], outputs: usize) -> Self {
+    pub(super) fn of_lengths(lengths: &[usize], outputs: usize) -> Self {
         let (mut series, mut len) = (Vec::new(), 0);
         for (segment, &samples) in lengths.iter().enumerate() {
             for output in 0..outputs {
@@ -53,7 +53,7 @@ impl Layout {
     }
 
     /// The residuals of time histories; NaN where there is no sample.
-    pub fn residual(&self, histories: &[TimeHistory]) -> Vec<f64> {
+    pub(super) fn residual(&self, histories: &[TimeHistory]) -> Vec<f64> {
         let mut column = vec![f64::NAN; self.len];
         for Series {
             segment,
@@ -66,14 +66,14 @@ impl Layout {
         column
     }
 
-    pub fn of_output<'c>(&self, column: &'c [f64], output: usize) -> Vec<&'c [f64]> {
+    pub(super) fn of_output<'c>(&self, column: &'c [f64], output: usize) -> Vec<&'c [f64]> {
         let of = self.series.iter().filter(|series| series.output == output);
         of.map(|series| &column[series.range.clone()]).collect()
     }
 }
 
 /// A model at one θ, as columns.
-pub struct Linearised {
+pub(super) struct Linearised {
     /// Measured minus model; NaN where there is no sample.
     pub residual: Vec<f64>,
     /// ∂y/∂ψ: by parameter a column over all segments, or by segment one where each has its own.
@@ -82,7 +82,7 @@ pub struct Linearised {
 
 /// ∂y/∂ψ at θ for the parameters of the model whose indices are `parameters`. `None` where the simulation leaves the
 /// range of numbers.
-pub fn sensitivities(
+pub(super) fn sensitivities(
     problem: &Problem,
     layout: &Layout,
     theta: &[f64],
@@ -93,7 +93,7 @@ pub fn sensitivities(
 
 /// Residual and sensitivities at θ for the parameters of the model whose indices are `parameters`. `None` where the
 /// simulation leaves the range of numbers.
-pub fn linearised(
+pub(super) fn linearised(
     problem: &Problem,
     layout: &Layout,
     theta: &[f64],

@@ -15,7 +15,7 @@ fn is_rate(name: &str) -> bool {
 
 /// Equations that carry aerodynamics: named coefficients where the document has them (C..), else the state equations
 /// with a free parameter in them.
-pub fn aerodynamic(document: &ModelDocument) -> Vec<String> {
+pub(super) fn aerodynamic(document: &ModelDocument) -> Vec<String> {
     let has_free = |text: &str| {
         names(text)
             .iter()
@@ -42,7 +42,7 @@ fn names(text: &str) -> BTreeSet<String> {
 }
 
 /// Pairs of an equation and a term that it does not have.
-pub fn of(model: &Model) -> Vec<(String, String)> {
+pub(super) fn of(model: &Model) -> Vec<(String, String)> {
     let document = &model.document;
     let known =
         |name: &String| document.states.contains_key(name) || document.inputs.contains_key(name);

@@ -11,7 +11,7 @@ use crate::model::{Added, EditKind, ModelDocument, Start};
 
 /// A candidate, fitted.
 #[derive(Clone, Debug)]
-pub struct Trial {
+pub(super) struct Trial {
     pub effect: Effect,
     /// From how many starts it was looked for.
     pub starts: usize,
@@ -31,14 +31,14 @@ pub struct Trial {
 
 impl Trial {
     /// Twice the gain on all flights, each parameter of the effect counted as two (Akaike).
-    pub fn merit(&self) -> f64 {
+    pub(super) fn merit(&self) -> f64 {
         let held_out: f64 = self.held_out.iter().flatten().sum();
         self.likelihood_ratio + held_out - 2.0 * self.freedom as f64
     }
 }
 
 /// Whether a kind has no derivative at no effect, so that a screen cannot see it.
-pub fn is_tried_outright(kind: EffectKind) -> bool {
+pub(super) fn is_tried_outright(kind: EffectKind) -> bool {
     use EditKind::{
         ActuatorLag, ActuatorRateLimit, Backlash, InputDelay, SensorLag, StallHysteresis,
     };
@@ -51,7 +51,7 @@ pub fn is_tried_outright(kind: EffectKind) -> bool {
 }
 
 /// Start values for what an effect adds, where one start is not enough.
-pub fn starts(
+pub(super) fn starts(
     case: &Case,
     effect: &Effect,
     document: &ModelDocument,
@@ -126,7 +126,7 @@ fn delay_starts(case: &Case, document: &ModelDocument, base: &ModelDocument) -> 
 }
 
 /// A delay of many samples is far from what one linear step tells: further starts of it.
-pub fn starts_of_delay(case: &Case, effect: &Effect, added: &[String]) -> Vec<Values> {
+pub(super) fn starts_of_delay(case: &Case, effect: &Effect, added: &[String]) -> Vec<Values> {
     match effect.kind {
         EffectKind::Edit(EditKind::SensorDelay) => samples_late(case, added, &[2.0, 5.0]),
         _ => Vec::new(),
@@ -191,7 +191,7 @@ fn gust_starts(case: &Case, document: &ModelDocument, base: &ModelDocument) -> V
 ///
 /// # Errors
 /// It came to nothing.
-pub fn fit(
+pub(super) fn fit(
     case: &Case,
     base: &Fitted,
     effect: &Effect,
@@ -207,7 +207,7 @@ pub fn fit(
 
 /// What disturbs one state disturbs others: the same model with process noise on all of them, where the likelihood says
 /// so. `calm` is the fit without any.
-pub fn disturbed_throughout(case: &Case, calm: &Fitted, one: Fitted) -> Fitted {
+pub(super) fn disturbed_throughout(case: &Case, calm: &Fitted, one: Fitted) -> Fitted {
     const ERROR: f64 = 0.01;
     let Ok(all) = filtered(case, calm, &|_| false) else {
         return one;

@@ -41,12 +41,12 @@ struct Past {
 
 impl Acceleration {
     /// What was learnt elsewhere does not hold here.
-    pub fn forget(&mut self) {
+    pub(super) fn forget(&mut self) {
         self.past.clear();
     }
 
     /// The step to try in place of the full `step` from θ, if earlier ones told.
-    pub fn propose(
+    pub(super) fn propose(
         &mut self,
         theta: &[f64],
         step: DVector<f64>,

@@ -24,7 +24,7 @@ impl Autoregression {
     /// From autocovariances at lags 0, 1, ... (sums over `samples` divided by `samples`, so that the model is
     /// stable), by the Levinson-Durbin recursion. Among all orders, that of least Schwarz criterion
     /// N ln σ² + order ln N: it finds order 0 for white noise, nearly always.
-    pub fn fit(autocovariance: &[f64], samples: usize) -> Self {
+    pub(super) fn fit(autocovariance: &[f64], samples: usize) -> Self {
         let power = autocovariance.first().copied().unwrap_or(0.0);
         let n = samples as f64;
         let mut best = Self {
@@ -63,7 +63,7 @@ impl Autoregression {
     }
 
     /// How much of the number of samples counts for a mean: variance over spectral density at frequency 0.
-    pub fn effective_share(&self) -> f64 {
+    pub(super) fn effective_share(&self) -> f64 {
         let gain = 1.0 - self.coefficients.iter().sum::<f64>();
         if self.variance > 0.0 {
             self.power * gain * gain / self.variance

@@ -36,13 +36,13 @@ pub(super) struct Colour {
 
 impl Colour {
     /// Of the residuals of all segments as they are; lags count in samples. Missing samples (NaN) do not count.
-    pub fn of(histories: &[TimeHistory]) -> Self {
+    pub(super) fn of(histories: &[TimeHistory]) -> Self {
         Self::of_noise(histories, &[])
     }
 
     /// Of the noise that left these residuals to a fit which absorbed some of it: by output, then lag, a sum over
     /// samples.
-    pub fn of_noise(histories: &[TimeHistory], absorbed: &[Vec<f64>]) -> Self {
+    pub(super) fn of_noise(histories: &[TimeHistory], absorbed: &[Vec<f64>]) -> Self {
         let outputs = histories.first().map_or(0, |history| history.outputs.len());
         let model = |i: usize| {
             let series = || histories.iter().map(move |h| &*h.outputs[i].residual);

@@ -24,7 +24,7 @@ pub(super) struct Definite {
 
 impl Definite {
     /// `None` where some direction might not be seen.
-    pub fn of(matrix: &DMatrix<f64>, diagonal: &DVector<f64>) -> Option<Self> {
+    pub(super) fn of(matrix: &DMatrix<f64>, diagonal: &DVector<f64>) -> Option<Self> {
         let none = DMatrix::zeros(matrix.nrows(), 0);
         Self::bordered(matrix, &none, diagonal, order(matrix))
     }
@@ -37,7 +37,7 @@ impl Definite {
     /// ```
     ///
     /// is (M − U Uᵀ)⁻¹ v, and the bordered matrix is positive definite where M − U Uᵀ is.
-    pub fn less(
+    pub(super) fn less(
         matrix: &DMatrix<f64>,
         columns: &DMatrix<f64>,
         diagonal: &DVector<f64>,
@@ -79,12 +79,12 @@ impl Definite {
     }
 
     /// 1/√diagonal.
-    pub fn scale(&self) -> &DVector<f64> {
+    pub(super) fn scale(&self) -> &DVector<f64> {
         &self.scale
     }
 
     /// M⁻¹
-    pub fn inverse(&self) -> DMatrix<f64> {
+    pub(super) fn inverse(&self) -> DMatrix<f64> {
         let n = self.places.len();
         let mut inverse = DMatrix::zeros(n, n);
         for (place, mut column) in inverse.column_iter_mut().enumerate() {
@@ -96,7 +96,7 @@ impl Definite {
     }
 
     /// (M + λ diag)⁻¹ v
-    pub fn solve(&self, v: &DVector<f64>, damping: f64) -> DVector<f64> {
+    pub(super) fn solve(&self, v: &DVector<f64>, damping: f64) -> DVector<f64> {
         if damping > 0.0 {
             let mut damped = self.matrix.clone();
             damped.add_to_diagonal(self.places.len(), damping);

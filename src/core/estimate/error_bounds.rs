@@ -48,7 +48,7 @@ pub(super) struct ErrorBounds {
 
 impl ErrorBounds {
     /// At an iterate, whose time histories have the residuals.
-    pub fn at(
+    pub(super) fn at(
         problem: &Problem,
         evaluator: &mut Evaluator<'_>,
         iterate: &Iterate,
@@ -69,7 +69,7 @@ impl ErrorBounds {
     }
 
     /// From the information matrix; places held at a bound count as known.
-    pub fn conventional(information: &DMatrix<f64>, held: &[Option<Bound>]) -> Self {
+    pub(super) fn conventional(information: &DMatrix<f64>, held: &[Option<Bound>]) -> Self {
         let unknowns = held.len();
         let moving: Vec<usize> = (0..unknowns).filter(|&i| held[i].is_none()).collect();
         let own = information.select_rows(&moving).select_columns(&moving);
@@ -181,7 +181,7 @@ impl ErrorBounds {
     }
 
     /// The collinear sets by name; `name` gives what the unknown at a place is called, and the SI value of its unit.
-    pub fn collinear(&self, name: impl Fn(usize) -> (String, f64)) -> Vec<CollinearSet> {
+    pub(super) fn collinear(&self, name: impl Fn(usize) -> (String, f64)) -> Vec<CollinearSet> {
         (self.collinear.iter())
             .map(|members| CollinearSet::named(members, &name))
             .collect()

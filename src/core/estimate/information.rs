@@ -20,7 +20,7 @@ pub(super) struct Spectrum {
 
 impl Spectrum {
     /// `None` where the decomposition fails: entries that are not finite, or no convergence.
-    pub fn of(matrix: &DMatrix<f64>, diagonal: &DVector<f64>) -> Option<Self> {
+    pub(super) fn of(matrix: &DMatrix<f64>, diagonal: &DVector<f64>) -> Option<Self> {
         let scale = diagonal.map(|d| if d > 0.0 { d.sqrt().recip() } else { 0.0 });
         let scaled = scaled(matrix, &scale);
         if scaled.iter().any(|v| !v.is_finite()) {
@@ -41,12 +41,12 @@ impl Spectrum {
         })
     }
 
-    pub fn is_seen(&self, i: usize) -> bool {
+    pub(super) fn is_seen(&self, i: usize) -> bool {
         self.values[i] > SMALLEST_EIGENVALUE
     }
 
     /// (M + λ diag)⁻¹ v over the directions that are seen.
-    pub fn solve(&self, v: &DVector<f64>, damping: f64) -> DVector<f64> {
+    pub(super) fn solve(&self, v: &DVector<f64>, damping: f64) -> DVector<f64> {
         let scaled = v.component_mul(&self.scale);
         let mut components = self.vectors.tr_mul(&scaled);
         for i in 0..components.len() {
@@ -60,7 +60,7 @@ impl Spectrum {
     }
 
     /// M⁻¹ over the directions that are seen.
-    pub fn inverse(&self) -> DMatrix<f64> {
+    pub(super) fn inverse(&self) -> DMatrix<f64> {
         let n = self.values.len();
         let reciprocal = DVector::from_fn(n, |i, _| {
             if self.is_seen(i) {
@@ -78,7 +78,7 @@ impl Spectrum {
     /// which nothing changes.
     ///
     /// The null space is brought to row echelon form, so that each set has as few members as can be told.
-    pub fn collinear(&self) -> Vec<Vec<(usize, f64)>> {
+    pub(super) fn collinear(&self) -> Vec<Vec<(usize, f64)>> {
         let n = self.values.len();
         let unseen = (0..n)
             .filter(|&i| self.scale[i] == 0.0)

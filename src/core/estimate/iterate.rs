@@ -29,7 +29,7 @@ pub(super) struct Taken {
 }
 
 impl Iterate {
-    pub fn at(
+    pub(super) fn at(
         problem: &Problem,
         evaluator: &mut Evaluator<'_>,
         theta: Vec<f64>,
@@ -56,7 +56,7 @@ impl Iterate {
         })
     }
 
-    pub fn report(&self, problem: &Problem, number: usize, taken: &Taken) -> Iteration {
+    pub(super) fn report(&self, problem: &Problem, number: usize, taken: &Taken) -> Iteration {
         Iteration {
             number,
             cost: self.weighting.cost,

@@ -83,7 +83,7 @@ impl Weighting {
     ///
     /// # Errors
     /// R is singular, or the cost is not finite.
-    pub fn at(
+    pub(super) fn at(
         problem: &Problem,
         theta: &[f64],
         residuals: &ResidualSums,
@@ -99,7 +99,7 @@ impl Weighting {
 
     /// `counts` are the samples of each output. Where R is full they are all the same: a sample then has values
     /// of all outputs, or does not count.
-    pub fn new(
+    pub(super) fn new(
         noise: &Noise,
         residuals: &ResidualSums,
         counts: &[usize],
@@ -134,12 +134,12 @@ impl Weighting {
         })
     }
 
-    pub fn det(&self) -> f64 {
+    pub(super) fn det(&self) -> f64 {
         self.ln_det.exp()
     }
 
     /// R⁻¹ e
-    pub fn weighted(&self, residual: &[f64], to: &mut [f64]) {
+    pub(super) fn weighted(&self, residual: &[f64], to: &mut [f64]) {
         if self.diagonal {
             for (i, (to, e)) in to.iter_mut().zip(residual).enumerate() {
                 *to = self.inverse[(i, i)] * e;
@@ -152,12 +152,12 @@ impl Weighting {
     }
 
     /// The information matrix F = Σ Sᵀ R⁻¹ S.
-    pub fn information(&self, sums: &Sums) -> DMatrix<f64> {
+    pub(super) fn information(&self, sums: &Sums) -> DMatrix<f64> {
         sums.weighted(&self.inverse)
     }
 
     /// The descent direction -∂J/∂θ = Σ Sᵀ R⁻¹ e.
-    pub fn descent(&self, sums: &Sums) -> DVector<f64> {
+    pub(super) fn descent(&self, sums: &Sums) -> DVector<f64> {
         let mut descent = DVector::zeros(sums.gradients[0][0].len());
         for (i, gradients) in sums.gradients.iter().enumerate() {
             if let [own] = gradients.as_slice() {
@@ -177,7 +177,11 @@ impl Weighting {
     ///
     /// # Errors
     /// R is singular.
-    pub fn relaxation(&self, sums: &Sums, counts: &[usize]) -> Result<DMatrix<f64>, Unusable> {
+    pub(super) fn relaxation(
+        &self,
+        sums: &Sums,
+        counts: &[usize],
+    ) -> Result<DMatrix<f64>, Unusable> {
         let unknowns = sums.gradients[0][0].len();
         let outputs = self.inverse.nrows();
         if self.diagonal {

@@ -25,7 +25,7 @@ pub(super) struct LocalSums {
 
 impl LocalSums {
     /// `full`: the noise of the outputs is correlated, so that all pairs of outputs count.
-    pub fn new(problem: &Problem, full: bool) -> Self {
+    pub(super) fn new(problem: &Problem, full: bool) -> Self {
         let outputs = problem.model.outputs.len();
         let widths: Vec<usize> = (0..outputs)
             .map(|i| problem.columns.of_output(i).len())
@@ -50,7 +50,7 @@ impl LocalSums {
         }
     }
 
-    pub fn add(&mut self, block: &Block<'_>, segment: &Segment) {
+    pub(super) fn add(&mut self, block: &Block<'_>, segment: &Segment) {
         let outputs = self.widths.len();
         for (i, residuals) in self.block_residuals.iter_mut().enumerate() {
             let measured = &segment.measured[i][block.first..block.first + block.len];
@@ -86,7 +86,7 @@ impl LocalSums {
     }
 
     /// Adds to the sums of all segments.
-    pub fn add_to(self, problem: &Problem, segment: usize, total: &mut Sums) {
+    pub(super) fn add_to(self, problem: &Problem, segment: usize, total: &mut Sums) {
         let places = |output: usize| -> Vec<Option<usize>> {
             let parameters = problem.columns.of_output(output).iter();
             parameters

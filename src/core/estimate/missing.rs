@@ -26,7 +26,7 @@ pub(super) struct Missing {
 }
 
 impl Missing {
-    pub fn new(problem: &Problem) -> Self {
+    pub(super) fn new(problem: &Problem) -> Self {
         let samples = problem.samples();
         let counts = problem.counts.iter();
         Self {
@@ -35,7 +35,12 @@ impl Missing {
         }
     }
 
-    pub fn leave_out(&mut self, block: &Block<'_>, segment: &Segment, residuals: &mut [Vec<f64>]) {
+    pub(super) fn leave_out(
+        &mut self,
+        block: &Block<'_>,
+        segment: &Segment,
+        residuals: &mut [Vec<f64>],
+    ) {
         let incomplete = (0..self.masked.len()).filter(|&i| self.incomplete[i]);
         for i in incomplete {
             let rows = &mut self.masked[i];
@@ -54,7 +59,7 @@ impl Missing {
     }
 
     /// The packed rows of an output in the block that was last given to [`Self::leave_out`].
-    pub fn rows<'a>(&'a self, block: &'a Block<'_>, output: usize) -> &'a [Pack] {
+    pub(super) fn rows<'a>(&'a self, block: &'a Block<'_>, output: usize) -> &'a [Pack] {
         if self.masked[output].is_empty() {
             block.packed_rows(output)
         } else {

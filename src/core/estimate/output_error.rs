@@ -87,7 +87,7 @@ pub(super) fn descend<'p>(
 }
 
 impl Descent<'_> {
-    pub fn solution(self, problem: &Problem) -> Solution {
+    pub(super) fn solution(self, problem: &Problem) -> Solution {
         let Self {
             mut evaluator,
             last,

@@ -43,7 +43,7 @@ pub(super) struct Search<'p> {
 }
 
 impl<'p> Search<'p> {
-    pub fn new(problem: &'p Problem) -> Self {
+    pub(super) fn new(problem: &'p Problem) -> Self {
         Self {
             problem,
             damping: match problem.options.method {
@@ -56,7 +56,7 @@ impl<'p> Search<'p> {
     }
 
     /// The next iterate, and how it was reached.
-    pub fn onward(
+    pub(super) fn onward(
         &mut self,
         evaluator: &mut Evaluator<'_>,
         current: &Iterate,

@@ -20,7 +20,7 @@ struct Row {
 
 impl Skyline {
     /// From the entries on and below the diagonal.
-    pub fn new(len: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
+    pub(super) fn new(len: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
         let mut rows = Vec::with_capacity(len);
         let mut values = Vec::new();
         for i in 0..len {
@@ -33,14 +33,14 @@ impl Skyline {
     }
 
     /// Adds to the first `count` numbers of the diagonal.
-    pub fn add_to_diagonal(&mut self, count: usize, value: f64) {
+    pub(super) fn add_to_diagonal(&mut self, count: usize, value: f64) {
         for (i, row) in self.rows.iter().enumerate().take(count) {
             self.values[row.at + i - row.first] += value;
         }
     }
 
     /// Its Cholesky factor; `None` where it is not positive definite.
-    pub fn factor(mut self) -> Option<Factor> {
+    pub(super) fn factor(mut self) -> Option<Factor> {
         let mut reciprocals = Vec::with_capacity(self.rows.len());
         for (i, row) in self.rows.iter().enumerate() {
             let (before, own) = self.values.split_at_mut(row.at);
@@ -77,12 +77,12 @@ pub(super) struct Factor {
 }
 
 impl Factor {
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.reciprocals.len()
     }
 
     /// b → A⁻¹ b
-    pub fn solve(&self, b: &mut [f64]) {
+    pub(super) fn solve(&self, b: &mut [f64]) {
         for i in 0..b.len() {
             let (first, row) = self.row(i);
             b[i] = (b[i] - product(row, &b[first..i])) * self.reciprocals[i];
@@ -98,7 +98,7 @@ impl Factor {
     }
 
     /// The sum of the first `count` numbers of the diagonal of A⁻¹ = L⁻ᵀL⁻¹: squares of columns of L⁻¹.
-    pub fn trace_of_inverse(&self, count: usize) -> f64 {
+    pub(super) fn trace_of_inverse(&self, count: usize) -> f64 {
         let len = self.reciprocals.len();
         let mut column = vec![0.0; len];
         let of_column = |j: usize| {

@@ -56,7 +56,12 @@ pub(super) fn feeding_back(model: &Model) -> Vec<usize> {
 
 impl StateMatrix {
     /// At the start of a segment; none where an entry is no number.
-    pub fn at(problem: &Problem, segment: usize, theta: &[f64], states: &[usize]) -> Option<Self> {
+    pub(super) fn at(
+        problem: &Problem,
+        segment: usize,
+        theta: &[f64],
+        states: &[usize],
+    ) -> Option<Self> {
         let model = &problem.model;
         let data = &problem.segments[segment];
         let jacobian = &model.dynamics_jacobian;
@@ -103,7 +108,7 @@ impl StateMatrix {
     }
 
     /// Scales the states so that rows and columns are of like size: eigenvalues stay, eigenvectors are told better.
-    pub fn balance(&mut self) {
+    pub(super) fn balance(&mut self) {
         let scale = balance_parlett_reinsch(&mut self.value);
         for matrix in &mut self.by_place {
             for (i, row) in scale.iter().enumerate() {

@@ -19,7 +19,7 @@ pub(super) struct Newton {
 impl Newton {
     /// `held` are the places held at a bound. With U the `relaxation`, the Hessian less U Uᵀ is used where that is
     /// positive definite, else the information matrix alone.
-    pub fn new(
+    pub(super) fn new(
         information: &DMatrix<f64>,
         relaxation: Option<&DMatrix<f64>>,
         descent: &DVector<f64>,
@@ -42,7 +42,7 @@ impl Newton {
     }
 
     /// The change of θ for a damping λ.
-    pub fn step(&self, damping: f64) -> DVector<f64> {
+    pub(super) fn step(&self, damping: f64) -> DVector<f64> {
         let step = self.hessian.solve(&self.descent, damping);
         let mut whole = DVector::zeros(self.unknowns);
         self.moving
@@ -53,7 +53,7 @@ impl Newton {
     }
 
     /// Length of the undamped step in standard errors: √(gᵀ H⁻¹ g).
-    pub fn distance(&self) -> f64 {
+    pub(super) fn distance(&self) -> f64 {
         self.hessian
             .solve(&self.descent, 0.0)
             .dot(&self.descent)
@@ -62,7 +62,7 @@ impl Newton {
     }
 
     /// Length of the gradient, each component times the standard error that its unknown alone would have.
-    pub fn gradient_norm(&self) -> f64 {
+    pub(super) fn gradient_norm(&self) -> f64 {
         self.descent.component_mul(self.hessian.scale()).norm()
     }
 }

@@ -15,7 +15,7 @@ pub(super) enum Stopped {
 
 impl Stopped {
     /// The outcome, and what to say of it.
-    pub fn say(
+    pub(super) fn say(
         &self,
         method: Method,
         iterations: usize,

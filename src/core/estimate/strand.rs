@@ -22,7 +22,7 @@ pub(super) struct Strand<'p> {
 }
 
 impl<'p> Strand<'p> {
-    pub fn new(problem: &'p Problem) -> Self {
+    pub(super) fn new(problem: &'p Problem) -> Self {
         let options = &problem.options;
         Self {
             machinery: Sensitivities::new(
@@ -36,7 +36,7 @@ impl<'p> Strand<'p> {
     }
 
     /// As many as the machine has cores for, and the problem work.
-    pub fn several(problem: &'p Problem) -> Vec<Self> {
+    pub(super) fn several(problem: &'p Problem) -> Vec<Self> {
         let paying = problem.samples() / LEAST_SAMPLES;
         let count = rayon::current_num_threads()
             .min(problem.segments.len())
@@ -46,7 +46,7 @@ impl<'p> Strand<'p> {
     }
 
     /// Goes along one segment and hands outputs and sensitivities to `sink`.
-    pub fn run(
+    pub(super) fn run(
         &mut self,
         problem: &Problem,
         segment: usize,

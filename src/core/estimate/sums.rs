@@ -38,7 +38,7 @@ pub(super) struct Product {
 
 impl Sums {
     /// Nothing yet; `full` where all pairs of outputs count.
-    pub fn zeros(outputs: usize, unknowns: usize, full: bool) -> Self {
+    pub(super) fn zeros(outputs: usize, unknowns: usize, full: bool) -> Self {
         let columns = if full { outputs } else { 1 };
         Self {
             residuals: DMatrix::zeros(outputs, outputs),
@@ -49,7 +49,7 @@ impl Sums {
 
     /// # Errors
     /// A residual or a derivative is not a finite number.
-    pub fn finite(self) -> Result<Self, Unusable> {
+    pub(super) fn finite(self) -> Result<Self, Unusable> {
         let products = self.products.iter().flat_map(|part| &part.of_pairs);
         let mut values = products.flat_map(|product| &product.values);
         if self.residuals.iter().all(|v| v.is_finite()) && values.all(|v| v.is_finite()) {
@@ -60,7 +60,7 @@ impl Sums {
     }
 
     /// Adds what a segment has in its own columns: Σ S_iᵀ e_j by i, then j, and Σ S_iᵀ S_j by [`pairs`].
-    pub fn add<'g>(
+    pub(super) fn add<'g>(
         &mut self,
         places: Places,
         gradients: impl IntoIterator<Item = impl IntoIterator<Item = &'g [f64]>>,
@@ -80,7 +80,7 @@ impl Sums {
     }
 
     /// Σ Sᵀ W S over all samples, in θ's places.
-    pub fn weighted(&self, weight: &DMatrix<f64>) -> DMatrix<f64> {
+    pub(super) fn weighted(&self, weight: &DMatrix<f64>) -> DMatrix<f64> {
         let unknowns = self.gradients[0][0].len();
         let mut total = DMatrix::zeros(unknowns, unknowns);
         for part in &self.products {

@@ -9,11 +9,11 @@ use crate::model::Model;
 use crate::simulate::Segment;
 
 /// Most values (samples times inputs, outputs and time) that a job is made of.
-pub const MOST_VALUES: usize = 50_000_000;
+pub(super) const MOST_VALUES: usize = 50_000_000;
 /// Most segments.
-pub const MOST_SEGMENTS: usize = 1_000;
+pub(super) const MOST_SEGMENTS: usize = 1_000;
 /// Most free unknowns, those of each segment counted.
-pub const MOST_UNKNOWNS: usize = 1_000;
+pub(super) const MOST_UNKNOWNS: usize = 1_000;
 /// Most entries of normal equations, over all outputs or pairs of outputs.
 const MOST_ENTRIES: usize = 50_000_000;
 

@@ -17,7 +17,7 @@ pub const MOST_MANEUVERS: usize = 256;
 pub(super) const MOST_EDITS: usize = 64;
 
 /// Most iterations that a job may ask for.
-pub const MOST_ITERATIONS: usize = 1_000;
+pub(super) const MOST_ITERATIONS: usize = 1_000;
 
 pub(super) fn check_shape(spec: &JobSpec, maneuvers: usize, faults: &mut Vec<Fault>) {
     if maneuvers == 0 {

@@ -17,16 +17,16 @@ pub(super) struct Stretch<'m> {
 }
 
 impl Stretch<'_> {
-    pub fn label(&self) -> &str {
+    pub(super) fn label(&self) -> &str {
         &self.label
     }
 
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.rows.len()
     }
 
     /// Counted from 1.
-    pub fn first_row(&self) -> usize {
+    pub(super) fn first_row(&self) -> usize {
         self.rows.start + 1
     }
 }

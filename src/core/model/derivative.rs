@@ -6,7 +6,7 @@ impl Graph {
     /// d(roots)/d(symbol), exactly; `None` where a root does not depend on it.
     ///
     /// Forward accumulation over the graph as it stands when called.
-    pub fn derivatives(&mut self, roots: &[NodeId], symbol: u32) -> Vec<Option<NodeId>> {
+    pub(super) fn derivatives(&mut self, roots: &[NodeId], symbol: u32) -> Vec<Option<NodeId>> {
         let last = roots.iter().max().map_or(0, |&root| root as usize + 1);
         let mut tangent: Vec<Option<NodeId>> = vec![None; last];
         for id in 0..last {

@@ -20,7 +20,7 @@ pub(super) struct Equations {
 }
 
 impl Equations {
-    pub fn read(document: &ModelDocument, names: &Names, faults: &mut Vec<Fault>) -> Self {
+    pub(super) fn read(document: &ModelDocument, names: &Names, faults: &mut Vec<Fault>) -> Self {
         let mut read = |pointer: String, text: &str, unit: &str, of: Option<Dimension>| {
             read_equation(&pointer, text, unit, of, names, faults)
         };

@@ -60,35 +60,35 @@ pub(super) struct Graph {
 }
 
 impl Graph {
-    pub fn node(&self, id: NodeId) -> Node {
+    pub(super) fn node(&self, id: NodeId) -> Node {
         self.nodes[id as usize]
     }
 
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.nodes.len()
     }
 
     /// Whether the bound on work is passed; the graph then is not to be used.
-    pub fn is_too_large(&self) -> bool {
+    pub(super) fn is_too_large(&self) -> bool {
         self.nodes.len() > MOST_GRAPH_NODES
     }
 
-    pub fn constant(&mut self, value: f64) -> NodeId {
+    pub(super) fn constant(&mut self, value: f64) -> NodeId {
         self.insert(Node::Constant(value.to_bits()))
     }
 
-    pub fn symbol(&mut self, slot: u32) -> NodeId {
+    pub(super) fn symbol(&mut self, slot: u32) -> NodeId {
         self.insert(Node::Symbol(slot))
     }
 
-    pub fn value(&self, id: NodeId) -> Option<f64> {
+    pub(super) fn value(&self, id: NodeId) -> Option<f64> {
         match self.node(id) {
             Node::Constant(bits) => Some(f64::from_bits(bits)),
             _ => None,
         }
     }
 
-    pub fn unary(&mut self, operation: Unary, a: NodeId) -> NodeId {
+    pub(super) fn unary(&mut self, operation: Unary, a: NodeId) -> NodeId {
         if let Some(value) = self.value(a) {
             return self.constant(fold_unary(operation, value));
         }
@@ -98,7 +98,7 @@ impl Graph {
         }
     }
 
-    pub fn add(&mut self, a: NodeId, b: NodeId) -> NodeId {
+    pub(super) fn add(&mut self, a: NodeId, b: NodeId) -> NodeId {
         match (self.value(a), self.value(b)) {
             (Some(x), Some(y)) => self.constant(x + y),
             (Some(0.0), None) => b,
@@ -111,7 +111,7 @@ impl Graph {
         }
     }
 
-    pub fn subtract(&mut self, a: NodeId, b: NodeId) -> NodeId {
+    pub(super) fn subtract(&mut self, a: NodeId, b: NodeId) -> NodeId {
         match (self.value(a), self.value(b)) {
             (Some(x), Some(y)) => self.constant(x - y),
             (None, Some(0.0)) => a,
@@ -124,7 +124,7 @@ impl Graph {
         }
     }
 
-    pub fn multiply(&mut self, a: NodeId, b: NodeId) -> NodeId {
+    pub(super) fn multiply(&mut self, a: NodeId, b: NodeId) -> NodeId {
         match (self.value(a), self.value(b)) {
             (Some(x), Some(y)) => self.constant(x * y),
             (Some(0.0), _) | (_, Some(0.0)) => self.constant(0.0),
@@ -146,7 +146,7 @@ impl Graph {
         }
     }
 
-    pub fn divide(&mut self, a: NodeId, b: NodeId) -> NodeId {
+    pub(super) fn divide(&mut self, a: NodeId, b: NodeId) -> NodeId {
         match (self.value(a), self.value(b)) {
             (Some(x), Some(y)) => self.constant(x / y),
             (Some(0.0), None) => self.constant(0.0),
@@ -156,7 +156,7 @@ impl Graph {
     }
 
     /// Whole powers become products, so that they cost what they should and hold for negative bases.
-    pub fn power(&mut self, a: NodeId, b: NodeId) -> NodeId {
+    pub(super) fn power(&mut self, a: NodeId, b: NodeId) -> NodeId {
         match (self.value(a), self.value(b)) {
             (Some(x), Some(y)) => self.constant(x.powf(y)),
             (None, Some(exponent)) if exponent == exponent.trunc() && exponent.abs() <= 64.0 => {
@@ -189,7 +189,7 @@ impl Graph {
         }
     }
 
-    pub fn binary(&mut self, operation: Binary, a: NodeId, b: NodeId) -> NodeId {
+    pub(super) fn binary(&mut self, operation: Binary, a: NodeId, b: NodeId) -> NodeId {
         match operation {
             Binary::Add => self.add(a, b),
             Binary::Subtract => self.subtract(a, b),
@@ -209,7 +209,7 @@ impl Graph {
         }
     }
 
-    pub fn select(&mut self, condition: NodeId, yes: NodeId, no: NodeId) -> NodeId {
+    pub(super) fn select(&mut self, condition: NodeId, yes: NodeId, no: NodeId) -> NodeId {
         match self.value(condition) {
             Some(value) => {
                 if value != 0.0 {
@@ -224,7 +224,7 @@ impl Graph {
     }
 
     /// The roots with everything at zero that stands before the symbol of slot `first`: states, inputs and time.
-    pub fn at_zero(&mut self, roots: &[NodeId], first: u32) -> Vec<NodeId> {
+    pub(super) fn at_zero(&mut self, roots: &[NodeId], first: u32) -> Vec<NodeId> {
         let last = roots.iter().max().map_or(0, |&root| root as usize + 1);
         let mut image: Vec<NodeId> = Vec::with_capacity(last);
         for id in 0..last {

@@ -29,7 +29,7 @@ const PI: &str = "pi";
 
 impl<'d> Names<'d> {
     /// Collects names and units; what is wrong with them is added to `faults`.
-    pub fn collect(document: &'d ModelDocument, faults: &mut Vec<Fault>) -> Self {
+    pub(super) fn collect(document: &'d ModelDocument, faults: &mut Vec<Fault>) -> Self {
         let mut table = IndexMap::new();
         table.insert(TIME, (Meaning::Time, Some(Dimension::SECOND)));
         table.insert(
@@ -104,16 +104,16 @@ impl<'d> Names<'d> {
         names
     }
 
-    pub fn meaning(&self, name: &str) -> Option<Meaning> {
+    pub(super) fn meaning(&self, name: &str) -> Option<Meaning> {
         self.table.get(name).map(|&(meaning, _)| meaning)
     }
 
-    pub fn dimension(&self, name: &str) -> Option<Dimension> {
+    pub(super) fn dimension(&self, name: &str) -> Option<Dimension> {
         self.table.get(name).and_then(|&(_, dimension)| dimension)
     }
 
     /// What is said of a name that is not there.
-    pub fn unknown(&self, name: &str) -> String {
+    pub(super) fn unknown(&self, name: &str) -> String {
         let known = self.table.keys().copied();
         let near = known
             .filter(|candidate| candidate.len().abs_diff(name.len()) <= 2)
@@ -127,7 +127,7 @@ impl<'d> Names<'d> {
     }
 
     /// As [`Self::unknown`], without a guess at what was meant.
-    pub fn undefined(name: &str) -> String {
+    pub(super) fn undefined(name: &str) -> String {
         format!("'{name}' is not a constant, input, parameter, definition or state of this model")
     }
 

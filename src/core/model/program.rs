@@ -16,16 +16,16 @@ pub(super) struct Slots {
 }
 
 impl Slots {
-    pub fn state(self, i: usize) -> u32 {
+    pub(super) fn state(self, i: usize) -> u32 {
         i as u32
     }
-    pub fn input(self, i: usize) -> u32 {
+    pub(super) fn input(self, i: usize) -> u32 {
         (self.states + i) as u32
     }
-    pub fn time(self) -> u32 {
+    pub(super) fn time(self) -> u32 {
         (self.states + self.inputs) as u32
     }
-    pub fn parameter(self, i: usize) -> u32 {
+    pub(super) fn parameter(self, i: usize) -> u32 {
         (self.states + self.inputs + 1 + i) as u32
     }
     fn count(self) -> usize {

@@ -36,7 +36,7 @@ pub(super) struct Course<'m> {
 }
 
 impl<'m> Course<'m> {
-    pub fn new(
+    pub(super) fn new(
         model: &'m Model,
         integrator: Integrator,
         interpolation: InputInterpolation,
@@ -65,7 +65,7 @@ impl<'m> Course<'m> {
     }
 
     /// Goes to the first sample of a segment. `parameters` are all of the model's, SI.
-    pub fn start(&mut self, segment: &Segment, parameters: &[f64]) {
+    pub(super) fn start(&mut self, segment: &Segment, parameters: &[f64]) {
         self.state = initial_state(self.model, parameters);
         self.elapsed = 0.0;
         self.even = None;
@@ -78,11 +78,11 @@ impl<'m> Course<'m> {
     }
 
     /// The one-step map of the segment, if one serves all of it.
-    pub fn one_step(&self) -> Option<(&OneStep<'m>, f64)> {
+    pub(super) fn one_step(&self) -> Option<(&OneStep<'m>, f64)> {
         self.one_step.as_ref().zip(self.even)
     }
 
-    pub fn interpolation(&self) -> InputInterpolation {
+    pub(super) fn interpolation(&self) -> InputInterpolation {
         self.interpolation
     }
 
@@ -99,7 +99,12 @@ impl<'m> Course<'m> {
     ///
     /// # Errors
     /// The state leaves the range of numbers.
-    pub fn advance(&mut self, segment: &Segment, first: usize, len: usize) -> Result<(), Diverged> {
+    pub(super) fn advance(
+        &mut self,
+        segment: &Segment,
+        first: usize,
+        len: usize,
+    ) -> Result<(), Diverged> {
         self.place_inputs(segment, first, len);
         if let Some(h) = self.even {
             self.multiply(segment, first, len, h);
@@ -121,7 +126,7 @@ impl<'m> Course<'m> {
     }
 
     /// Puts states, inputs and times of `LANES` samples from `group` on into a program's registers.
-    pub fn place(
+    pub(super) fn place(
         &self,
         stage: usize,
         group: usize,

@@ -36,7 +36,7 @@ pub(super) struct DelayLine<'m> {
 
 impl<'m> DelayLine<'m> {
     /// `None` for a model without delayed outputs.
-    pub fn new(model: &'m Model, columns: &'m Columns) -> Option<Self> {
+    pub(super) fn new(model: &'m Model, columns: &'m Columns) -> Option<Self> {
         if model.delays.outputs.is_empty() {
             return None;
         }
@@ -63,7 +63,7 @@ impl<'m> DelayLine<'m> {
     }
 
     /// Begins a run. `delays` are those of [`crate::model::Delays::at`].
-    pub fn start(&mut self, segment: &Segment, parameters: &[f64], delays: &[f64]) {
+    pub(super) fn start(&mut self, segment: &Segment, parameters: &[f64], delays: &[f64]) {
         let model = &self.model.delays;
         self.axis = Some(Axis::new(segment));
         (self.first, self.end, self.next) = (0, 0, 0);
@@ -83,7 +83,7 @@ impl<'m> DelayLine<'m> {
     }
 
     /// Takes the next block, and hands on those that are now known.
-    pub fn pass(&mut self, block: &Block<'_>, sink: &mut impl FnMut(&Block<'_>)) {
+    pub(super) fn pass(&mut self, block: &Block<'_>, sink: &mut impl FnMut(&Block<'_>)) {
         let Some(axis) = self.axis.take() else { return };
         for output in 0..self.values.len() {
             self.values[output].extend_from_slice(block.output(output));

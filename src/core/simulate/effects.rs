@@ -115,7 +115,10 @@ pub(super) struct Affected<'s> {
 }
 
 impl<'s> Affected<'s> {
-    pub fn new(scenario: &'s Scenario, model: &ModelDocument) -> Result<Self, ScenarioError> {
+    pub(super) fn new(
+        scenario: &'s Scenario,
+        model: &ModelDocument,
+    ) -> Result<Self, ScenarioError> {
         let mut affected = Self {
             document: model.clone(),
             scenario: Scenario {
@@ -165,7 +168,7 @@ impl<'s> Affected<'s> {
         Ok(affected)
     }
 
-    pub fn compile(&self) -> Result<Model, ScenarioError> {
+    pub(super) fn compile(&self) -> Result<Model, ScenarioError> {
         Model::compile(&self.document).map_err(|faults| ScenarioError::Unfit {
             what: "effects".to_string(),
             message: (faults.iter())
@@ -176,7 +179,10 @@ impl<'s> Affected<'s> {
     }
 
     /// Spikes, dropouts and stuck values in what was recorded.
-    pub fn spoil(&self, channels: &mut IndexMap<String, Channel>) -> Result<(), ScenarioError> {
+    pub(super) fn spoil(
+        &self,
+        channels: &mut IndexMap<String, Channel>,
+    ) -> Result<(), ScenarioError> {
         for &(i, effect) in &self.outliers {
             // a stream of its own, so that nothing else changes with it
             let mut random = ChaCha8Rng::seed_from_u64(self.scenario.seed);

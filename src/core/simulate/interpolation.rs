@@ -25,7 +25,7 @@ pub(super) enum At {
 }
 
 impl Axis {
-    pub fn new(segment: &Segment) -> Self {
+    pub(super) fn new(segment: &Segment) -> Self {
         let elapsed = match &segment.steps {
             Steps::Even(_) => Vec::new(),
             Steps::Uneven(steps) => std::iter::once(0.0)
@@ -43,7 +43,7 @@ impl Axis {
     }
 
     /// The instant `delay` seconds before sample `k`.
-    pub fn before(&self, k: usize, delay: f64) -> At {
+    pub(super) fn before(&self, k: usize, delay: f64) -> At {
         let (sample, share) = match &self.steps {
             Steps::Even(step) => {
                 let position = k as f64 - delay / step;
@@ -72,12 +72,12 @@ impl Axis {
         }
     }
 
-    pub fn last(&self) -> usize {
+    pub(super) fn last(&self) -> usize {
         self.last
     }
 
     /// Mean length of a step, s.
-    pub fn mean_step(&self) -> f64 {
+    pub(super) fn mean_step(&self) -> f64 {
         match &self.steps {
             Steps::Even(step) => *step,
             Steps::Uneven(steps) => steps.iter().sum::<f64>() / steps.len().max(1) as f64,
@@ -86,7 +86,7 @@ impl Axis {
 
     /// Value and rate at an instant as sums over four neighbouring samples, for signals that depend on θ: the
     /// slope at a sample is that of the parabola through it and its neighbours.
-    pub fn stencil(&self, at: At) -> Stencil {
+    pub(super) fn stencil(&self, at: At) -> Stencil {
         let (sample, share) = match at {
             At::Before => return Stencil::held(0),
             At::Behind => return Stencil::held(self.last),
@@ -116,7 +116,7 @@ impl Axis {
     /// Value and rate of recorded samples at an instant. The slope at a sample is the harmonic mean of those to
     /// both sides, 0 at peaks: no overshoot at the edges of a step (Fritsch and Butland, SIAM J. Sci. Stat.
     /// Comput. 5, 1984).
-    pub fn recorded(&self, samples: &[f64], at: At) -> (f64, f64) {
+    pub(super) fn recorded(&self, samples: &[f64], at: At) -> (f64, f64) {
         let (sample, share) = match at {
             At::Before => return (samples[0], 0.0),
             At::Behind => return (samples[self.last], 0.0),

@@ -17,7 +17,7 @@ pub(super) struct Linearised<'m> {
 }
 
 impl<'m> Linearised<'m> {
-    pub fn new(program: &'m Program, stages: usize) -> Self {
+    pub(super) fn new(program: &'m Program, stages: usize) -> Self {
         let results = program.len();
         Self {
             program,
@@ -28,7 +28,7 @@ impl<'m> Linearised<'m> {
         }
     }
 
-    pub fn set_parameters(&mut self, parameters: &[f64]) {
+    pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
         let lanes: Vec<Lanes> = parameters
             .iter()
             .map(|&value| Lanes([value; LANES]))
@@ -45,7 +45,7 @@ impl<'m> Linearised<'m> {
     }
 
     /// Evaluates the `len` samples of a block at one stage.
-    pub fn evaluate(&mut self, stage: usize, len: usize, course: &Course<'_>) {
+    pub(super) fn evaluate(&mut self, stage: usize, len: usize, course: &Course<'_>) {
         if self.varying.is_empty() {
             return;
         }
@@ -61,27 +61,27 @@ impl<'m> Linearised<'m> {
     }
 
     /// How many results there are.
-    pub fn results(&self) -> usize {
+    pub(super) fn results(&self) -> usize {
         self.results
     }
 
     #[inline(always)]
-    pub fn value(&self, stage: usize, result: usize, k: usize) -> f64 {
+    pub(super) fn value(&self, stage: usize, result: usize, k: usize) -> f64 {
         self.values[stage * self.results + result][k]
     }
 
     /// A result over the block.
-    pub fn over_block(&self, stage: usize, result: usize) -> &[f64; BLOCK] {
+    pub(super) fn over_block(&self, stage: usize, result: usize) -> &[f64; BLOCK] {
         &self.values[stage * self.results + result]
     }
 
     /// All results over the block, one after the other.
-    pub fn all_over_block(&self, stage: usize) -> &[[f64; BLOCK]] {
+    pub(super) fn all_over_block(&self, stage: usize) -> &[[f64; BLOCK]] {
         &self.values[stage * self.results..(stage + 1) * self.results]
     }
 
     /// Whether a result changes from sample to sample.
-    pub fn varies(&self, result: usize) -> bool {
+    pub(super) fn varies(&self, result: usize) -> bool {
         self.program.varies(result)
     }
 }

@@ -31,7 +31,7 @@ pub(super) struct OneStep<'m> {
 
 impl<'m> OneStep<'m> {
     /// `None` for a model that is not affine, or too large for dense matrices to pay.
-    pub fn of(model: &'m Model) -> Option<Self> {
+    pub(super) fn of(model: &'m Model) -> Option<Self> {
         let (states, inputs) = (model.states.len(), model.driven_inputs());
         let pays = (1..=MOST_STATES).contains(&states) && states + 2 * inputs < MOST_FACTORS;
         let affine = model.affine_dynamics.as_ref().filter(|_| pays)?;
@@ -47,17 +47,17 @@ impl<'m> OneStep<'m> {
     }
 
     /// The length of z.
-    pub fn factors(&self) -> usize {
+    pub(super) fn factors(&self) -> usize {
         self.states + 2 * self.inputs + 1
     }
 
     /// M, row by row.
-    pub fn matrix(&self) -> &[f64] {
+    pub(super) fn matrix(&self) -> &[f64] {
         &self.matrix
     }
 
     /// Works out M for θ and the step `h`.
-    pub fn set(
+    pub(super) fn set(
         &mut self,
         parameters: &[f64],
         h: f64,
@@ -84,7 +84,7 @@ impl<'m> OneStep<'m> {
     }
 
     /// ∂M/∂θ_p, row by row, for the θ and the step that are set.
-    pub fn derivative(
+    pub(super) fn derivative(
         &self,
         parameter: usize,
         h: f64,

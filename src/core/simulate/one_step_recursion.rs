@@ -23,7 +23,7 @@ pub(super) struct OneStepRecursion {
 
 impl OneStepRecursion {
     /// Works out ∂M/∂θ for the θ and the step that are set.
-    pub fn set(
+    pub(super) fn set(
         &mut self,
         one_step: &OneStep<'_>,
         h: f64,
@@ -48,7 +48,7 @@ impl OneStepRecursion {
     }
 
     /// From `rows` at the first sample of a block to all of `steps` samples behind it.
-    pub fn sweep(
+    pub(super) fn sweep(
         &mut self,
         one_step: &OneStep<'_>,
         segment: &Segment,

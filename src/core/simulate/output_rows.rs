@@ -30,7 +30,7 @@ struct OutputRow {
 }
 
 impl OutputRows {
-    pub fn new(model: &Model, columns: &Columns) -> Self {
+    pub(super) fn new(model: &Model, columns: &Columns) -> Self {
         let jacobian = &model.observation_jacobian;
         let row = |output: usize| {
             let own = columns.of_output(output);
@@ -65,7 +65,7 @@ impl OutputRows {
     }
 
     /// Puts ∂g/∂θ into packs: entries that only θ changes when `constant`, all others otherwise.
-    pub fn place(&mut self, constant: bool, observation: &Linearised<'_>, len: usize) {
+    pub(super) fn place(&mut self, constant: bool, observation: &Linearised<'_>, len: usize) {
         for output in &mut self.outputs {
             for &(entry, column) in &output.by_parameter {
                 if observation.varies(entry) == constant {
@@ -81,7 +81,7 @@ impl OutputRows {
     }
 
     /// Forms the rows of `len` samples. `sensitivities` are ∂x/∂θ by sample and state, `width` packs each.
-    pub fn form(
+    pub(super) fn form(
         &mut self,
         len: usize,
         observation: &Linearised<'_>,
@@ -94,7 +94,7 @@ impl OutputRows {
     }
 
     /// The rows of one output, each padded with zeros to whole packs.
-    pub fn of(&self, output: usize) -> &[Pack] {
+    pub(super) fn of(&self, output: usize) -> &[Pack] {
         &self.outputs[output].rows
     }
 }

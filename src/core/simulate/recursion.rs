@@ -51,7 +51,7 @@ struct Scratch {
 }
 
 impl Recursion {
-    pub fn new(model: &Model, columns: &Columns, stages: usize) -> Self {
+    pub(super) fn new(model: &Model, columns: &Columns, stages: usize) -> Self {
         let states = model.states.len();
         let width = packs(columns.dynamic.len());
         let dynamics = &model.dynamics_jacobian;
@@ -91,13 +91,13 @@ impl Recursion {
     }
 
     /// Products of a pack at each stage.
-    pub fn products(&self) -> usize {
+    pub(super) fn products(&self) -> usize {
         self.by_state.iter().map(Vec::len).sum()
     }
 
     /// Puts ∂f/∂θ into packs: entries that only θ changes when `constant`, all others otherwise. Places are
     /// the same in every block, so that what stands stays.
-    pub fn place(&mut self, constant: bool, dynamics: &Linearised<'_>, len: usize) {
+    pub(super) fn place(&mut self, constant: bool, dynamics: &Linearised<'_>, len: usize) {
         let sample = self.packs * PACK;
         for (stage, forcing) in self
             .forcing
@@ -118,7 +118,7 @@ impl Recursion {
     }
 
     /// From `rows` at the first sample of a block to all of `steps` samples behind it.
-    pub fn sweep(
+    pub(super) fn sweep(
         &mut self,
         stages: &[Stage],
         segment: &Segment,

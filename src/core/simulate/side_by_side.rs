@@ -15,7 +15,7 @@ pub(super) struct SideBySide<'m> {
 }
 
 impl<'m> SideBySide<'m> {
-    pub fn new(program: &'m Program, stages: usize) -> Self {
+    pub(super) fn new(program: &'m Program, stages: usize) -> Self {
         Self {
             program,
             workspace: program.workspace(),
@@ -24,7 +24,7 @@ impl<'m> SideBySide<'m> {
         }
     }
 
-    pub fn set_parameters(&mut self, parameters: &[f64]) {
+    pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
         let lanes: Vec<Lanes> = parameters
             .iter()
             .map(|&value| Lanes([value; LANES]))
@@ -38,7 +38,7 @@ impl<'m> SideBySide<'m> {
     }
 
     /// Evaluates the samples of the block from `group` on; `set` puts states, inputs and time in place.
-    pub fn evaluate(
+    pub(super) fn evaluate(
         &mut self,
         stage: usize,
         group: usize,
@@ -57,17 +57,17 @@ impl<'m> SideBySide<'m> {
     }
 
     /// Whether a result changes from sample to sample.
-    pub fn varies(&self, result: usize) -> bool {
+    pub(super) fn varies(&self, result: usize) -> bool {
         self.program.varies(result)
     }
 
     /// A result over the block.
-    pub fn result(&self, stage: usize, result: usize) -> &[f64; SPAN] {
+    pub(super) fn result(&self, stage: usize, result: usize) -> &[f64; SPAN] {
         &self.values[stage * self.program.len() + result]
     }
 
     /// Bytes of the values.
-    pub fn bytes(&self) -> usize {
+    pub(super) fn bytes(&self) -> usize {
         size_of_val(self.values.as_slice())
     }
 }

@@ -47,7 +47,7 @@ impl General {
 }
 
 impl StateSensitivities {
-    pub fn new(model: &Model, columns: &Columns, stages: usize) -> Self {
+    pub(super) fn new(model: &Model, columns: &Columns, stages: usize) -> Self {
         let states = model.states.len();
         let width = packs(columns.dynamic.len());
         Self {
@@ -60,7 +60,7 @@ impl StateSensitivities {
     }
 
     /// Begins with ∂x0/∂θ.
-    pub fn start(
+    pub(super) fn start(
         &mut self,
         model: &Model,
         columns: &Columns,
@@ -90,7 +90,7 @@ impl StateSensitivities {
     }
 
     /// Goes along the samples of a block whose states and Jacobians are known.
-    pub fn sweep(
+    pub(super) fn sweep(
         &mut self,
         segment: &Segment,
         (first, len): (usize, usize),
@@ -114,12 +114,12 @@ impl StateSensitivities {
     }
 
     /// States, and packs of a row.
-    pub fn shape(&self) -> (usize, usize) {
+    pub(super) fn shape(&self) -> (usize, usize) {
         (self.states, self.width)
     }
 
     /// The end of one block is the beginning of the next.
-    pub fn carry_over(&mut self) {
+    pub(super) fn carry_over(&mut self) {
         let sample = self.states * self.width;
         self.rows.copy_within(BLOCK * sample.., 0);
     }

@@ -63,7 +63,7 @@ struct Scratch {
 }
 
 impl Transition {
-    pub fn new(model: &Model, columns: &Columns, stages: usize) -> Self {
+    pub(super) fn new(model: &Model, columns: &Columns, stages: usize) -> Self {
         let states = model.states.len();
         let width = states + columns.dynamic.len();
         let dynamics = &model.dynamics_jacobian;
@@ -125,17 +125,17 @@ impl Transition {
     }
 
     /// Row and column of each entry of [P | Q]; columns are states, then dynamic parameters.
-    pub fn places(&self) -> &[(usize, usize)] {
+    pub(super) fn places(&self) -> &[(usize, usize)] {
         &self.places
     }
 
     /// Products of a sample.
-    pub fn products(&self) -> usize {
+    pub(super) fn products(&self) -> usize {
         self.plan.iter().map(|stage| stage.products.len()).sum()
     }
 
     /// Works out the maps of the first `steps` samples. `lengths` are those of the steps, s.
-    pub fn compose(
+    pub(super) fn compose(
         &mut self,
         stages: &[Stage],
         lengths: &[f64; BLOCK],
@@ -165,7 +165,7 @@ impl Transition {
 
     /// An entry of [P | Q] over the block.
     #[inline(always)]
-    pub fn over_block(&self, slot: usize) -> &[f64; BLOCK] {
+    pub(super) fn over_block(&self, slot: usize) -> &[f64; BLOCK] {
         &self.maps[slot]
     }
 }

@@ -48,7 +48,7 @@ pub(super) struct TransitionRecursion {
 }
 
 impl TransitionRecursion {
-    pub fn new(model: &Model, columns: &Columns, stages: usize) -> Self {
+    pub(super) fn new(model: &Model, columns: &Columns, stages: usize) -> Self {
         let transition = Transition::new(model, columns, stages);
         let states = model.states.len();
         let width = packs(columns.dynamic.len());
@@ -93,13 +93,13 @@ impl TransitionRecursion {
     }
 
     /// Products of a sample that are done side by side, and those of packs that are done in turn.
-    pub fn products(&self) -> (usize, usize) {
+    pub(super) fn products(&self) -> (usize, usize) {
         let in_turn = self.products.len() * self.width;
         (self.transition.products(), in_turn)
     }
 
     /// From `rows` at the first sample of a block to all of `steps` samples behind it.
-    pub fn sweep(
+    pub(super) fn sweep(
         &mut self,
         stages: &[Stage],
         segment: &Segment,

@@ -13,7 +13,7 @@ use crate::http::{Server, Service, jobs};
 use crate::job::{EventBody, JobSpec};
 use crate::store::Part;
 
-pub fn router() -> Router<Server> {
+pub(super) fn router() -> Router<Server> {
     Router::new().route("/jobs/{id}", get(get_job_page))
 }
 
@@ -23,7 +23,7 @@ async fn get_job_page(service: Service, JobId(id): JobId) -> Result<Html<String>
 }
 
 /// All that there is to say of a job, but the time histories.
-pub async fn view(service: &Service, id: Uuid) -> Result<JobView, Problem> {
+pub(super) async fn view(service: &Service, id: Uuid) -> Result<JobView, Problem> {
     let job = jobs::find(service, id).await?;
     let spec = service.store.job_spec(id).await?;
     let spec: JobSpec = serde_json::from_str(&spec.ok_or_else(|| unknown_job(id))?)?;

@@ -13,7 +13,7 @@ use crate::http::{Server, Service};
 use crate::job::{EventBody, JobKind, Status};
 use crate::store::{Clock, JobFilter, JobRecord};
 
-pub fn router() -> Router<Server> {
+pub(super) fn router() -> Router<Server> {
     Router::new().route("/", get(get_jobs_page))
 }
 

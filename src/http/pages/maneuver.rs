@@ -10,7 +10,7 @@ use crate::http::problem::Problem;
 use crate::http::query::Id;
 use crate::http::{Server, Service};
 
-pub fn router() -> Router<Server> {
+pub(super) fn router() -> Router<Server> {
     Router::new().route("/maneuvers/{id}", get(get_maneuver_page))
 }
 

@@ -11,7 +11,7 @@ use crate::http::query::{Parameters, bad_cursor};
 use crate::http::{Server, Service, mappings};
 use crate::store::ManeuverRecord;
 
-pub fn router() -> Router<Server> {
+pub(super) fn router() -> Router<Server> {
     Router::new().route("/maneuvers", get(get_maneuvers_page))
 }
 

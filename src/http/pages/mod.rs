@@ -22,7 +22,7 @@ use super::problem::{Problem, unknown_route};
 use super::query::Id;
 use crate::dashboard::asset;
 
-pub fn router() -> Router<Server> {
+pub(super) fn router() -> Router<Server> {
     Router::new()
         .merge(jobs::router())
         .merge(job::router())

@@ -15,7 +15,7 @@ use crate::http::{Server, Service, jobs, results};
 use crate::model::ModelDocument;
 use crate::store::Part;
 
-pub fn router() -> Router<Server> {
+pub(super) fn router() -> Router<Server> {
     Router::new().route("/models/{id}", get(get_model_page))
 }
 

@@ -12,7 +12,7 @@ use crate::http::query::{Parameters, bad_cursor};
 use crate::http::{Server, Service};
 use crate::model::catalog;
 
-pub fn router() -> Router<Server> {
+pub(super) fn router() -> Router<Server> {
     Router::new().route("/models", get(get_models_page))
 }
 

@@ -7,6 +7,6 @@ use axum::routing::get;
 use crate::dashboard::new_job_page;
 use crate::http::Server;
 
-pub fn router() -> Router<Server> {
+pub(super) fn router() -> Router<Server> {
     Router::new().route("/new", get(async || Html(new_job_page())))
 }

@@ -14,7 +14,7 @@ use crate::http::query::JobId;
 use crate::http::{Server, Service};
 use crate::store::Part;
 
-pub fn router() -> Router<Server> {
+pub(super) fn router() -> Router<Server> {
     Router::new().route("/jobs/{id}/report", get(get_report))
 }
 

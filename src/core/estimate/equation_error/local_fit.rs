@@ -15,7 +15,7 @@ pub(super) struct LocalFit {
 
 impl LocalFit {
     /// About the sample at `place` of a window; `counts` says which of its samples do. `None` where these are too few.
-    pub fn of(time: &[f64], place: usize, counts: impl Fn(usize) -> bool) -> Option<Self> {
+    pub(super) fn of(time: &[f64], place: usize, counts: impl Fn(usize) -> bool) -> Option<Self> {
         let at = time[place];
         let width = (time[time.len() - 1] - time[0]).max(f64::MIN_POSITIVE);
         // the normal matrix of a polynomial has Σ s^(i + j) at (i, j)
@@ -43,7 +43,7 @@ impl LocalFit {
 
     /// Value and slope of the polynomial at the sample, from times and values of those that count; values that are no
     /// numbers do not.
-    pub fn value_and_slope(&self, near: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
+    pub(super) fn value_and_slope(&self, near: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
         let mut right = SVector::<f64, ORDER>::zeros();
         for (t, value) in near.filter(|(_, value)| value.is_finite()) {
             right += self.powers(t) * value;
@@ -53,12 +53,12 @@ impl LocalFit {
     }
 
     /// What the sample's own measurement counts in the value.
-    pub fn leverage(&self) -> f64 {
+    pub(super) fn leverage(&self) -> f64 {
         self.inverse[(0, 0)]
     }
 
     /// What each measurement of the window counts, if all do.
-    pub fn kernel(&self, time: &[f64]) -> Kernel {
+    pub(super) fn kernel(&self, time: &[f64]) -> Kernel {
         let weights = |row: usize, factor: f64| {
             let row = self.inverse.row(row) * factor;
             time.iter().map(|&t| (row * self.powers(t))[0]).collect()

@@ -71,7 +71,7 @@ fn is_plain(model: &Model, output: usize) -> bool {
 
 impl MeasuredState {
     /// The state at each sample of a segment, (z - b)/a, with bias and scale as `parameters` have them.
-    pub fn read(&self, model: &Model, segment: &Segment, parameters: &[f64]) -> Vec<f64> {
+    pub(crate) fn read(&self, model: &Model, segment: &Segment, parameters: &[f64]) -> Vec<f64> {
         let jacobian = &model.observation_jacobian.program;
         let mut slopes = jacobian.workspace();
         jacobian.set_parameters(&mut slopes, parameters);

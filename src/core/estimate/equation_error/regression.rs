@@ -28,7 +28,7 @@ pub(in crate::estimate) struct Regression {
 
 impl Regression {
     /// `None` where no output measures a state, or the edited model is too large.
-    pub fn new(problem: &Problem) -> Option<Self> {
+    pub(super) fn new(problem: &Problem) -> Option<Self> {
         let start = problem.unknowns.start();
         let mut parameters = Vec::new();
         if problem.segments.is_empty() {
@@ -90,7 +90,7 @@ impl Regression {
 
     /// θ of the problem that the regression was made of: what the regression does not find is left at its start,
     /// but for initial states, which are read off the measured states.
-    pub fn theta(&self, found: &[f64]) -> Vec<f64> {
+    pub(super) fn theta(&self, found: &[f64]) -> Vec<f64> {
         let mut theta = self.rest.clone();
         for (&place, &value) in self.places.iter().zip(found) {
             theta[place] = value;
@@ -99,7 +99,7 @@ impl Regression {
     }
 
     /// By place of the problem's θ: place in the regression's.
-    pub fn place(&self, place: usize) -> Option<usize> {
+    pub(super) fn place(&self, place: usize) -> Option<usize> {
         self.places.iter().position(|&own| own == place)
     }
 }

@@ -57,7 +57,7 @@ pub(super) struct Windows<'t> {
 }
 
 impl<'t> Windows<'t> {
-    pub fn new(time: &'t [f64], half: usize) -> Self {
+    pub(super) fn new(time: &'t [f64], half: usize) -> Self {
         let mut windows = Self {
             time,
             half,
@@ -75,7 +75,7 @@ impl<'t> Windows<'t> {
         windows
     }
 
-    pub fn smoothed(&self, values: &[f64]) -> Smoothed {
+    pub(super) fn smoothed(&self, values: &[f64]) -> Smoothed {
         let shared = self.kernels.as_ref().map(|kernels| {
             let value = self.by_kernels(kernels, values, |kernel| &kernel.value);
             let slope = self.by_kernels(kernels, values, |kernel| &kernel.slope);

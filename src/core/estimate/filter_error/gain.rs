@@ -44,7 +44,7 @@ pub(super) struct Change {
 
 impl Gain {
     /// `None` where there is no steady gain.
-    pub fn steady(setting: &Setting<'_>) -> Option<Self> {
+    pub(super) fn steady(setting: &Setting<'_>) -> Option<Self> {
         let (model, segment) = (setting.model, setting.segment);
         let (dynamics, observation) = linearised(model, segment, setting.parameters);
         let (states, outputs) = (model.states.len(), model.outputs.len());
@@ -78,12 +78,12 @@ impl Gain {
 
     /// The diagonal of K C: the share of a state's prediction error that a sample takes away. Above 1 the innovations
     /// would vary less than the prediction errors that they are made of.
-    pub fn shares(&self) -> DVector<f64> {
+    pub(super) fn shares(&self) -> DVector<f64> {
         (&self.k * &self.c).diagonal()
     }
 
     /// ∂K by each of the columns.
-    pub fn changes(&self, setting: &Setting<'_>, columns: &[Column]) -> Vec<Change> {
+    pub(super) fn changes(&self, setting: &Setting<'_>, columns: &[Column]) -> Vec<Change> {
         columns
             .iter()
             .map(|column| self.change(setting, *column))

@@ -21,7 +21,7 @@ pub(super) struct GainNoise {
 }
 
 impl GainNoise {
-    pub fn of(weighting: &Weighting) -> Self {
+    pub(super) fn of(weighting: &Weighting) -> Self {
         Self {
             covariance: weighting.covariance.clone(),
             inverse: weighting.inverse.clone(),
@@ -46,7 +46,7 @@ pub(super) struct Iterate {
 }
 
 impl Iterate {
-    pub fn at(
+    pub(super) fn at(
         evaluator: &mut FilterEvaluator<'_>,
         z: Vec<f64>,
         gain_noise: GainNoise,
@@ -84,7 +84,7 @@ impl Iterate {
     }
 
     /// How far R in the gain is from that of the innovations, in standard errors of R.
-    pub fn lag(&self, problem: &Problem) -> f64 {
+    pub(super) fn lag(&self, problem: &Problem) -> f64 {
         let (gain, now) = (&self.gain_noise.covariance, &self.weighting.covariance);
         let square = |(i, &count): (usize, &usize)| {
             0.5 * count as f64 * (now[(i, i)] / gain[(i, i)]).ln().powi(2)
@@ -96,7 +96,7 @@ impl Iterate {
     /// The step of all unknowns for a damping λ. What would go beyond a bound goes as far as that, and the others take
     /// the step that goes with it: an intensity f shows as f² only, so that where it is small its step is as long as
     /// 1/f, and what the others would do along with the whole of it leads nowhere.
-    pub fn step(
+    pub(super) fn step(
         &self,
         evaluator: &FilterEvaluator<'_>,
         newton: &Newton,
@@ -140,7 +140,7 @@ impl Iterate {
         }
     }
 
-    pub fn report(
+    pub(super) fn report(
         &self,
         evaluator: &FilterEvaluator<'_>,
         number: usize,

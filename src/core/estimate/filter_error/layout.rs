@@ -26,7 +26,7 @@ const NEGLIGIBLE: f64 = 1e-4;
 
 impl Layout {
     /// `automatic` gives the start value of each state that the user gave none.
-    pub fn new(problem: &Problem, automatic: &[f64]) -> Self {
+    pub(super) fn new(problem: &Problem, automatic: &[f64]) -> Self {
         let mut free = Vec::new();
         let mut start = Vec::new();
         for (i, state) in problem.model.states.iter().enumerate() {
@@ -45,24 +45,24 @@ impl Layout {
     }
 
     /// Number of unknowns.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.parameters + self.free.len()
     }
 
     /// The place of a state's intensity.
-    pub fn place(&self, state: usize) -> Option<usize> {
+    pub(super) fn place(&self, state: usize) -> Option<usize> {
         let index = self.free.iter().position(|&free| free == state)?;
         Some(self.parameters + index)
     }
 
-    pub fn start(&self, problem: &Problem) -> Vec<f64> {
+    pub(super) fn start(&self, problem: &Problem) -> Vec<f64> {
         let mut z = problem.unknowns.start();
         z.extend(self.free.iter().map(|&state| self.start[state]));
         z
     }
 
     /// Intensities by state.
-    pub fn intensities(&self, z: &[f64]) -> Vec<f64> {
+    pub(super) fn intensities(&self, z: &[f64]) -> Vec<f64> {
         let mut all = self.start.clone();
         for (&state, &value) in self.free.iter().zip(&z[self.parameters..]) {
             all[state] = value;
@@ -71,7 +71,7 @@ impl Layout {
     }
 
     /// Lower and upper bound of a place.
-    pub fn limits(&self, problem: &Problem, place: usize) -> (f64, f64) {
+    pub(super) fn limits(&self, problem: &Problem, place: usize) -> (f64, f64) {
         if place < self.parameters {
             let unknown = problem.unknowns.at(place);
             (unknown.lower, unknown.upper)
@@ -82,7 +82,7 @@ impl Layout {
     }
 
     /// The columns of a segment and their places.
-    pub fn columns(&self, problem: &Problem, segment: usize) -> (Vec<Column>, Vec<usize>) {
+    pub(super) fn columns(&self, problem: &Problem, segment: usize) -> (Vec<Column>, Vec<usize>) {
         let parameters = (0..problem.model.parameters.len()).filter_map(|parameter| {
             let place = problem.unknowns.place(segment, parameter)?;
             Some((Column::Parameter(parameter), place))
@@ -93,7 +93,7 @@ impl Layout {
     }
 
     /// What an unknown is called, and the SI value of its unit.
-    pub fn name(&self, problem: &Problem, place: usize) -> (String, f64) {
+    pub(super) fn name(&self, problem: &Problem, place: usize) -> (String, f64) {
         if place < self.parameters {
             (problem.name(place), problem.unit(place).scale)
         } else {

@@ -27,7 +27,7 @@ pub(super) struct Limit {
 
 impl Limit {
     /// The states that are at their limit and whose intensity the descent direction would raise further.
-    pub fn new(layout: &Layout, shares: &[Share], descent: &DVector<f64>) -> Self {
+    pub(super) fn new(layout: &Layout, shares: &[Share], descent: &DVector<f64>) -> Self {
         let mut active: Vec<(usize, usize)> = (0..shares.len())
             .filter(|&state| shares[state].value > 1.0 - NEAR)
             .filter_map(|state| Some((state, layout.place(state)?)))

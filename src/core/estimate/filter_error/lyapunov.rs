@@ -21,7 +21,7 @@ pub(super) struct Lyapunov {
 
 impl Lyapunov {
     /// `None` where M is not stable.
-    pub fn new(m: &DMatrix<f64>) -> Option<Self> {
+    pub(super) fn new(m: &DMatrix<f64>) -> Option<Self> {
         let n = m.nrows();
         let gamma = (m.norm() / (n as f64).sqrt()).max(f64::MIN_POSITIVE);
         let identity = DMatrix::identity(n, n) * gamma;
@@ -48,7 +48,7 @@ impl Lyapunov {
     }
 
     /// X for a symmetric Q.
-    pub fn solve(&self, q: &DMatrix<f64>) -> DMatrix<f64> {
+    pub(super) fn solve(&self, q: &DMatrix<f64>) -> DMatrix<f64> {
         let mut x = &self.resolvent * q * self.resolvent.transpose() * (2.0 * self.gamma);
         for power in &self.powers {
             x += power * &x * power.transpose();

@@ -32,7 +32,7 @@ pub(super) struct Predictor<'p> {
 }
 
 impl<'p> Predictor<'p> {
-    pub fn new(problem: &'p Problem) -> Self {
+    pub(super) fn new(problem: &'p Problem) -> Self {
         let model = &problem.model;
         let options = &problem.options;
         Self {
@@ -45,7 +45,7 @@ impl<'p> Predictor<'p> {
     }
 
     /// Predicts a segment sample by sample. Without `columns` there are no slopes.
-    pub fn run(
+    pub(super) fn run(
         &mut self,
         segment: &Segment,
         parameters: &[f64],

@@ -22,7 +22,7 @@ pub(super) struct SteadyCovariance {
 
 impl SteadyCovariance {
     /// `None` where there is no such P: an undamped motion that no noise drives, or that no output shows.
-    pub fn new(a: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> Option<Self> {
+    pub(super) fn new(a: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> Option<Self> {
         let scale = g.diagonal().map(|g| {
             if g > 0.0 && g.is_finite() {
                 g.sqrt().recip()
@@ -59,7 +59,7 @@ impl SteadyCovariance {
     }
 
     /// dP for dA, dG, dQ, given as `forcing` = dA P + P dAᵀ - P dG P + dQ.
-    pub fn change(&self, forcing: &DMatrix<f64>) -> DMatrix<f64> {
+    pub(super) fn change(&self, forcing: &DMatrix<f64>) -> DMatrix<f64> {
         let n = forcing.nrows();
         let scale = &self.scale;
         let scaled = DMatrix::from_fn(n, n, |i, j| forcing[(i, j)] / (scale[i] * scale[j]));

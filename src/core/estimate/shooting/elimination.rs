@@ -113,7 +113,7 @@ fn split(
 
 impl Reduced {
     /// The nodes' steps for a step of θ.
-    pub fn nodes(&self, step: &DVector<f64>) -> Nodes {
+    pub(super) fn nodes(&self, step: &DVector<f64>) -> Nodes {
         let of_segment = |nodes: &Vec<Eliminated>| {
             let mut steps: Vec<DVector<f64>> = Vec::new();
             for node in nodes.iter().rev() {

@@ -54,7 +54,7 @@ pub(super) struct Piece {
 impl<'p> Cut<'p> {
     /// Intervals of `length` seconds, longer where there would be too many.
     /// `None` where the edited model is too large.
-    pub fn new(problem: &'p Problem, length: f64) -> Option<Self> {
+    pub(super) fn new(problem: &'p Problem, length: f64) -> Option<Self> {
         let model = Model::compile(&edited(&problem.model.document)).ok()?;
         let own = problem.model.parameters.len();
         let free = |parameter: &usize| {
@@ -101,7 +101,7 @@ impl<'p> Cut<'p> {
     }
 
     /// Simulates one interval; the answer is the state at its end.
-    pub fn end(
+    pub(super) fn end(
         &self,
         segment: usize,
         index: usize,
@@ -138,7 +138,7 @@ impl<'p> Cut<'p> {
     }
 
     /// Simulates all intervals; `None` where one leaves the range of numbers.
-    pub fn walk(&self, theta: &[f64], nodes: &Nodes) -> Option<Walk> {
+    pub(super) fn walk(&self, theta: &[f64], nodes: &Nodes) -> Option<Walk> {
         let outputs = self.problem.model.outputs.len();
         let mut residuals = DMatrix::zeros(outputs, outputs);
         let mut ends = Vec::new();
@@ -162,7 +162,7 @@ impl<'p> Cut<'p> {
     }
 
     /// Linearises all intervals; `weights` is R⁻¹. `None` where one leaves the range of numbers.
-    pub fn pieces(
+    pub(super) fn pieces(
         &self,
         theta: &[f64],
         nodes: &Nodes,

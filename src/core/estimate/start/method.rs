@@ -59,8 +59,8 @@ impl Default for StartMethod {
 pub(in crate::estimate) const INTERVAL: f64 = 1.0;
 
 /// Most simulations of a simplex search, and most random starts.
-pub const MOST_EVALUATIONS: usize = 100_000;
-pub const MOST_STARTS: usize = 1_000;
+pub(super) const MOST_EVALUATIONS: usize = 100_000;
+pub(super) const MOST_STARTS: usize = 1_000;
 
 fn default_evaluations() -> usize {
     2_000

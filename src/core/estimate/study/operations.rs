@@ -136,7 +136,7 @@ pub fn operations(problem: &Problem, technique: &Derivatives) -> u64 {
 }
 
 /// Bytes that the differences and complex steps work in: columns of a stretch, and a state for each simulation.
-pub fn perturbation_bytes(problem: &Problem, technique: &Derivatives) -> usize {
+pub(super) fn perturbation_bytes(problem: &Problem, technique: &Derivatives) -> usize {
     let outputs = problem.model.outputs.len();
     let (runs, number) = match technique {
         Derivatives::CentralDifference { .. } => (2, 8),
@@ -150,7 +150,7 @@ pub fn perturbation_bytes(problem: &Problem, technique: &Derivatives) -> usize {
 }
 
 /// Bytes that the forward sensitivities work in: Jacobians, forcing and rows of one block.
-pub fn sensitivity_bytes(problem: &Problem) -> usize {
+pub(super) fn sensitivity_bytes(problem: &Problem) -> usize {
     let n = Counts::of(problem);
     let block = 4 * crate::model::LANES as u64;
     let entries = |i: usize| n.by_state[i] + n.by_parameter[i];

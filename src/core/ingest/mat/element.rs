@@ -22,18 +22,18 @@ impl Order {
 
 /// Kinds of elements (`mi` in the format's description).
 pub(super) mod kind {
-    pub const INT8: u32 = 1;
-    pub const UINT8: u32 = 2;
-    pub const INT16: u32 = 3;
-    pub const UINT16: u32 = 4;
-    pub const INT32: u32 = 5;
-    pub const UINT32: u32 = 6;
-    pub const SINGLE: u32 = 7;
-    pub const DOUBLE: u32 = 9;
-    pub const INT64: u32 = 12;
-    pub const UINT64: u32 = 13;
-    pub const MATRIX: u32 = 14;
-    pub const COMPRESSED: u32 = 15;
+    pub(crate) const INT8: u32 = 1;
+    pub(crate) const UINT8: u32 = 2;
+    pub(crate) const INT16: u32 = 3;
+    pub(crate) const UINT16: u32 = 4;
+    pub(crate) const INT32: u32 = 5;
+    pub(crate) const UINT32: u32 = 6;
+    pub(crate) const SINGLE: u32 = 7;
+    pub(crate) const DOUBLE: u32 = 9;
+    pub(crate) const INT64: u32 = 12;
+    pub(crate) const UINT64: u32 = 13;
+    pub(crate) const MATRIX: u32 = 14;
+    pub(crate) const COMPRESSED: u32 = 15;
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -21,7 +21,7 @@ pub(super) enum Sensor {
 }
 
 impl Sensor {
-    pub fn find(sheet: &Sheet, target: &str) -> Result<Self, EditError> {
+    pub(super) fn find(sheet: &Sheet, target: &str) -> Result<Self, EditError> {
         let document = &sheet.document;
         if let Some(output) = document.outputs.get(target) {
             let unit = output.unit.clone();
@@ -35,14 +35,14 @@ impl Sensor {
         Err(sheet.no_target("output or measured input", target, known))
     }
 
-    pub fn unit(&self) -> &str {
+    pub(super) fn unit(&self) -> &str {
         match self {
             Self::Output { unit } | Self::Input { unit } => unit,
         }
     }
 
     /// Adds an error to what is recorded; `error` can stand behind a plus sign, or a minus sign in brackets.
-    pub fn add(&self, sheet: &mut Sheet, target: &str, error: &str) {
+    pub(super) fn add(&self, sheet: &mut Sheet, target: &str, error: &str) {
         match self {
             Self::Output { .. } => observe(sheet, target, |y| format!("{y} + {error}")),
             Self::Input { .. } => {

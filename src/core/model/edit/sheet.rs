@@ -29,24 +29,24 @@ pub(super) enum Speed {
 }
 
 impl<'a> Sheet<'a> {
-    pub fn new(edit: &'a Edit, document: &ModelDocument) -> Self {
+    pub(super) fn new(edit: &'a Edit, document: &ModelDocument) -> Self {
         Self {
             edit,
             document: document.clone(),
         }
     }
 
-    pub fn target(&self) -> &'a str {
+    pub(super) fn target(&self) -> &'a str {
         &self.edit.target
     }
 
     /// The target as a part of names: `alpha+q` as `alpha_q`.
-    pub fn stem(&self) -> String {
+    pub(super) fn stem(&self) -> String {
         self.edit.target.replace('+', "_").replace(' ', "")
     }
 
     /// The name of the first parameter: what the edit says, or the base, numbered where it is taken.
-    pub fn name(&self, base: &str) -> Result<String, EditError> {
+    pub(super) fn name(&self, base: &str) -> Result<String, EditError> {
         match &self.edit.parameter {
             Some(name) if self.is_taken(name) => Err(EditError::NameTaken { name: name.clone() }),
             Some(name) => Ok(name.clone()),
@@ -55,7 +55,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// A name that nothing has yet.
-    pub fn free(&self, base: &str) -> String {
+    pub(super) fn free(&self, base: &str) -> String {
         let numbered = (2..).map(|n| format!("{base}_{n}"));
         std::iter::once(base.to_string())
             .chain(numbered)
@@ -63,7 +63,7 @@ impl<'a> Sheet<'a> {
             .unwrap_or_else(|| base.to_string())
     }
 
-    pub fn is_taken(&self, name: &str) -> bool {
+    pub(super) fn is_taken(&self, name: &str) -> bool {
         let document = &self.document;
         document.parameters.contains_key(name)
             || document.constants.contains_key(name)
@@ -75,11 +75,11 @@ impl<'a> Sheet<'a> {
             || Function::find(name).is_some()
     }
 
-    pub fn add(&mut self, name: &str, parameter: Parameter) {
+    pub(super) fn add(&mut self, name: &str, parameter: Parameter) {
         self.document.parameters.insert(name.to_string(), parameter);
     }
 
-    pub fn add_state(
+    pub(super) fn add_state(
         &mut self,
         name: &str,
         unit: &str,
@@ -96,7 +96,7 @@ impl<'a> Sheet<'a> {
         self.document.states.insert(name.to_string(), state);
     }
 
-    pub fn no_target<'n>(
+    pub(super) fn no_target<'n>(
         &self,
         wanted: &'static str,
         target: &str,
@@ -109,7 +109,7 @@ impl<'a> Sheet<'a> {
         }
     }
 
-    pub fn unfit(&self, message: impl Into<String>) -> EditError {
+    pub(super) fn unfit(&self, message: impl Into<String>) -> EditError {
         EditError::Unfit {
             kind: self.edit.kind.name(),
             target: self.edit.target.clone(),
@@ -118,7 +118,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// The equation of a state (its derivative) or of a definition, and what it measures.
-    pub fn law(&mut self, target: &str) -> Result<(&mut String, Dimension), EditError> {
+    pub(super) fn law(&mut self, target: &str) -> Result<(&mut String, Dimension), EditError> {
         let known = (self.document.states.keys()).chain(self.document.definitions.keys());
         let missing = self.no_target("state or definition", target, known);
         let document = &mut self.document;
@@ -133,7 +133,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// The unit of an input.
-    pub fn input(&self, target: &str) -> Result<String, EditError> {
+    pub(super) fn input(&self, target: &str) -> Result<String, EditError> {
         match self.document.inputs.get(target) {
             Some(input) => Ok(input.unit.clone()),
             None => Err(self.no_target("input", target, self.document.inputs.keys())),
@@ -141,12 +141,12 @@ impl<'a> Sheet<'a> {
     }
 
     /// The dimension of a name that an equation may use.
-    pub fn measures(&self, name: &str) -> Option<Dimension> {
+    pub(super) fn measures(&self, name: &str) -> Option<Dimension> {
         Names::collect(&self.document, &mut Vec::new()).dimension(name)
     }
 
     /// A quantity that varies with time under one of its names: a state, definition or input, or what an output says.
-    pub fn quantity(&self, candidates: &[&str], measures: Dimension) -> Option<String> {
+    pub(super) fn quantity(&self, candidates: &[&str], measures: Dimension) -> Option<String> {
         let document = &self.document;
         let drives = |name: &str| {
             document.states.contains_key(name)
@@ -167,7 +167,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// An airspeed for an equation. A speed that the document does not have becomes a recorded input `V`.
-    pub fn speed(&mut self, speed: Speed) -> Result<String, EditError> {
+    pub(super) fn speed(&mut self, speed: Speed) -> Result<String, EditError> {
         let measures = Dimension::METRE.over(Dimension::SECOND);
         if let Some(found) = self.quantity(&SPEEDS, measures) {
             return Ok(found);
@@ -181,7 +181,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// The speed of the steady flight, a parameter or a constant.
-    pub fn steady_speed(&self) -> Option<String> {
+    pub(super) fn steady_speed(&self) -> Option<String> {
         let document = &self.document;
         let held = |name: &str| {
             document.parameters.contains_key(name) || document.constants.contains_key(name)
@@ -194,7 +194,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// A recorded channel as an input, new where the document does not have it.
-    pub fn channel(
+    pub(super) fn channel(
         &mut self,
         name: &str,
         unit: &str,
@@ -221,7 +221,7 @@ impl<'a> Sheet<'a> {
     /// What an expression is at the start of a segment, in parameters and constants: states are replaced by their
     /// initial values, definitions written out, inputs replaced by fixed parameters that read their first sample.
     /// Where that is too long, a free parameter of each maneuver that starts at the first sample of `channel`.
-    pub fn at_start(&mut self, text: &str, unit: &str, channel: &str) -> String {
+    pub(super) fn at_start(&mut self, text: &str, unit: &str, channel: &str) -> String {
         let mut firsts = Vec::new();
         let expanded = self.expanded(text, 0, &mut firsts);
         if let Some(expanded) = expanded.filter(|text| expression::parse(text).is_ok()) {
@@ -276,7 +276,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// The fixed parameter that is an input's first sample, in each maneuver.
-    pub fn first_of(&mut self, input: &str) -> String {
+    pub(super) fn first_of(&mut self, input: &str) -> String {
         let name = self.name_of_first(input);
         if !self.document.parameters.contains_key(&name) {
             let unit = (self.document.inputs.get(input)).map_or("", |input| &input.unit);

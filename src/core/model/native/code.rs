@@ -45,7 +45,7 @@ impl std::fmt::Debug for Code {
 
 impl Code {
     /// Compiles the steps of a program; `None` where the machine is one that this is not made for.
-    pub fn compile(dynamics: &Program) -> Option<Self> {
+    pub(super) fn compile(dynamics: &Program) -> Option<Self> {
         if !has_multiply_add() {
             return None;
         }
