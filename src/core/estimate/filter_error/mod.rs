@@ -19,31 +19,29 @@ mod limit;
 mod lyapunov;
 mod predictor;
 mod relaxation;
-mod report;
 mod riccati;
 mod start;
 
 use nalgebra::DVector;
 
-use super::answer::Solution;
-use super::error_bounds::ErrorBounds;
-use super::evaluation::Unusable;
-use super::iterate::Taken;
-use super::likelihood::Weighting;
-use super::options::Method;
-use super::output_error::Observer;
-use super::problem::Problem;
-use super::search::{
+use crate::estimate::accuracy::error_bounds::ErrorBounds;
+use crate::estimate::answer::Solution;
+use crate::estimate::descent::iterate::Taken;
+use crate::estimate::descent::search::{
     DAMPING_EASED, DAMPING_NONE, DAMPING_RAISED, DAMPING_START, MOST_TRIALS, ROUNDING,
 };
-use super::step::length;
-use super::stopped::Stopped;
+use crate::estimate::descent::step::length;
+use crate::estimate::descent::stopped::Stopped;
+use crate::estimate::likelihood::weighting::Weighting;
+use crate::estimate::options::Method;
+use crate::estimate::problem::Problem;
+use crate::estimate::problem::unusable::Unusable;
+use crate::estimate::report::progress::Observer;
 use iterate::{GainNoise, Iterate};
 use limit::restore;
 use relaxation::relaxed;
 
 pub use evaluation::{FilterEquations, FilterEvaluator};
-pub use report::{FilterEstimate, Pole, ProcessNoiseEstimate, SegmentGain};
 
 /// Names of the free intensities, in the order in which they follow the parameters.
 pub fn process_noise_names(problem: &Problem) -> Vec<String> {

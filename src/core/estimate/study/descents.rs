@@ -5,9 +5,13 @@
 
 use std::ops::ControlFlow;
 
-use super::super::derivatives::Scaling;
-use super::super::quasi_newton::{Descent, Update, initial_inverse};
-use super::{CostAndGradient, Derivatives, DescentResult, Evaluator, NoStudy, Study, operations};
+use super::report::DescentResult;
+use super::{NoStudy, Study, operations};
+use crate::estimate::descent::quasi_newton::descent::{Descent, Update};
+use crate::estimate::descent::quasi_newton::solve::initial_inverse;
+use crate::estimate::evaluation::derivatives::adjoint::CostAndGradient;
+use crate::estimate::evaluation::evaluator::Evaluator;
+use crate::estimate::options::technique::{Derivatives, Scaling};
 use crate::estimate::output_error::output_error;
 
 /// Half the square of 0.01 standard errors: so much higher than the minimum counts as there.

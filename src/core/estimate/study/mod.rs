@@ -13,20 +13,23 @@ use std::ops::ControlFlow;
 
 use nalgebra::DVector;
 
+use crate::estimate::evaluation::derivatives::adjoint::CostAndGradient;
+use crate::estimate::evaluation::evaluator::Evaluator;
+use crate::estimate::evaluation::normal_equations::NormalEquations;
+use crate::estimate::likelihood::weighting::Weighting;
+use crate::estimate::options::technique::Derivatives;
+use crate::estimate::output_error::output_error;
+use crate::estimate::problem::Problem;
+use crate::estimate::problem::unknowns::Unknowns;
+use crate::estimate::problem::unusable::Unusable;
+use clock::{Times, least, once};
+
 pub use clock::Clock;
 pub use operations::{formula, operations, simulations};
 pub use report::{
     CostPoint, DerivativeStudy, DescentResult, ErrorCurve, ErrorPoint, FormulaOperations,
     ProblemSize, StudyStep, TechniqueResult,
 };
-
-use super::derivatives::{CostAndGradient, Derivatives};
-use super::evaluation::{Evaluator, Unusable};
-use super::likelihood::{NormalEquations, Weighting};
-use super::output_error::output_error;
-use super::problem::Problem;
-use super::unknowns::Unknowns;
-use clock::{Times, least, once};
 
 /// Told of each finding, and of nothing new from time to time; may stop the study.
 pub type Listener<'o> = dyn FnMut(Option<&StudyStep>) -> ControlFlow<()> + 'o;
@@ -333,7 +336,7 @@ fn restricted(problem: &Problem, count: usize) -> Problem {
         left -= usize::from(free);
     }
     let start = |parameter: usize, segment: usize| -> Result<f64, std::convert::Infallible> {
-        let own = |u: &&super::Unknown| {
+        let own = |u: &&crate::estimate::problem::unknowns::Unknown| {
             u.parameter == parameter && u.segment.is_none_or(|own| own == segment)
         };
         let unknown = problem.unknowns.all.iter().find(own);

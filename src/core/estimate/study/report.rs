@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::super::derivatives::Scaling;
+use crate::estimate::options::technique::Scaling;
 
 /// Derivative techniques compared on one problem, at its start values.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
