@@ -3,10 +3,6 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::estimate::evaluation::derivatives::central_difference::CentralDifference;
-use crate::estimate::evaluation::derivatives::complex_step::ComplexStep;
-use crate::estimate::evaluation::derivatives::forward_difference::ForwardDifference;
-
 /// How derivatives are worked out. All of them differentiate the same discretised model.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(
@@ -21,7 +17,7 @@ pub enum Derivatives {
     /// ∂y/∂θ by one more simulation for each parameter; about half of the digits.
     ForwardDifference {
         /// Relative to the parameter's size; absent: √ε, about 1.5e-8.
-        #[serde(default = "ForwardDifference::near_optimal")]
+        #[serde(default = "forward_step")]
         #[schema(
             default = 1.5e-8,
             example = 1.5e-8,
@@ -33,7 +29,7 @@ pub enum Derivatives {
     /// ∂y/∂θ by two more simulations for each parameter; about two thirds of the digits.
     CentralDifference {
         /// Relative to the parameter's size; absent: ∛ε, about 6.1e-6.
-        #[serde(default = "CentralDifference::near_optimal")]
+        #[serde(default = "central_step")]
         #[schema(
             default = 6.1e-6,
             example = 6.1e-6,
@@ -45,7 +41,7 @@ pub enum Derivatives {
     /// ∂y/∂θ by one simulation in complex numbers for each parameter, exact but for rounding.
     ComplexStep {
         /// Imaginary part, relative to the parameter's size (at least 1); anything small enough will do.
-        #[serde(default = "ComplexStep::usual")]
+        #[serde(default = "complex_step")]
         #[schema(
             default = 1e-20,
             example = 1e-20,
@@ -83,6 +79,21 @@ pub enum Scaling {
     None,
 }
 
+/// √ε, where the errors of cutting off and of rounding are alike for a y of the size of its derivatives.
+fn forward_step() -> f64 {
+    f64::EPSILON.sqrt()
+}
+
+/// ∛ε, where both errors are alike for a y of the size of its derivatives.
+fn central_step() -> f64 {
+    f64::EPSILON.cbrt()
+}
+
+/// Its square is nothing beside ε.
+fn complex_step() -> f64 {
+    1e-20
+}
+
 /// Least relative step: an imaginary part below this leaves the range of normal numbers.
 const LEAST_STEP: f64 = 1e-300;
 
@@ -109,13 +120,13 @@ impl Derivatives {
     pub fn all() -> [Self; 5] {
         [
             Self::ForwardDifference {
-                step: ForwardDifference::near_optimal(),
+                step: forward_step(),
             },
             Self::CentralDifference {
-                step: CentralDifference::near_optimal(),
+                step: central_step(),
             },
             Self::ComplexStep {
-                step: ComplexStep::usual(),
+                step: complex_step(),
             },
             Self::ForwardSensitivities {},
             Self::adjoint(),

@@ -8,13 +8,6 @@ pub struct CentralDifference {
     pub step: f64,
 }
 
-impl CentralDifference {
-    /// ∛ε, where both errors are alike for a y of the size of its derivatives.
-    pub fn near_optimal() -> f64 {
-        f64::EPSILON.cbrt()
-    }
-}
-
 impl Perturbation for CentralDifference {
     type Number = f64;
     const RUNS: usize = 2;

@@ -11,11 +11,6 @@ pub struct ComplexStep {
 }
 
 impl ComplexStep {
-    /// Its square is nothing beside ε.
-    pub fn usual() -> f64 {
-        1e-20
-    }
-
     /// There is no cancellation to fear from a large step, but underflow from a small one.
     fn taken(&self, value: f64) -> f64 {
         self.step * value.abs().max(1.0)

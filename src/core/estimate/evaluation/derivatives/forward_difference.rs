@@ -8,13 +8,6 @@ pub struct ForwardDifference {
     pub step: f64,
 }
 
-impl ForwardDifference {
-    /// √ε, where both errors are alike for a y of the size of its derivatives.
-    pub fn near_optimal() -> f64 {
-        f64::EPSILON.sqrt()
-    }
-}
-
 impl Perturbation for ForwardDifference {
     type Number = f64;
     const RUNS: usize = 1;
