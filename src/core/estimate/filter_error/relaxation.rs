@@ -2,10 +2,10 @@
 
 use nalgebra::DMatrix;
 
-use super::Trial;
 use super::evaluation::FilterEvaluator;
 use super::iterate::{GainNoise, Iterate};
 use super::limit::restore;
+use super::search::Trial;
 use crate::estimate::options::Noise;
 use crate::estimate::problem::unusable::Unusable;
 

@@ -5,8 +5,9 @@
 
 use std::ops::ControlFlow;
 
+use super::operations::operations;
 use super::report::DescentResult;
-use super::{NoStudy, Study, operations};
+use super::underway::{NoStudy, Study};
 use crate::estimate::descent::quasi_newton::descent::{Descent, Update};
 use crate::estimate::descent::quasi_newton::solve::initial_inverse;
 use crate::estimate::evaluation::derivatives::adjoint::CostAndGradient;

@@ -129,3 +129,11 @@ pub struct StudyStep {
     )]
     pub finding: String,
 }
+
+impl ErrorCurve {
+    /// Step and error of the best point.
+    pub fn best(&self) -> Option<(f64, f64)> {
+        let found = self.points.iter().filter_map(|p| Some((p.step, p.error?)));
+        found.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}

@@ -4,6 +4,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
+use super::beginning::Beginning;
 use super::intervals::{Nodes, Piece};
 
 /// How a state of node j follows from those of node j + 1 and θ: ds_j = constant − factor [ds_(j+1), dθ].
@@ -18,12 +19,6 @@ pub(super) struct Reduced {
     pub descent: DVector<f64>,
     /// By segment and node.
     nodes: Vec<Vec<Eliminated>>,
-}
-
-/// A segment's initial state by the model, less that of its first node, and its derivative by θ.
-pub(super) struct Beginning {
-    pub jump: DVector<f64>,
-    pub slopes: DMatrix<f64>,
 }
 
 /// Eliminates all nodes. `weights` are those of a jump's squares, by state; `damping` is relative to the diagonal.

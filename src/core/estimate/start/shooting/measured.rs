@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::beginning;
+use super::beginning::beginning;
 use super::intervals::{Cut, Nodes};
 use crate::estimate::options::Noise;
 use crate::estimate::problem::Problem;

@@ -15,13 +15,14 @@
 //! explains something, and the best is kept. Where none explains anything, all is done again with R held at what
 //! smoothing takes from the measurements.
 
+mod beginning;
 mod elimination;
 mod intervals;
 mod measured;
 
 use std::ops::ControlFlow;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use crate::estimate::descent::gauss_newton::descend;
 use crate::estimate::descent::step::{Newton, advanced, held};
@@ -31,7 +32,8 @@ use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::start::{StartKind, StartReport};
 use crate::estimate::start::found::{Start, cost, cost_of_constants, unobserved};
-use elimination::{Beginning, eliminate};
+use beginning::beginning;
+use elimination::eliminate;
 use intervals::{Cut, Nodes};
 use measured::{first_nodes, with_measured_noise};
 
@@ -278,36 +280,6 @@ fn step(
         *damping = (*damping * DAMPING_RAISED).max(DAMPING_START);
     }
     None
-}
-
-/// x0(θ) of a segment less its first node, and the derivative. `None` where it is not finite.
-fn beginning(
-    problem: &Problem,
-    segment: usize,
-    theta: &[f64],
-    node: &DVector<f64>,
-) -> Option<Beginning> {
-    let model = &problem.model;
-    let mut parameters = Vec::new();
-    problem.unknowns.parameters(segment, theta, &mut parameters);
-    let mut workspace = model.initial.workspace();
-    model.initial.set_parameters(&mut workspace, &parameters);
-    model.initial.run(&mut workspace);
-    let initial = DVector::from_fn(node.len(), |i, _| model.initial.result(&workspace, i));
-    let jacobian = &model.initial_jacobian;
-    let mut workspace = jacobian.program.workspace();
-    jacobian.program.set_parameters(&mut workspace, &parameters);
-    jacobian.program.run(&mut workspace);
-    let mut slopes = DMatrix::zeros(node.len(), theta.len());
-    for (i, &(state, parameter)) in jacobian.by_parameter.iter().enumerate() {
-        if let Some(place) = problem.unknowns.place(segment, parameter) {
-            let entry = jacobian.by_state.len() + i;
-            slopes[(state, place)] = jacobian.program.result(&workspace, entry);
-        }
-    }
-    let jump = initial - node;
-    let finite = jump.iter().chain(slopes.iter()).all(|v| v.is_finite());
-    finite.then_some(Beginning { jump, slopes })
 }
 
 fn report(cut: &Cut<'_>, point: &Point, steps: usize, penalty: f64) -> StartReport {
