@@ -19,7 +19,7 @@ use printed_adjoint::{Line25, algorithm_3};
 use trimtab::cli::study_tables;
 use trimtab::dashboard::{cost_figure, error_figure};
 use trimtab::estimate::derivatives::CostAndGradient;
-use trimtab::estimate::quasi_newton::{Descent, Update};
+use trimtab::estimate::quasi_newton::{Optimiser, Update};
 use trimtab::estimate::study::{operations, study};
 use trimtab::estimate::{
     Derivatives, Evaluator, Noise, NormalEquations, Options, Problem, output_error,
@@ -89,7 +89,7 @@ fn printed(name: &str, problem: Problem) {
         let cosine = gradient.dot(&exact) / (gradient.norm() * exact.norm());
         let open = (vec![f64::NEG_INFINITY; n], vec![f64::INFINITY; n]);
         let start = (theta.clone(), cost, gradient);
-        let mut descent = Descent::new(start, open, DMatrix::identity(n, n), true, update);
+        let mut descent = Optimiser::new(start, open, DMatrix::identity(n, n), true, update);
         let mut iterations = 0;
         while gradients.get() < MOST_GRADIENTS && descent.cost > lowest + 0.5e-4 {
             if descent.step(&mut evaluate).is_err() {

@@ -9,7 +9,7 @@
 //! Morelli, Aircraft System Identification, ch. 5), and what only enters outputs that measure a state, such as its
 //! bias, is not found. So it is a start for output error, or a quick look.
 
-use crate::estimate::answer::Solution;
+use crate::estimate::answer::{Solution, answer};
 use crate::estimate::descent::gauss_newton::descend;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unknowns::Unknown;
@@ -40,7 +40,7 @@ pub fn equation_error(
     let Solution {
         estimate,
         histories,
-    } = descent.solution(own);
+    } = answer(own, descent);
     Ok(Solution {
         estimate: in_the_problem(problem, &regression, &theta, estimate),
         histories,

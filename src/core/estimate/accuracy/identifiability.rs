@@ -23,33 +23,33 @@ const LARGE_PROPORTION: f64 = 0.5;
 /// Correlations above this are worth a name.
 const HIGH_CORRELATION: f64 = 0.99;
 
-impl DataInformation {
-    /// From the information matrix over all free unknowns; `None` where it cannot be decomposed.
-    pub(crate) fn of(problem: &Problem, information: &DMatrix<f64>) -> Option<Self> {
-        let spectrum = Spectrum::of(information, &information.diagonal())?;
-        let mut singular_values: Vec<f64> =
-            spectrum.values.iter().map(|v| v.max(0.0).sqrt()).collect();
-        singular_values.sort_by(|a, b| b.total_cmp(a));
-        let seen = (0..spectrum.values.len()).all(|i| spectrum.is_seen(i));
-        let condition_number = match (singular_values.first(), singular_values.last()) {
-            (Some(largest), Some(smallest)) if seen => largest / smallest,
-            (None, _) => 1.0,
-            _ => f64::NAN,
-        };
-        let (single, redundant): (Vec<_>, Vec<_>) =
-            (spectrum.collinear().into_iter()).partition(|set| set.len() == 1);
-        Some(Self {
-            singular_values,
-            condition_number,
-            unseen: single.iter().map(|set| problem.name(set[0].0)).collect(),
-            redundant: redundant
-                .iter()
-                .map(|set| CollinearSet::named(set, |place| problem.name_and_scale(place)))
-                .collect(),
-            nearly_collinear: nearly_collinear(problem, &spectrum),
-            highly_correlated: highly_correlated(problem, &spectrum),
-        })
-    }
+/// From the information matrix over all free unknowns; `None` where it cannot be decomposed.
+pub(crate) fn data_information(
+    problem: &Problem,
+    information: &DMatrix<f64>,
+) -> Option<DataInformation> {
+    let spectrum = Spectrum::of(information, &information.diagonal())?;
+    let mut singular_values: Vec<f64> = spectrum.values.iter().map(|v| v.max(0.0).sqrt()).collect();
+    singular_values.sort_by(|a, b| b.total_cmp(a));
+    let seen = (0..spectrum.values.len()).all(|i| spectrum.is_seen(i));
+    let condition_number = match (singular_values.first(), singular_values.last()) {
+        (Some(largest), Some(smallest)) if seen => largest / smallest,
+        (None, _) => 1.0,
+        _ => f64::NAN,
+    };
+    let (single, redundant): (Vec<_>, Vec<_>) =
+        (spectrum.collinear().into_iter()).partition(|set| set.len() == 1);
+    Some(DataInformation {
+        singular_values,
+        condition_number,
+        unseen: single.iter().map(|set| problem.name(set[0].0)).collect(),
+        redundant: redundant
+            .iter()
+            .map(|set| CollinearSet::named(set, |place| problem.name_and_scale(place)))
+            .collect(),
+        nearly_collinear: nearly_collinear(problem, &spectrum),
+        highly_correlated: highly_correlated(problem, &spectrum),
+    })
 }
 
 /// Near dependencies: directions of a high condition index that make up most of at least two variances. Where

@@ -5,16 +5,15 @@ use nalgebra::DMatrix;
 use crate::estimate::accuracy::coloured_residuals::Colour;
 use crate::estimate::accuracy::error_bounds::ErrorBounds;
 use crate::estimate::accuracy::fit::{fits, histories};
+use crate::estimate::accuracy::identifiability::data_information;
 use crate::estimate::accuracy::modes::modes;
 use crate::estimate::accuracy::prior_shares::shares;
-use crate::estimate::descent::iterate::Iterate;
-use crate::estimate::descent::stopped::Stopped;
-use crate::estimate::evaluation::evaluator::Evaluator;
+use crate::estimate::descent::Descent;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unknowns::Unknown;
 use crate::estimate::report::estimate::Estimate;
 use crate::estimate::report::history::TimeHistory;
-use crate::estimate::report::identifiability::{DataInformation, Identifiability};
+use crate::estimate::report::identifiability::Identifiability;
 use crate::estimate::report::parameter::{Bound, ParameterEstimate};
 
 /// The estimate, and the time histories that go with it.
@@ -23,40 +22,29 @@ pub struct Solution {
     pub histories: Vec<TimeHistory>,
 }
 
-/// How an estimation ended.
-pub(crate) struct Ending<'e> {
-    pub stopped: Stopped,
-    pub iterations: usize,
-    /// What the data told at the start.
-    pub before: Option<DataInformation>,
-    pub at: &'e Iterate,
-}
-
-pub(crate) fn answer(
-    problem: &Problem,
-    ending: Ending<'_>,
-    evaluator: &mut Evaluator<'_>,
-) -> Solution {
-    let Ending {
-        stopped,
+/// At the end of a descent.
+pub(crate) fn answer(problem: &Problem, descent: Descent<'_>) -> Solution {
+    let Descent {
+        mut evaluator,
+        first_information,
+        last: at,
         iterations,
-        before,
-        at,
-    } = ending;
+        stopped,
+    } = descent;
     let histories = histories(problem, &at.theta);
     let colour = Colour::of(&histories);
-    let bounds = ErrorBounds::at(problem, evaluator, at, &colour, &histories);
+    let bounds = ErrorBounds::at(problem, &mut evaluator, &at, &colour, &histories);
     let held: Vec<String> = (0..at.held.len())
         .filter(|&place| at.held[place].is_some())
         .map(|place| problem.name(place))
         .collect();
     let collinear = bounds.collinear(|place| problem.name_and_scale(place));
     let (outcome, reason) = stopped.say(problem.options.method, iterations, &held, &collinear);
-    let after =
-        (problem.options.max_iterations > 0).then(|| DataInformation::of(problem, &at.information));
+    let before = first_information.and_then(|first| data_information(problem, &first));
+    let asked = problem.options.max_iterations > 0;
     let identifiability = before.map(|before| Identifiability {
         before,
-        after: after.flatten(),
+        after: (asked.then(|| data_information(problem, &at.information))).flatten(),
     });
     let estimate = Estimate {
         outcome,

@@ -1,24 +1,13 @@
 //! Gauss-Newton or Levenberg-Marquardt on the likelihood concentrated in R.
 
+use super::Descent;
 use super::iterate::{Iterate, Taken};
 use super::search::{Nothing, Search};
 use super::stopped::Stopped;
-use crate::estimate::answer::{Ending, Solution, answer};
 use crate::estimate::evaluation::evaluator::Evaluator;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
-use crate::estimate::report::identifiability::DataInformation;
 use crate::estimate::report::progress::Observer;
-
-/// Where the iteration ended, and why.
-pub(crate) struct Descent<'p> {
-    pub evaluator: Evaluator<'p>,
-    pub last: Iterate,
-    pub iterations: usize,
-    /// What the data told at the start.
-    before: Option<DataInformation>,
-    stopped: Stopped,
-}
 
 /// Goes down from a θ until there is a reason to stop.
 ///
@@ -31,7 +20,7 @@ pub(crate) fn descend<'p>(
 ) -> Result<Descent<'p>, Unusable> {
     let mut evaluator = Evaluator::on_all_cores(problem);
     let mut current = Iterate::at(problem, &mut evaluator, theta)?;
-    let before = DataInformation::of(problem, &current.information);
+    let first_information = Some(current.information.clone());
     let mut search = Search::new(problem);
     let mut taken = Taken::default();
     let mut iteration = 0;
@@ -60,28 +49,9 @@ pub(crate) fn descend<'p>(
     };
     Ok(Descent {
         evaluator,
+        first_information,
         last: current,
         iterations: iteration,
-        before,
         stopped,
     })
-}
-
-impl Descent<'_> {
-    pub(crate) fn solution(self, problem: &Problem) -> Solution {
-        let Self {
-            mut evaluator,
-            last,
-            iterations,
-            before,
-            stopped,
-        } = self;
-        let ending = Ending {
-            stopped,
-            iterations,
-            before,
-            at: &last,
-        };
-        answer(problem, ending, &mut evaluator)
-    }
 }

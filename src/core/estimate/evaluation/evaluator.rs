@@ -9,6 +9,7 @@ use super::derivatives::perturbation::sums;
 use super::strand;
 use super::strand::Strand;
 use crate::estimate::likelihood::sums::{ResidualSums, Sums, mirror};
+use crate::estimate::likelihood::weighting::Weighting;
 use crate::estimate::linear::products::dot;
 use crate::estimate::options::technique::Derivatives;
 use crate::estimate::options::{Noise, NoiseStructure};
@@ -107,6 +108,15 @@ impl<'p> Evaluator<'p> {
         sink: impl FnMut(&Block<'_>),
     ) -> Result<(), Unusable> {
         self.strands[0].run(self.problem, segment, theta, sink)
+    }
+
+    /// -ln L at a θ, R concentrated.
+    ///
+    /// # Errors
+    /// The θ gives no cost.
+    pub(crate) fn cost(&mut self, theta: &[f64]) -> Result<f64, Unusable> {
+        let residuals = self.residuals(theta)?;
+        Weighting::at(self.problem, theta, &residuals).map(|weighting| weighting.cost)
     }
 
     /// Residuals and the sums of their sensitivities.

@@ -4,10 +4,7 @@
 use std::ops::ControlFlow;
 
 use crate::estimate::answer::Solution;
-use crate::estimate::descent::gauss_newton::descend;
-use crate::estimate::descent::quasi_newton::solve::solve;
 use crate::estimate::options::start::INTERVAL;
-use crate::estimate::options::technique::Derivatives;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::iteration::{Iteration, Outcome};
@@ -38,8 +35,13 @@ pub(crate) fn from_start(
         first.solution.estimate.cost
     );
     let mut told = |report: &StartReport| watcher(Progress::Start(report));
-    let Ok(mut shot) = multiple_shooting(problem, start.theta, INTERVAL, &mut told) else {
+    let Ok(shot) = multiple_shooting(problem, start.theta, INTERVAL, &mut told) else {
         return Ok(first.solution);
+    };
+    let mut shot = Start {
+        theta: shot.theta,
+        stopped: shot.stopped,
+        may_shoot: false,
     };
     if !shot.stopped {
         let say = format!("{failure}: once more, from multiple shooting");
@@ -98,10 +100,7 @@ impl Run {
             }
         };
         let theta = start.theta.clone();
-        let mut solution = match problem.options.derivatives {
-            Derivatives::Adjoint { scaling } => solve(problem, theta, scaling, &mut observer)?,
-            _ => descend(problem, theta, &mut observer)?.solution(problem),
-        };
+        let mut solution = super::from(problem, theta, &mut observer)?;
         solution.estimate.iterations += number;
         Ok(Self { solution, slope })
     }

@@ -19,3 +19,8 @@ pub type Watcher<'o> = dyn FnMut(Progress<'_>) -> ControlFlow<()> + 'o;
 
 /// Told of each iteration; may stop the solver.
 pub type Observer<'o> = dyn FnMut(&Iteration) -> ControlFlow<()> + 'o;
+
+/// For iterations that nobody follows.
+pub(crate) fn unobserved(_: &Iteration) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}

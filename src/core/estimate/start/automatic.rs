@@ -1,14 +1,15 @@
 //! The start that needs no choice: the better of the document's values and those of equation error.
 
 use super::equation_error::equation_error_start;
-use super::found::{Start, cost_of_constants, unobserved};
+use super::found::Start;
 use super::shooting::multiple_shooting;
 use crate::estimate::evaluation::evaluator::Evaluator;
+use crate::estimate::likelihood::constants::cost_of_constants;
 use crate::estimate::likelihood::weighting::Weighting;
 use crate::estimate::options::start::INTERVAL;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
-use crate::estimate::report::progress::{Progress, Watcher};
+use crate::estimate::report::progress::{Progress, Watcher, unobserved};
 use crate::estimate::report::start::{StartKind, StartReport};
 
 /// # Errors

@@ -1,13 +1,4 @@
-//! A start, and what starts are compared by.
-
-use std::ops::ControlFlow;
-
-use nalgebra::DMatrix;
-
-use crate::estimate::evaluation::evaluator::Evaluator;
-use crate::estimate::likelihood::weighting::Weighting;
-use crate::estimate::problem::Problem;
-use crate::estimate::problem::unusable::Unusable;
+//! A start for the iteration.
 
 /// A start for the iteration.
 pub(crate) struct Start {
@@ -17,47 +8,4 @@ pub(crate) struct Start {
     pub stopped: bool,
     /// Multiple shooting has not been tried, and may be where the iteration from here fails.
     pub may_shoot: bool,
-}
-
-/// For iterations that are nobody's business.
-pub(crate) fn unobserved(_: &crate::estimate::report::iteration::Iteration) -> ControlFlow<()> {
-    ControlFlow::Continue(())
-}
-
-/// -ln L at a θ, R concentrated.
-///
-/// # Errors
-/// The θ gives no cost.
-pub(crate) fn cost(evaluator: &mut Evaluator<'_>, theta: &[f64]) -> Result<f64, Unusable> {
-    let residuals = evaluator.residuals(theta)?;
-    let problem = evaluator.problem();
-    Weighting::at(problem, theta, &residuals).map(|weighting| weighting.cost)
-}
-
-/// -ln L of outputs that stay at their means: a start that is worse explains nothing.
-pub(crate) fn cost_of_constants(problem: &Problem) -> Option<f64> {
-    let outputs = problem.model.outputs.len();
-    let mut sums = DMatrix::zeros(outputs, outputs);
-    for segment in &problem.segments {
-        let centred: Vec<Vec<f64>> = segment.measured.iter().map(|z| centred(z)).collect();
-        for i in 0..outputs {
-            for j in 0..outputs {
-                sums[(i, j)] += centred[i]
-                    .iter()
-                    .zip(&centred[j])
-                    .map(|(a, b)| a * b)
-                    .sum::<f64>();
-            }
-        }
-    }
-    let weighting = Weighting::new(&problem.options.noise, &sums, &problem.counts).ok()?;
-    Some(weighting.cost)
-}
-
-/// Values less their mean; those that are no numbers count nothing.
-fn centred(values: &[f64]) -> Vec<f64> {
-    let numbers: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    let mean = numbers.iter().sum::<f64>() / numbers.len().max(1) as f64;
-    let less = |&value: &f64| if value.is_finite() { value - mean } else { 0.0 };
-    values.iter().map(less).collect()
 }

@@ -12,10 +12,10 @@ use crate::estimate::evaluation::evaluator::Evaluator;
 use crate::estimate::options::start::StartMethod;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
-use crate::estimate::report::progress::{Progress, Watcher};
+use crate::estimate::report::progress::{Progress, Watcher, unobserved};
 use crate::estimate::report::start::{StartKind, StartReport};
 use equation_error::equation_error_start;
-use found::{Start, cost, unobserved};
+use found::Start;
 use shooting::multiple_shooting;
 
 /// Finds the start that the options ask for.
@@ -34,7 +34,7 @@ pub(crate) fn find_start(problem: &Problem, watcher: &mut Watcher<'_>) -> Result
         StartMethod::Automatic {} => automatic::automatic(problem, watcher),
         StartMethod::EquationError {} => {
             let (theta, evaluations) = equation_error_start(problem, &mut unobserved)?;
-            let cost = cost(&mut Evaluator::new(problem), &theta).ok();
+            let cost = Evaluator::new(problem).cost(&theta).ok();
             let report = StartReport {
                 method: StartKind::EquationError,
                 evaluations,
@@ -53,9 +53,9 @@ pub(crate) fn find_start(problem: &Problem, watcher: &mut Watcher<'_>) -> Result
             spread,
         } => multi_start::multi_start(problem, *starts, *seed, *spread, watcher),
         StartMethod::MultipleShooting { interval } => {
-            multiple_shooting(problem, theta, *interval, &mut |report| {
-                watcher(Progress::Start(report))
-            })
+            let mut told = |report: &StartReport| watcher(Progress::Start(report));
+            let shot = multiple_shooting(problem, theta, *interval, &mut told)?;
+            Ok(found(shot.theta, shot.stopped))
         }
     }
 }

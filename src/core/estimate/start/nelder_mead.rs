@@ -1,7 +1,7 @@
 //! Simplex search by the cost alone, R concentrated (Nelder and Mead 1965), with coefficients that suit the number of
 //! parameters (Gao and Han 2012): needs no derivatives, and walks over ripples in which a gradient is caught.
 
-use super::found::{Start, cost};
+use super::found::Start;
 use crate::estimate::evaluation::evaluator::Evaluator;
 use crate::estimate::evaluation::normal_equations::NormalEquations;
 use crate::estimate::problem::Problem;
@@ -56,7 +56,10 @@ pub(crate) fn nelder_mead(
             may_shoot: false,
         }),
         // says what is wrong there
-        false => cost(&mut search.evaluator, &best.theta).and(Err(Unusable::NotFinite)),
+        false => search
+            .evaluator
+            .cost(&best.theta)
+            .and(Err(Unusable::NotFinite)),
     }
 }
 
@@ -90,7 +93,7 @@ impl<'p> Search<'p> {
             *value = value.clamp(unknown.lower, unknown.upper);
         }
         self.evaluations += 1;
-        let cost = cost(&mut self.evaluator, &theta).unwrap_or(f64::INFINITY);
+        let cost = self.evaluator.cost(&theta).unwrap_or(f64::INFINITY);
         Corner { theta, cost }
     }
 

@@ -3,8 +3,8 @@
 //! What a Gauss-Newton step knows from ∂y/∂θ, a quasi-Newton method must gather from one gradient after the
 //! other. Nocedal, Wright, Numerical Optimization, chapters 3 and 6.
 
-pub(in crate::estimate) mod descent;
 mod line_search;
+pub(in crate::estimate) mod optimiser;
 pub(in crate::estimate) mod solve;
 
-pub use descent::{Descent, Moved, NoWay, Objective, Update};
+pub use optimiser::{Moved, NoWay, Objective, Optimiser, Update};

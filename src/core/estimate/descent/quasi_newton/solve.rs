@@ -1,9 +1,9 @@
-//! Output-error estimation by the adjoint's gradient and BFGS.
+//! The descent of output error by the adjoint's gradient and BFGS.
 
 use nalgebra::{DMatrix, DVector};
 
-use super::descent::{Descent, Update};
-use crate::estimate::answer::{Ending, Solution, answer};
+use super::optimiser::{Optimiser, Update};
+use crate::estimate::descent::Descent;
 use crate::estimate::descent::iterate::Iterate;
 use crate::estimate::descent::step::Newton;
 use crate::estimate::descent::stopped::Stopped;
@@ -48,21 +48,23 @@ fn inverse(information: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     Spectrum::of(information, &information.diagonal()).map(|spectrum| spectrum.inverse())
 }
 
+/// Goes down from a θ until there is a reason to stop.
+///
 /// # Errors
-/// The start values give no cost, so that there is nothing to begin with.
-pub(crate) fn solve(
-    problem: &Problem,
+/// This θ gives no cost.
+pub(crate) fn descend<'p>(
+    problem: &'p Problem,
     theta: Vec<f64>,
     scaling: Scaling,
     observer: &mut Observer<'_>,
-) -> Result<Solution, Unusable> {
+) -> Result<Descent<'p>, Unusable> {
     let unknowns = &problem.unknowns;
     let mut evaluator = Evaluator::new(problem);
     let mut adjoint = CostAndGradient::new(problem);
     let (cost, gradient) = adjoint.at(&theta)?;
     let (inverse_hessian, unscaled) = initial_inverse(&mut evaluator, scaling, &theta)?;
     let bounds = (0..unknowns.len()).map(|i| (unknowns.at(i).lower, unknowns.at(i).upper));
-    let mut descent = Descent::new(
+    let mut optimiser = Optimiser::new(
         (theta, cost, gradient),
         bounds.unzip(),
         inverse_hessian,
@@ -70,21 +72,21 @@ pub(crate) fn solve(
         Update::Bfgs,
     );
     let (mut iteration, mut restarts) = (0, 0);
-    let first = report(problem, &mut adjoint, &descent, 0, 0.0)?;
+    let first = report(problem, &mut adjoint, &optimiser, 0, 0.0)?;
     let mut told_to_stop = observer(&first).is_break();
     let (stopped, last) = loop {
         let out_of_budget = iteration == problem.options.max_iterations;
-        let at_end = descent.distance() < problem.options.tolerance;
+        let at_end = optimiser.distance() < problem.options.tolerance;
         if !(told_to_stop || out_of_budget || at_end)
-            && let Ok(moved) = descent.step(&mut |theta: &[f64]| adjoint.at(theta).ok())
+            && let Ok(moved) = optimiser.step(&mut |theta: &[f64]| adjoint.at(theta).ok())
         {
             iteration += 1;
-            let report = report(problem, &mut adjoint, &descent, iteration, moved.length)?;
+            let report = report(problem, &mut adjoint, &optimiser, iteration, moved.length)?;
             told_to_stop = observer(&report).is_break();
             continue;
         }
         // the Hessian gathered so far may be wrong: look at the information matrix itself
-        let last = Iterate::at(problem, &mut evaluator, descent.theta.clone())?;
+        let last = Iterate::at(problem, &mut evaluator, optimiser.theta.clone())?;
         let Some(distance) = last.newton.as_ref().map(Newton::distance) else {
             break (Stopped::NoDirection, last);
         };
@@ -98,7 +100,7 @@ pub(crate) fn solve(
             break (Stopped::Budget { distance }, last);
         }
         match inverse(&last.information) {
-            Some(inverse) if restarts < MOST_RESTARTS => descent.restart(inverse),
+            Some(inverse) if restarts < MOST_RESTARTS => optimiser.restart(inverse),
             _ => break (Stopped::Stalled { distance }, last),
         }
         restarts += 1;
@@ -106,24 +108,19 @@ pub(crate) fn solve(
     evaluator.evaluations += adjoint.gradients;
     // a way forward that was kept serves more than one way back
     evaluator.simulations += adjoint.simulations.saturating_sub(adjoint.gradients);
-    let ending = Ending {
-        stopped,
+    Ok(Descent {
+        evaluator,
+        first_information: None,
+        last,
         iterations: iteration,
-        before: None,
-        at: &last,
-    };
-    let mut solution = answer(problem, ending, &mut evaluator);
-    solution
-        .estimate
-        .reason
-        .push_str(" (gradients by the adjoint; error bounds by forward sensitivities at the end)");
-    Ok(solution)
+        stopped,
+    })
 }
 
 fn report(
     problem: &Problem,
     adjoint: &mut CostAndGradient<'_>,
-    at: &Descent,
+    at: &Optimiser,
     number: usize,
     step: f64,
 ) -> Result<Iteration, Unusable> {

@@ -27,11 +27,12 @@ use nalgebra::DVector;
 use crate::estimate::descent::gauss_newton::descend;
 use crate::estimate::descent::step::{Newton, advanced, held};
 use crate::estimate::evaluation::evaluator::Evaluator;
+use crate::estimate::likelihood::constants::cost_of_constants;
 use crate::estimate::likelihood::weighting::Weighting;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
+use crate::estimate::report::progress::unobserved;
 use crate::estimate::report::start::{StartKind, StartReport};
-use crate::estimate::start::found::{Start, cost, cost_of_constants, unobserved};
 use beginning::beginning;
 use elimination::eliminate;
 use intervals::{Cut, Nodes};
@@ -65,6 +66,14 @@ const RUN_AWAY: f64 = 1e4;
 /// Told of each step; may stop.
 pub(crate) type Told<'o> = dyn FnMut(&StartReport) -> ControlFlow<()> + 'o;
 
+/// Where shooting led.
+pub(crate) struct Shot {
+    /// SI, within bounds.
+    pub theta: Vec<f64>,
+    /// Somebody asked to stop on the way.
+    pub stopped: bool,
+}
+
 /// A start for output error, from a θ that need not be good for a simulation.
 ///
 /// # Errors
@@ -74,7 +83,7 @@ pub(crate) fn multiple_shooting(
     theta: Vec<f64>,
     interval: f64,
     told: &mut Told<'_>,
-) -> Result<Start, Unusable> {
+) -> Result<Shot, Unusable> {
     let constants = cost_of_constants(problem).unwrap_or(f64::INFINITY);
     let mut best: Option<Closed> = None;
     let mut stopped = false;
@@ -96,10 +105,9 @@ pub(crate) fn multiple_shooting(
         }
     }
     let best = best.ok_or(Unusable::NotFinite)?;
-    Ok(Start {
+    Ok(Shot {
         theta: best.theta,
         stopped,
-        may_shoot: false,
     })
 }
 
@@ -216,7 +224,7 @@ fn close(
                 break;
             }
         }
-        let whole = cost(&mut evaluator, &point.theta).unwrap_or(f64::INFINITY);
+        let whole = evaluator.cost(&point.theta).unwrap_or(f64::INFINITY);
         let closed = whole < point.weighting.cost + CLOSED;
         if closed || constants.is_some_and(|constants| whole < constants) {
             descents += 1;
@@ -234,7 +242,7 @@ fn close(
         penalty *= PENALTY_GROWTH;
     }
     let (cost, theta) = best.unwrap_or_else(|| {
-        let cost = cost(&mut Evaluator::new(problem), &point.theta);
+        let cost = Evaluator::new(problem).cost(&point.theta);
         (cost.unwrap_or(f64::INFINITY), point.theta)
     });
     Closed {

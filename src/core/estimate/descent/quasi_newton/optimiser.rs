@@ -43,7 +43,7 @@ const LEAST_CURVATURE: f64 = 1e-10;
 
 /// An iterate, and the idea of the Hessian that goes with it.
 #[derive(Clone, Debug)]
-pub struct Descent {
+pub struct Optimiser {
     pub theta: Vec<f64>,
     pub cost: f64,
     pub gradient: DVector<f64>,
@@ -57,7 +57,7 @@ pub struct Descent {
     last: f64,
 }
 
-impl Descent {
+impl Optimiser {
     /// `inverse` is the first idea of the inverse Hessian. Where only its shape is known (`unscaled`), the
     /// first step goes a tenth of it, and its scale is taken from what that shows (Nocedal, Wright, eq. 6.20).
     pub fn new(
