@@ -6,15 +6,14 @@ use super::case::{Case, Unfit};
 use super::colour::Colour;
 use super::difference::difference;
 use super::fitted::Fitted;
-use super::found::Found;
+use super::found::{Accepted, Found};
 use super::report::{
     Diagnosis, EffectParameter, FitChange, NamedEffect, ParameterChange, Refusal, Verdict,
 };
 use super::residual::analyse;
-use super::round::Accepted;
 use super::screen::Screen;
+use super::sentence;
 use super::stack::Layout;
-use super::{Conclusion, sentence};
 use crate::estimate::{
     Estimate, OutputFit, ParameterEstimate, Problem, Role, Solution, TimeHistory, estimate,
     five_digits, predict,
@@ -30,6 +29,14 @@ const UNLIKELY: f64 = 0.01;
 
 /// Fewer samples than this for each free parameter decide nothing.
 const LEAST_SAMPLES: usize = 5;
+
+/// Everything that a diagnosis comes to.
+pub struct Conclusion {
+    pub diagnosis: Diagnosis,
+    /// Of the model with the effects in it.
+    pub estimate: Estimate,
+    pub histories: Vec<TimeHistory>,
+}
 
 /// `fitted` are the time histories of the declared model on the flights that it was fitted to.
 pub(super) fn answer(

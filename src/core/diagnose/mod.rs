@@ -30,6 +30,7 @@ mod stack;
 mod terms;
 mod trial;
 
+pub use answer::Conclusion;
 pub use case::{Case, Unfit};
 pub use catalogue::candidates;
 pub use difference::difference;
@@ -44,21 +45,13 @@ pub use round::Watcher;
 
 use answer::answer;
 use fitted::Fitted;
-use found::Found;
-use round::{Accepted, cost_of_removal, round};
+use found::{Accepted, Found};
+use round::{cost_of_removal, round};
 
-use crate::estimate::{Estimate, TimeHistory, estimate};
+use crate::estimate::{TimeHistory, estimate};
 
 /// Rounds, and so effects, at most: who lacks more than these has another model.
 const MOST_ROUNDS: usize = 4;
-
-/// Everything that a diagnosis comes to.
-pub struct Conclusion {
-    pub diagnosis: Diagnosis,
-    /// Of the model with the effects in it.
-    pub estimate: Estimate,
-    pub histories: Vec<TimeHistory>,
-}
 
 /// Why there is no conclusion.
 #[derive(Debug)]
