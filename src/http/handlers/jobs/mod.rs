@@ -2,12 +2,11 @@
 
 pub(super) mod bulk;
 pub(super) mod coefficients;
-pub(super) mod diagnosis;
 pub(super) mod events;
+pub(super) mod findings;
 pub(super) mod histories;
 pub(crate) mod job;
 pub(super) mod rerun;
 pub(super) mod residual_analysis;
 pub(crate) mod results;
-pub(super) mod study;
 pub(super) mod submit;
