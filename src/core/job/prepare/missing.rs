@@ -1,8 +1,7 @@
 //! Samples at which an output has no value: they do not count, and the job's log says how many they are.
 
-use super::Fault;
 use crate::estimate::{Noise, NoiseStructure, Options, Unknowns};
-use crate::flight::{Finding, Severity};
+use crate::flight::{Fault, Finding, Severity};
 use crate::model::{Jacobian, Model};
 use crate::simulate::Segment;
 

@@ -1,12 +1,11 @@
 //! What a filter-error job asks for beyond an output-error job, and what it cannot have.
 
-use super::Fault;
 use super::bounds::JOB_TOO_LARGE;
 use super::unknown_name::unknown_name;
 use crate::estimate::{
     Estimator, Noise, NoiseStructure, Options, Problem, Unknowns, process_noise_names,
 };
-use crate::flight::escape;
+use crate::flight::{Fault, escape};
 use crate::model::Model;
 use crate::simulate::{Segment, Steps};
 
@@ -116,13 +115,4 @@ pub(super) fn process_noise(problem: &Problem) -> Vec<String> {
         Estimator::FilterError => process_noise_names(problem),
         Estimator::OutputError | Estimator::EquationError => Vec::new(),
     }
-}
-
-/// Why the filter has no steady gain at the start values.
-pub(super) fn no_gain(problem: &Problem, segment: usize) -> Fault {
-    let message = format!(
-        "with the start values the Kalman filter has no steady gain in segment {}: some motion is not damped and no noise drives it, or no output shows it; give its states process noise, leave out what no output shows, or give other \"start\" values",
-        problem.segments[segment].label
-    );
-    Fault::new("/options/process_noise", "no_steady_gain", message)
 }

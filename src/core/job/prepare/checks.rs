@@ -1,10 +1,12 @@
 //! What a spec's options and names must be, beyond their types.
 
 use super::unknown_name::unknown_name;
-use super::{Fault, JobSpec, ModelSource};
 use crate::estimate::{
     Derivatives, Estimator, Noise, Options, Problem, Role, StartMethod, has_equation_error,
 };
+use crate::flight::Fault;
+use crate::job::no_start::no_measured_state;
+use crate::job::spec::{JobSpec, ModelSource};
 use crate::model::Model;
 
 /// Variances of noise that leave the likelihood a number.
@@ -121,13 +123,4 @@ pub(super) fn check_estimator(problem: &Problem) -> Result<(), Vec<Fault>> {
         return Err(vec![no_measured_state(problem)]);
     }
     Ok(())
-}
-
-pub(super) fn no_measured_state(problem: &Problem) -> Fault {
-    let pointer = match problem.options.estimator {
-        Estimator::EquationError => "/options/estimator",
-        Estimator::OutputError | Estimator::FilterError => "/options/start",
-    };
-    let message = "equation error needs an output that measures a state: its equation is the state, possibly with a bias, scale or drift parameter; add such an output, or choose another";
-    Fault::new(pointer, "no_measured_state", message)
 }

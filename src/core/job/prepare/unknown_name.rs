@@ -1,7 +1,6 @@
 //! A name in a spec that the model does not have.
 
-use super::Fault;
-use crate::flight::escape;
+use crate::flight::{Fault, escape};
 
 /// Names that are told of one kind: each comes with all that are known, and a spec has room for very many.
 const TOLD: usize = 20;

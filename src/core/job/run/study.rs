@@ -2,11 +2,13 @@
 
 use std::ops::ControlFlow;
 
-use super::Fault;
-use super::prepare::Plan;
-use super::run::{JobResult, no_start, run};
+use super::run;
 use crate::estimate::study::{self, Clock, NoStudy, StudyStep};
-use crate::estimate::{self, Derivatives, Outcome, Problem};
+use crate::estimate::{self, Outcome};
+use crate::flight::Fault;
+use crate::job::no_start::no_start;
+use crate::job::plan::Plan;
+use crate::job::result::JobResult;
 
 /// What a study tells as it goes.
 #[derive(Clone, Copy, Debug)]
@@ -46,26 +48,4 @@ pub fn run_study(
         }
     }
     Ok(result)
-}
-
-/// A study simulates very often: only what simulates fast is let in.
-pub(super) fn check(problem: &Problem) -> Result<(), Vec<Fault>> {
-    if !problem.model.delays.is_empty() {
-        let message = "only the technique \"forward_sensitivities\" knows delays, so there is nothing to compare; leave the delays out of the model";
-        return Err(vec![Fault::new("/model", "bad_option", message)]);
-    }
-    let central = Derivatives::CentralDifference { step: 1e-6 };
-    let operations = study::operations(problem, &central);
-    if operations <= study::MOST_OPERATIONS {
-        return Ok(());
-    }
-    let message = format!(
-        "a gradient by central differences takes {operations:e} operations here, at most {:e} are allowed for a study; choose \"rows\", or fix parameters",
-        study::MOST_OPERATIONS
-    );
-    Err(vec![Fault::new(
-        "/kind",
-        super::bounds::JOB_TOO_LARGE,
-        message,
-    )])
 }

@@ -1,62 +1,8 @@
-//! From a plan to a result: pure, synchronous, deterministic.
+//! Why an estimation cannot even begin, as faults of the spec.
 
-use std::ops::ControlFlow;
-
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
-
-use super::prepare::Plan;
-use super::{Fault, checks, filter};
-use crate::diagnose::Diagnosis;
-use crate::estimate::study::DerivativeStudy;
-use crate::estimate::{
-    Estimate, Outcome, Problem, Progress, Solution, TimeHistory, Unusable, estimate, predict,
-};
-use crate::model::ModelDocument;
+use crate::estimate::{Estimator, Problem, Unusable};
+use crate::flight::Fault;
 use crate::simulate::MOST_DELAY;
-
-/// Everything a finished job answers.
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
-pub struct JobResult {
-    pub estimate: Estimate,
-    pub model: ModelDocument,
-    pub histories: Vec<TimeHistory>,
-    /// Of a derivative study.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub study: Option<DerivativeStudy>,
-    /// Of a diagnosis.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub diagnosis: Option<Diagnosis>,
-}
-
-/// Runs a plan; `watcher` is told of its progress and may stop it.
-///
-/// # Errors
-/// The start values lead nowhere: there is no iterate to speak of.
-pub fn run(
-    plan: &Plan,
-    watcher: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
-) -> Result<JobResult, Vec<Fault>> {
-    let problem = &plan.problem;
-    let Solution {
-        estimate: mut result,
-        mut histories,
-    } = estimate(problem, watcher).map_err(|why| vec![no_start(problem, why)])?;
-    if result.outcome != Outcome::Cancelled {
-        for validation in &plan.validation {
-            let (prediction, history) = predict(problem, &result, validation);
-            result.prediction.push(prediction);
-            histories.extend(history);
-        }
-    }
-    Ok(JobResult {
-        estimate: result,
-        histories,
-        model: plan.model.clone(),
-        study: None,
-        diagnosis: None,
-    })
-}
 
 /// Why the start values lead nowhere.
 pub(super) fn no_start(problem: &Problem, why: Unusable) -> Fault {
@@ -75,7 +21,7 @@ pub(super) fn no_start(problem: &Problem, why: Unusable) -> Fault {
             let message = "with the start values an output or its derivative by a parameter is not a finite number at some sample (a root, logarithm, power or quotient at zero?); give other \"start\" values, or guard the expression with if(...)";
             Fault::new("/parameters", "diverged_at_start", message)
         }
-        Unusable::NoSteadyGain { segment } => filter::no_gain(problem, segment),
+        Unusable::NoSteadyGain { segment } => no_gain(problem, segment),
         Unusable::Delayed { segment, delay } => {
             let (model, delays) = (&problem.model, &problem.model.delays);
             let (what, name) = match delays.inputs.get(delay) {
@@ -95,6 +41,25 @@ pub(super) fn no_start(problem: &Problem, why: Unusable) -> Fault {
             let message = "the residuals of some outputs are not independent, so that their full covariance is singular; use the structure \"diagonal\", or leave one of these outputs out";
             Fault::new("/options/noise", "singular_noise", message)
         }
-        Unusable::NoMeasuredState => checks::no_measured_state(problem),
+        Unusable::NoMeasuredState => no_measured_state(problem),
     }
+}
+
+/// Why the filter has no steady gain at the start values.
+fn no_gain(problem: &Problem, segment: usize) -> Fault {
+    let message = format!(
+        "with the start values the Kalman filter has no steady gain in segment {}: some motion is not damped and no noise drives it, or no output shows it; give its states process noise, leave out what no output shows, or give other \"start\" values",
+        problem.segments[segment].label
+    );
+    Fault::new("/options/process_noise", "no_steady_gain", message)
+}
+
+/// Why equation error has no equation.
+pub(super) fn no_measured_state(problem: &Problem) -> Fault {
+    let pointer = match problem.options.estimator {
+        Estimator::EquationError => "/options/estimator",
+        Estimator::OutputError | Estimator::FilterError => "/options/start",
+    };
+    let message = "equation error needs an output that measures a state: its equation is the state, possibly with a bias, scale or drift parameter; add such an output, or choose another";
+    Fault::new(pointer, "no_measured_state", message)
 }

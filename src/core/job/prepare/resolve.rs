@@ -1,10 +1,10 @@
 //! How a model meets recordings: segments of inputs and measured outputs, made from channels.
 
 use std::ops::Range;
+use std::sync::Arc;
 
-use super::Fault;
-use super::spec::{Gaps, JobSpec, ManeuverUse};
-use crate::flight::{Dimension, Finding, Maneuver, Severity, escape};
+use crate::flight::{Dimension, Fault, Finding, Maneuver, Severity, escape};
+use crate::job::spec::{Gaps, JobSpec, ManeuverUse};
 use crate::model::{ChannelFormula, Model, Quantity, Recorded};
 use crate::simulate::{Segment, Steps};
 
@@ -34,7 +34,7 @@ impl Stretch<'_> {
 /// Cuts the maneuvers of a job into stretches without gaps.
 pub(super) fn stretches<'m>(
     spec: &JobSpec,
-    maneuvers: &[&'m Maneuver],
+    maneuvers: &'m [Arc<Maneuver>],
     findings: &mut Vec<Finding>,
     faults: &mut Vec<Fault>,
 ) -> Vec<Vec<Stretch<'m>>> {
@@ -205,15 +205,15 @@ pub(super) fn segment(
     index: usize,
     faults: &mut Vec<Fault>,
 ) -> Segment {
-    let mut make = |quantities: &[Quantity], role: Role| -> Vec<Vec<f64>> {
+    let mut make = |quantities: &[Quantity], side: Side| -> Vec<Vec<f64>> {
         quantities
             .iter()
-            .map(|quantity| samples(spec, quantity, role, stretch, index, faults))
+            .map(|quantity| samples(spec, quantity, side, stretch, index, faults))
             .collect()
     };
     Segment {
-        inputs: make(&model.inputs, Role::Input),
-        measured: make(&model.outputs, Role::Output),
+        inputs: make(&model.inputs, Side::Input),
+        measured: make(&model.outputs, Side::Output),
         label: stretch.label.clone(),
         time: stretch.time().to_vec(),
         steps: stretch.steps.clone(),
@@ -222,12 +222,12 @@ pub(super) fn segment(
 
 /// What a channel is to the model.
 #[derive(Clone, Copy, PartialEq)]
-enum Role {
+enum Side {
     Input,
     Output,
 }
 
-impl Role {
+impl Side {
     fn name(self) -> &'static str {
         match self {
             Self::Input => "input",
@@ -240,7 +240,7 @@ impl Role {
 fn samples(
     spec: &JobSpec,
     quantity: &Quantity,
-    role: Role,
+    side: Side,
     stretch: &Stretch<'_>,
     index: usize,
     faults: &mut Vec<Fault>,
@@ -270,7 +270,7 @@ fn samples(
         Err(error) if mapped.is_none() => {
             let message = format!(
                 "no channel '{name}' is recorded for the model's {}; say how to make it, as \"channels\": {{\"{name}\": \"<formula>\"}}; recorded are {}",
-                role.name(),
+                side.name(),
                 stretch.names().join(", ")
             );
             return fault(error.code(), message);
@@ -279,14 +279,14 @@ fn samples(
         Ok(Some(found)) if found != wanted => {
             let message = format!(
                 "'{text}' is in {found}, the model's {} '{name}' in {wanted}; correct the unit in the recording's header, or the formula",
-                role.name()
+                side.name()
             );
             return fault("unit_mismatch", message);
         }
         Ok(_) => {}
     }
     let mut values = formula.samples(stretch).unwrap_or_default();
-    if role == Role::Output {
+    if side == Side::Output {
         let missing = values.iter_mut().filter(|value| !value.is_finite());
         missing.for_each(|value| *value = f64::NAN);
         return values;

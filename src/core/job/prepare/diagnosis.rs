@@ -1,16 +1,12 @@
-//! A diagnosis: what the model of a job lacks.
+//! What a diagnosis asks for beyond an estimation, and what it is made from.
 
-use std::ops::ControlFlow;
-
-use super::Fault;
 use super::bounds::JOB_TOO_LARGE;
 use super::checks::{MOST_EDITS, too_many_edits};
-use super::prepare::Plan;
 use super::resolve::Stretch;
-use super::run::JobResult;
-use super::spec::JobSpec;
-use crate::diagnose::{Case, Effect, Flight, Inconclusive, Step, diagnose};
-use crate::estimate::{Derivatives, Estimator, Outcome, Problem, Role};
+use crate::diagnose::{Case, Effect, Flight};
+use crate::estimate::{Derivatives, Estimator, Problem, Role};
+use crate::flight::Fault;
+use crate::job::spec::JobSpec;
 use crate::model::{Model, ModelDocument, Recorded, expression};
 use crate::simulate::Segment;
 
@@ -118,42 +114,4 @@ pub(super) fn case(
             .map(|candidate| Effect::own(&candidate.name, candidate.edits.clone()))
             .collect(),
     })
-}
-
-/// Runs the plan of a diagnosis; `watcher` is told of its steps and may stop it.
-///
-/// # Errors
-/// The declared model cannot be fitted.
-pub fn run_diagnosis(
-    plan: &Plan,
-    watcher: &mut dyn FnMut(Option<&Step>) -> ControlFlow<()>,
-) -> Result<JobResult, Vec<Fault>> {
-    let Some(case) = &plan.case else {
-        let message = "the job was not prepared as a diagnosis";
-        return Err(vec![Fault::new("/kind", "bad_option", message)]);
-    };
-    match diagnose(case, watcher) {
-        Ok(conclusion) => Ok(JobResult {
-            estimate: conclusion.estimate,
-            model: conclusion.diagnosis.model.clone(),
-            histories: conclusion.histories,
-            study: None,
-            diagnosis: Some(conclusion.diagnosis),
-        }),
-        Err(Inconclusive::Unfit(why)) => Err(vec![Fault::new(
-            "/parameters",
-            "diverged_at_start",
-            why.to_string(),
-        )]),
-        // what there is so far is where the declared model starts from
-        Err(Inconclusive::Stopped) => {
-            let mut result = super::run(plan, &mut |_| ControlFlow::Break(()))?;
-            result.estimate.outcome = Outcome::Cancelled;
-            result.estimate.reason = format!(
-                "the diagnosis was stopped on request; of the declared model: {}",
-                result.estimate.reason
-            );
-            Ok(result)
-        }
-    }
 }

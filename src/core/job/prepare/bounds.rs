@@ -2,9 +2,9 @@
 
 use std::collections::HashSet;
 
-use super::Fault;
 use super::resolve::Stretch;
 use crate::estimate::{Noise, NoiseStructure, Options, Unknowns};
+use crate::flight::Fault;
 use crate::model::Model;
 use crate::simulate::Segment;
 
@@ -19,8 +19,12 @@ const MOST_ENTRIES: usize = 50_000_000;
 
 pub(super) const JOB_TOO_LARGE: &str = "job_too_large";
 
-/// Checks what is to be made of the recordings, by maneuver and stretch.
-pub(super) fn check_data(model: &Model, stretches: &[Vec<Stretch<'_>>], faults: &mut Vec<Fault>) {
+/// Checks what is to be made of the recordings, by maneuver and stretch. What is too much altogether is not looked into.
+pub(super) fn check_data(
+    model: &Model,
+    stretches: &[Vec<Stretch<'_>>],
+    faults: &mut Vec<Fault>,
+) -> Result<(), Vec<Fault>> {
     let all = || stretches.iter().flatten();
     let segments = all().count();
     if segments > MOST_SEGMENTS {
@@ -67,6 +71,10 @@ pub(super) fn check_data(model: &Model, stretches: &[Vec<Stretch<'_>>], faults: 
             }
         }
     }
+    if faults.iter().any(|fault| fault.code == JOB_TOO_LARGE) {
+        return Err(std::mem::take(faults));
+    }
+    Ok(())
 }
 
 /// Checks that there is something to estimate, that the data can carry it, and that it fits into memory.
