@@ -1,109 +1,16 @@
-//! Effects in a scenario: what acts on the aircraft and its sensors and is not in the scenario's model.
+//! What the effects of a scenario make of its model, and of what is recorded.
 
 use indexmap::IndexMap;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use serde::{Deserialize, Serialize};
 
-use super::input_design::InputDesign;
-use super::scenario::{Scenario, ScenarioError, unit_like};
-use crate::flight::{Channel, Dimension, Maneuver};
-use crate::model::{Added, Edit, EditKind, Model, ModelDocument, Recorded};
-
-/// One effect, by the words of the catalogue. Either an edit of the model, or of the data:
-///
-/// ```toml
-/// [[effects]]
-/// kind = "sensor_position"
-/// target = "alpha"
-/// term = "x"
-/// value = 3.2                       # of the first parameter that is added, in its unit
-///
-/// [[effects]]
-/// kind = "unsteady_aero"
-/// target = "q"
-/// term = "alpha"
-/// values = { q_unsteady = -2.0, q_unsteady_time = 0.3 }
-///
-/// [[effects]]
-/// kind = "sensor_outliers"          # shares of the samples; the size of a spike in the channel's unit
-/// target = "q"
-/// values = { spikes = 0.01, size = 5.0, dropouts = 0.005, stuck = 0.02, stuck_samples = 10 }
-///
-/// [[effects]]
-/// kind = "process_noise"            # as the scenario's process_noise
-/// target = "alpha"
-/// value = 0.01
-/// ```
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ScenarioEffect {
-    pub kind: String,
-    pub target: String,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub term: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub parameter: Option<String>,
-    /// As of an [`Edit`].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub unit: Option<String>,
-    /// Of the first parameter that is added; the share of spikes, or the intensity of process noise.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub value: Option<f64>,
-    /// Of the parameters that are added, by name, in their own units. Those left out have their start value.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
-    pub values: IndexMap<String, f64>,
-}
+use super::document::{Scenario, ScenarioError};
+use super::effect::ScenarioEffect;
+use crate::flight::Channel;
+use crate::model::{Added, EditKind, Model, ModelDocument};
 
 const OUTLIERS: &str = "sensor_outliers";
 const PROCESS_NOISE: &str = "process_noise";
-
-impl From<&Edit> for ScenarioEffect {
-    fn from(edit: &Edit) -> Self {
-        Self {
-            kind: edit.kind.name().to_string(),
-            target: edit.target.clone(),
-            term: edit.term.clone(),
-            parameter: edit.parameter.clone(),
-            unit: edit.unit.clone(),
-            value: None,
-            values: IndexMap::new(),
-        }
-    }
-}
-
-impl ScenarioEffect {
-    /// Reads `kind:target=value` or `kind:target:term=value`.
-    ///
-    /// # Errors
-    /// The text is not of this form.
-    pub fn parse(text: &str) -> Result<Self, String> {
-        let unfit = || format!("'{text}' is not kind:target=value or kind:target:term=value");
-        let (what, value) = text.rsplit_once('=').ok_or_else(unfit)?;
-        let value: f64 = value.trim().parse().map_err(|_| unfit())?;
-        let mut parts = what.splitn(3, ':').map(str::to_string);
-        Ok(Self {
-            kind: parts.next().ok_or_else(unfit)?,
-            target: parts.next().ok_or_else(unfit)?,
-            term: parts.next(),
-            parameter: None,
-            unit: None,
-            value: Some(value),
-            values: IndexMap::new(),
-        })
-    }
-
-    /// The edit that it is, if it is one.
-    pub fn edit(&self) -> Option<Edit> {
-        EditKind::find(&self.kind).map(|kind| Edit {
-            kind,
-            target: self.target.clone(),
-            term: self.term.clone(),
-            parameter: self.parameter.clone(),
-            unit: self.unit.clone(),
-        })
-    }
-}
 
 /// A scenario with its effects in the model, and what is left of them to be done to the data.
 pub(super) struct Affected<'s> {
@@ -253,71 +160,4 @@ fn outliers(
         }
     }
     Ok(())
-}
-
-/// The designed inputs as a recording, for parameters that are read off one.
-pub(super) struct Designed<'m> {
-    pub model: &'m Model,
-    pub time: Vec<f64>,
-    pub inputs: &'m [Vec<f64>],
-}
-
-impl Recorded for Designed<'_> {
-    fn time(&self) -> &[f64] {
-        &self.time
-    }
-
-    fn channel(&self, name: &str) -> Option<(&[f64], Dimension)> {
-        let place = (self.model.inputs.iter()).position(|input| input.name == name)?;
-        Some((&self.inputs[place], self.model.inputs[place].unit.dimension))
-    }
-
-    fn names(&self) -> Vec<String> {
-        (self.model.inputs.iter())
-            .map(|input| input.name.clone())
-            .collect()
-    }
-}
-
-impl Scenario {
-    /// Reads the inputs whose design is `recorded` in a file: `read` gives the recording of a path. Times count from
-    /// its first sample, values are taken over into the unit of the input.
-    ///
-    /// # Errors
-    /// A file that cannot be read, or a channel or unit that is not in it.
-    pub fn read_recorded(
-        &mut self,
-        mut read: impl FnMut(&str) -> Result<Maneuver, String>,
-    ) -> Result<(), ScenarioError> {
-        for (name, input) in &mut self.inputs {
-            let unfit = |message: String| ScenarioError::Unfit {
-                what: format!("inputs.{name}.design"),
-                message,
-            };
-            let InputDesign::Recorded {
-                file: Some(file),
-                channel,
-                time,
-                values,
-            } = &mut input.design
-            else {
-                continue;
-            };
-            let maneuver = read(file).map_err(unfit)?;
-            let channel = channel.as_ref().unwrap_or(name);
-            let Some(recorded) = maneuver.channels().get(channel) else {
-                let known: Vec<_> = maneuver.channels().keys().map(String::as_str).collect();
-                let known = known.join(", ");
-                return Err(unfit(format!("{file} has no '{channel}'; it has {known}")));
-            };
-            let unit = unit_like(&input.unit, recorded.unit, &format!("inputs.{name}.unit"))?;
-            let begin = maneuver.time()[0];
-            let samples = maneuver.time().iter().zip(&recorded.values);
-            (*time, *values) = samples
-                .filter(|(_, value)| value.is_finite())
-                .map(|(t, value)| (t - begin, unit.from_si(*value)))
-                .unzip();
-        }
-        Ok(())
-    }
 }
