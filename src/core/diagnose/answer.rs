@@ -38,14 +38,6 @@ const UNLIKELY: f64 = 0.01;
 /// Fewer samples than this for each free parameter decide nothing.
 const LEAST_SAMPLES: usize = 5;
 
-/// Everything that a diagnosis comes to.
-pub struct Conclusion {
-    pub diagnosis: Diagnosis,
-    /// Of the model with the effects in it.
-    pub estimate: Estimate,
-    pub histories: Vec<TimeHistory>,
-}
-
 /// `fitted` are the time histories of the declared model on the flights that it was fitted to.
 pub(super) fn answer(
     case: &Case,
