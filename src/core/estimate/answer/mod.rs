@@ -18,7 +18,9 @@ use crate::estimate::report::parameter::{Bound, ParameterEstimate};
 
 /// The estimate, and the time histories that go with it.
 pub struct Solution {
+    /// Parameters, error bounds and fit.
     pub estimate: Estimate,
+    /// Measured and modelled outputs of each segment.
     pub histories: Vec<TimeHistory>,
 }
 

@@ -3,7 +3,7 @@
 use crate::model::scalar::BLOCK;
 
 /// Some steps to take, and where the states go.
-pub struct Stretch<'a> {
+pub(crate) struct Stretch<'a> {
     /// By stage: its weight, and how far the next one goes, as shares of the step.
     pub stages: &'a [[f64; 2]],
     /// Length of each step, s: at most as many as there are samples in a block.
