@@ -7,7 +7,8 @@ use sqlx::Row;
 use sqlx::any::AnyRow;
 
 use super::page::one_more;
-use super::{BadCursor, Page, Project, StoreError, columns, off_reactor};
+use super::reactor::off_reactor;
+use super::{BadCursor, Page, Project, StoreError, columns};
 use crate::flight::{Channel, Maneuver, Unit};
 
 /// A maneuver without its data.

@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 use sqlx::{AnyConnection, Row};
 use uuid::Uuid;
 
-use super::{Project, StoreError, columns, off_reactor};
+use super::reactor::off_reactor;
+use super::{Project, StoreError, columns};
 use crate::estimate::{OutputSeries, Role, Series, TimeHistory};
 use crate::job::{JobResult, Maker};
 
