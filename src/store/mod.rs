@@ -49,7 +49,7 @@ pub use jobs::{CancelReply, JobFilter, JobRecord, NewJob};
 pub use keys::{Key, KeyRecord, NewKey, Scope, Shown};
 pub use lease::{Claim, LEASE, MOST_LOST_WORKERS};
 pub use log::StoredEvent;
-pub use maneuvers::{ManeuverRecord, Uploaded};
+pub use maneuvers::{ManeuverRecord, NotLoaded, Uploaded};
 pub use mappings::MappingRecord;
 pub use models::ModelRecord;
 pub use page::{BadCursor, Page};
