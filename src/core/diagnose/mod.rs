@@ -26,6 +26,7 @@ mod rival;
 mod round;
 mod screen;
 mod sentence;
+mod size;
 mod stack;
 mod terms;
 mod trial;
@@ -112,7 +113,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
             round: number,
             name: accepted.effect.name(),
             likelihood_ratio: accepted.evidence.likelihood_ratio,
-            sentence: sentence::of(&accepted.effect, &accepted.added, &accepted.fitted.estimate),
+            sentence: sentence::of(&accepted.effect, &accepted.fitted.sizes(&accepted.added)),
         };
         let last = accepted.effect.is_noise();
         let calm = std::mem::replace(&mut base, accepted.fitted.clone());
@@ -153,12 +154,7 @@ fn declared(
     if stopped {
         return Err(Inconclusive::Stopped);
     }
-    let fitted = Fitted::of(
-        case.document.clone(),
-        problem,
-        solution.estimate,
-        &solution.histories,
-    );
+    let fitted = Fitted::of(case.document.clone(), problem, &solution);
     Ok((fitted, solution.histories))
 }
 
@@ -173,7 +169,7 @@ fn remove_needless(case: &Case, declared: &Fitted, base: &mut Fitted, found: &mu
             });
         let removal = without.ok().and_then(|without| {
             Some((
-                cost_of_removal(case, base, without.clone(), &base.values)?,
+                cost_of_removal(case, base, without.clone(), &base.values())?,
                 without,
             ))
         });
@@ -186,7 +182,7 @@ fn remove_needless(case: &Case, declared: &Fitted, base: &mut Fitted, found: &mu
         }
         match removal {
             Some((cost, without)) if cost < evidence.threshold => {
-                let Ok(fitted) = Fitted::trial(case, without, &base.values) else {
+                let Ok(fitted) = Fitted::trial(case, without, &base.values()) else {
                     at += 1;
                     continue;
                 };

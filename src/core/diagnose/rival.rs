@@ -220,7 +220,7 @@ impl<'c> Rival<'c> {
         }
         let document = trial.fitted.document.clone();
         // where output error comes to nothing it speaks neither for nor against
-        Fitted::trial(self.case, document, &trial.fitted.values)
+        Fitted::trial(self.case, document, &trial.fitted.values())
             .map(|settled| settled.at_bound(self.base))
             .unwrap_or_default()
     }
@@ -243,7 +243,7 @@ impl<'c> Rival<'c> {
         let colour = Colour::of_orders(&layout, &trial.fitted.residual, self.orders);
         let screen = Screen::new(self.case, &trial.fitted, &colour)?;
         let folds = screen.pulls(&info.name)?;
-        let size = trial.fitted.values.get(&(info.name.clone(), None))?;
+        let size = *trial.fitted.values().get(&(info.name.clone(), None))?;
         let chi_squared: f64 = folds
             .iter()
             .map(|(pull, error)| (pull / error).powi(2))

@@ -102,7 +102,7 @@ impl<'c> Screen<'c> {
         free.dedup();
         free.sort_unstable();
         free.dedup();
-        let declared = sensitivities(&base.problem, &layout, &base.theta(), &free)?;
+        let declared = sensitivities(&base.problem, &layout, &base.theta, &free)?;
         let metric = |colour: Colour, orders: Vec<usize>| {
             let whiten = |column: &Vec<f64>| colour.whiten(&layout, &base.residual, column);
             let declared = Basis::of(declared.iter().map(whiten));
@@ -312,16 +312,16 @@ impl<'c> Screen<'c> {
             .collect();
         free.sort_unstable();
         free.dedup();
-        let theta = self.base.theta();
+        let theta = &self.base.theta;
         let metric = self.metrics.first()?;
         let whiten = |column: &Vec<f64>| {
             metric
                 .colour
                 .whiten(&self.layout, &self.base.residual, column)
         };
-        let others = sensitivities(problem, &self.layout, &theta, &free)?;
+        let others = sensitivities(problem, &self.layout, theta, &free)?;
         let others = Basis::of(others.iter().map(whiten));
-        let own = sensitivities(problem, &self.layout, &theta, &[index])?;
+        let own = sensitivities(problem, &self.layout, theta, &[index])?;
         let [own] = own.as_slice() else { return None };
         let mut clear = whiten(own);
         others.remove_from(&mut clear);
