@@ -170,7 +170,7 @@ fn edited(spec: &JobSpec, declared: &ModelDocument, faults: &mut Vec<Fault>) -> 
     let mut document = declared.clone();
     for (i, edit) in spec.edits.iter().enumerate().take(checks::MOST_EDITS) {
         match edit.apply(&document) {
-            Ok(edited) => document = edited,
+            Ok(edited) => document = edited.document,
             Err(error) => faults.push(Fault::new(
                 format!("/edits/{i}"),
                 error.code(),

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::input_design::InputDesign;
 use super::scenario::{Scenario, ScenarioError, unit_like};
 use crate::flight::{Channel, Dimension, Maneuver};
-use crate::model::{Added, Edit, EditKind, Model, ModelDocument, Recorded};
+use crate::model::{Edit, EditKind, Model, ModelDocument, Recorded};
 
 /// One effect, by the words of the catalogue. Either an edit of the model, or of the data:
 ///
@@ -135,7 +135,7 @@ impl<'s> Affected<'s> {
             };
             if let Some(edit) = effect.edit() {
                 let edited = (edit.apply(&affected.document)).map_err(|e| unfit(e.to_string()))?;
-                let added = Added::between(&affected.document, &edited).parameters;
+                let added: Vec<String> = edited.added.into_iter().map(|added| added.name).collect();
                 if let Some(name) = effect.values.keys().find(|name| !added.contains(name)) {
                     let known = added.join(", ");
                     return Err(unfit(format!("it adds no '{name}'; it adds {known}")));
@@ -148,7 +148,7 @@ impl<'s> Affected<'s> {
                     .map(|(name, value)| (name.clone(), *value));
                 affected.scenario.truth.extend(values);
                 affected.added.extend(added);
-                affected.document = edited;
+                affected.document = edited.document;
             } else if effect.kind == OUTLIERS {
                 affected.outliers.push((i, effect));
             } else if effect.kind == PROCESS_NOISE {
