@@ -10,7 +10,7 @@ use super::stack::Layout;
 use crate::estimate::{
     Bound, ErrorBoundsKind, Estimate, Outcome, Problem, Role, Solution, output_error, predict,
 };
-use crate::model::ModelDocument;
+use crate::model::{Added, ModelDocument};
 
 /// A model and its fit to the estimation flights.
 #[derive(Clone, Debug)]
@@ -20,7 +20,7 @@ pub(super) struct Fitted {
     /// SI.
     pub theta: Vec<f64>,
     /// By place of θ: the bound at which it stands.
-    pub at_bound: Vec<Option<Bound>>,
+    pub bounds: Vec<Option<Bound>>,
     /// R.
     pub covariance: DMatrix<f64>,
     /// What the estimation answered; θ may have moved since, see [`Self::polished`].
@@ -76,7 +76,7 @@ impl Fitted {
         let unknowns = &problem.unknowns;
         let at_bound = |place: usize| solution.row(unknowns, place).at_bound;
         Self {
-            at_bound: (0..unknowns.len()).map(at_bound).collect(),
+            bounds: (0..unknowns.len()).map(at_bound).collect(),
             residual: Layout::of(&problem).residual(&solution.histories),
             theta: solution.theta.clone(),
             covariance: solution.covariance.clone(),
@@ -98,14 +98,13 @@ impl Fitted {
         values
     }
 
-    /// Names of the parameters added that stand at a bound of their range.
-    pub(super) fn at_bound(&self, base: &Self) -> Vec<(String, Bound)> {
-        let declared = &base.problem.model.parameters;
-        let names = (0..self.theta.len()).map(|place| &self.problem.parameter(place).name);
-        (names.zip(&self.at_bound))
-            .filter(|(name, _)| !declared.iter().any(|info| info.name == **name))
-            .filter_map(|(name, bound)| Some((name.clone(), (*bound)?)))
-            .collect()
+    /// Those of the parameters added that stand at a bound of their range.
+    pub(super) fn at_bound<'a>(&self, added: &'a [Added]) -> Vec<&'a Added> {
+        let is_at_bound = |added: &&Added| {
+            let names = (0..self.theta.len()).map(|place| &self.problem.parameter(place).name);
+            (names.zip(&self.bounds)).any(|(name, bound)| *name == added.name && bound.is_some())
+        };
+        added.iter().filter(is_at_bound).collect()
     }
 
     /// ln L of its residuals by output, with noise of given orders.
