@@ -2,6 +2,8 @@
 //!
 //! By the Standard Webhooks specification, version 1: a thin JSON message, signed, with an id by which the receiver knows a
 //! repetition, tried again over a day and a half. What is owed is in the store; any process may pay it.
+//!
+//! Invariant: nothing is sent to an address inside the network unless that was allowed.
 
 mod address;
 mod send;

@@ -216,7 +216,9 @@ fn settle(answered: Result<Answer, Unanswered>, told: Told, asked: Option<Reason
         },
         Err(Unanswered::Refused(faults)) => Ending {
             told,
-            ..Ending::without_result(EventBody::Failed { faults })
+            ..Ending::without_result(EventBody::Failed {
+                faults: faults.into(),
+            })
         },
         Err(Unanswered::Store(error)) => failed("store", &error),
         Err(Unanswered::Panicked(text)) => Ending {
