@@ -21,13 +21,14 @@
 //! 1. `src/core/model/edit/mod.rs`: a variant of `EditKind` whose doc comment is its formula; in `ALL`, `name` and
 //!    `Edit::apply`. What `target` and `term` mean for it goes into the doc comments of `Edit`.
 //! 2. Beside it, in the file of its subject (`sensors.rs`, `inputs.rs`, `dynamics.rs`, `wind.rs`, ...): a function over the
-//!    `Sheet`, which looks the target up, chooses a free name, substitutes, and adds the parameters with unit, start and
-//!    physical range.
+//!    `Sheet`, which looks the target up, chooses a free name, substitutes, and adds the parameters, each
+//!    with what it is for (`AddedRole`), unit, start and physical range.
 //! 3. `src/core/diagnose/catalogue.rs`: for which targets it is a candidate; `sentence.rs` beside it: its words.
 //! 4. `tests/numbers/effects.rs`: a row of `cases` (without effect the same outputs, with effect others), and in
 //!    `effects_go_the_right_way` that they change the way they should.
 //!    `cargo test -p trimtab-core --test numbers effects::`.
-//! 5. The list of kinds in `README.md`, and the API document (last line of "Add an endpoint").
+//! 5. `tests/bench/confusion/strength.rs`: a first guess of its size. The list of kinds in `README.md`, and the API document
+//!    (last line of "Add an endpoint").
 //!
 //! **Add a model to the catalog.**
 //! 1. `src/core/model/catalog/<name>.toml`: the document; `source` names paper and equation (eq.).
@@ -39,8 +40,9 @@
 //! **Add a reader of a file format.**
 //! 1. `src/core/ingest/<format>.rs`: `read(bytes, limits)`, for a format that says names and units itself, after
 //!    `json.rs`; `read(bytes, mapping, limits)`, for one that does not, after `ascii.rs`. Count before you build (`Limits`),
-//!    then hand columns to `assemble` or a table to `Mapping::apply`. A fault names its place and the remedy; its code is a
-//!    row of `code` in `fault.rs`.
+//!    then make a `Recording` (`recording.rs`: columns by name with units) and call its `into_maneuver`, or hand a table of
+//!    numbers, an `Archive`, to `Mapping::apply`. A fault names its place and the remedy; its code is a row of `code` in
+//!    `fault.rs`.
 //! 2. `src/core/ingest/mod.rs`: a variant of `Format`, its media type and its file ending, its line in `read_mapped`. HTTP
 //!    and command line go by these; where it needs a mapping, `src/cli/mapping.rs` must know that, too.
 //! 3. Tests beside the reader; a good file in `no_damage_to_a_file_panics` in `mod.rs`; real files in
