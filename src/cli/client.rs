@@ -13,7 +13,7 @@ use serde_json::Value;
 
 use super::Failure;
 use super::recording::format_of;
-use super::server::Server;
+use super::server::ServerOption;
 use crate::diagnose::Diagnosis;
 use crate::estimate::{Estimate, TimeHistory};
 use crate::job::{Event, JobSpec};
@@ -37,7 +37,7 @@ const RECONNECT_AFTER: Duration = Duration::from_secs(1);
 const READY_WITHIN: Duration = Duration::from_secs(4);
 
 impl Client {
-    pub(super) fn of(server: &Server) -> Result<Self, Failure> {
+    pub(super) fn of(server: &ServerOption) -> Result<Self, Failure> {
         Self::new(&server.url, server.key.as_deref())
     }
 

@@ -65,8 +65,8 @@ impl Unit {
             depth: 0,
         };
         let unit = parser.product().map_err(|fault| match fault {
-            Fault::Unknown(symbol) => UnitError::Unknown { symbol },
-            Fault::Malformed(why) => malformed(why),
+            Misread::Unknown(symbol) => UnitError::Unknown { symbol },
+            Misread::Malformed(why) => malformed(why),
         })?;
         if !parser.rest.is_empty() {
             return Err(malformed("there is something behind its end"));
@@ -86,7 +86,7 @@ impl Unit {
     }
 }
 
-enum Fault {
+enum Misread {
     Unknown(String),
     Malformed(&'static str),
 }
@@ -97,7 +97,7 @@ struct Parser<'a> {
 }
 
 impl Parser<'_> {
-    fn product(&mut self) -> Result<Unit, Fault> {
+    fn product(&mut self) -> Result<Unit, Misread> {
         let mut unit = self.power()?;
         loop {
             let had_space = self.skip_spaces();
@@ -109,11 +109,11 @@ impl Parser<'_> {
                 '*' | '.' | '·' | '/' => self.advance(next),
                 ')' => return Ok(unit),
                 _ if had_space => {}
-                _ => return Err(Fault::Malformed("factors need '*' or '/' between them")),
+                _ => return Err(Misread::Malformed("factors need '*' or '/' between them")),
             }
             let factor = self.power()?;
             if unit.offset != 0.0 || factor.offset != 0.0 {
-                return Err(Fault::Malformed(
+                return Err(Misread::Malformed(
                     "a temperature with an offset (degC, degF) must stand alone",
                 ));
             }
@@ -131,7 +131,7 @@ impl Parser<'_> {
         }
     }
 
-    fn power(&mut self) -> Result<Unit, Fault> {
+    fn power(&mut self) -> Result<Unit, Misread> {
         let base = self.factor()?;
         if !self.rest.starts_with('^') {
             return Ok(base);
@@ -140,28 +140,28 @@ impl Parser<'_> {
         let digits = self.take_while(|c| c.is_ascii_digit() || matches!(c, '-' | '.'));
         let exponent: f64 = digits
             .parse()
-            .map_err(|_| Fault::Malformed("'^' needs a number behind it"))?;
+            .map_err(|_| Misread::Malformed("'^' needs a number behind it"))?;
         if exponent.abs() > 9.0 {
-            return Err(Fault::Malformed("a power is larger than 9"));
+            return Err(Misread::Malformed("a power is larger than 9"));
         }
         let dimension = base
             .dimension
             .to_power(exponent)
-            .ok_or(Fault::Malformed("a power must be a multiple of a sixth"))?;
+            .ok_or(Misread::Malformed("a power must be a multiple of a sixth"))?;
         Ok(Unit::scaled(base.scale.powf(exponent), dimension))
     }
 
-    fn factor(&mut self) -> Result<Unit, Fault> {
+    fn factor(&mut self) -> Result<Unit, Misread> {
         self.skip_spaces();
         if self.rest.starts_with('(') {
             self.depth += 1;
             if self.depth > 8 {
-                return Err(Fault::Malformed("its brackets are nested too deep"));
+                return Err(Misread::Malformed("its brackets are nested too deep"));
             }
             self.advance('(');
             let inner = self.product()?;
             if !self.rest.starts_with(')') {
-                return Err(Fault::Malformed("a ')' is missing"));
+                return Err(Misread::Malformed("a ')' is missing"));
             }
             self.advance(')');
             self.depth -= 1;
@@ -173,9 +173,9 @@ impl Parser<'_> {
         }
         let symbol = self.take_while(|c| c.is_alphabetic() || matches!(c, '%' | '°' | '_'));
         if symbol.is_empty() {
-            return Err(Fault::Malformed("a unit symbol is missing"));
+            return Err(Misread::Malformed("a unit symbol is missing"));
         }
-        named(&symbol).ok_or(Fault::Unknown(symbol))
+        named(&symbol).ok_or(Misread::Unknown(symbol))
     }
 
     fn advance(&mut self, c: char) {

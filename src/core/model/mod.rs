@@ -34,7 +34,7 @@ pub use document::{
 pub use edit::{Added, Edit, EditError, EditKind};
 pub use formula::{ChannelFormula, FormulaError, Recorded};
 pub use jacobian::Jacobian;
-pub use native::{Native, NativeSteps, Stretch};
+pub use native::{Native, NativeSteps, StepBlock};
 pub use program::{Program, Workspace};
 pub use scalar::{BLOCK, LANES, Lanes, Scalar};
 pub use unique::unique;

@@ -12,7 +12,7 @@ use crate::flight::{Channel, Dimension, Maneuver, Unit};
 use crate::model::{ChannelFormula, Model, Recorded, Start};
 use crate::simulate::method::{InputInterpolation, Integrator};
 use crate::simulate::segment::{Segment, Steps};
-use crate::simulate::trajectory::simulate_disturbed;
+use crate::simulate::simulation::simulate_disturbed;
 
 /// Integration steps between two samples: the truth is finer than what is recorded of it.
 const SUBSTEPS: usize = 10;
@@ -38,7 +38,7 @@ impl Scenario {
     }
 
     /// What is recorded. Of the parameters, `read_off` are read off the designed inputs where their start says so.
-    fn record(&self, model: &Model, read_off: &[String]) -> Result<Recording, ScenarioError> {
+    fn record(&self, model: &Model, read_off: &[String]) -> Result<TimeAndChannels, ScenarioError> {
         let unfit = |what: &str, message: String| ScenarioError::Unfit {
             what: what.to_string(),
             message,
@@ -244,7 +244,7 @@ impl Scenario {
 }
 
 /// Time and channels.
-type Recording = (Vec<f64>, IndexMap<String, Channel>);
+type TimeAndChannels = (Vec<f64>, IndexMap<String, Channel>);
 
 fn maneuver(
     time: Vec<f64>,
