@@ -32,7 +32,7 @@ impl FromStr for FileRows {
                 rows: Some([first, last]),
             }),
             _ => Err(format!(
-                "'{rows}' is no range of rows: FIRST-LAST is asked for, from 1, both included"
+                "'{rows}' is not a range of rows; write FIRST-LAST, counted from 1, both included"
             )),
         }
     }

@@ -120,7 +120,7 @@ impl Request {
                     .map(|document| document.name)
                     .collect();
                 Failure::new(format!(
-                    "there is no catalog model '{name}'; known are {}, or give a .toml file",
+                    "there is no catalog model '{name}'; the catalog has {}; or give a .toml file",
                     known.join(", ")
                 ))
             }),
@@ -134,7 +134,7 @@ impl Request {
             let known = Derivatives::all().map(|technique| technique.name());
             let name = &self.derivatives;
             Failure::new(format!(
-                "there is no technique '{name}'; known are {}",
+                "there is no technique '{name}'; choose one of {}",
                 known.join(", ")
             ))
         })
@@ -178,7 +178,7 @@ impl Request {
         let constants = self.constants.iter().map(|text| {
             let (name, value) = pair(text, "--constant")?;
             let value = (value.parse()).map_err(|_| {
-                Failure::new(format!("--constant '{text}': '{value}' is no number"))
+                Failure::new(format!("--constant '{text}': '{value}' is not a number"))
             })?;
             Ok((name.to_string(), value))
         });

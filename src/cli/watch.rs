@@ -85,6 +85,6 @@ pub(super) async fn follow(client: &Client, job: &str) -> Result<Estimate, Failu
             }
         })
         .await?;
-    ending.unwrap_or_else(|| Err(Failure::new("the job's log ended without an ending")))?;
+    ending.unwrap_or_else(|| Err(Failure::new("the job's log ended before the job did")))?;
     client.estimate(job).await
 }

@@ -117,7 +117,7 @@ fn not_there(why: NotLoaded) -> Fault {
     Fault::new(
         format!("/maneuvers/{place}/id"),
         "unknown_maneuver",
-        "there is no maneuver of this id any more; upload it again",
+        "there is no longer a maneuver of this id; upload it again",
     )
 }
 

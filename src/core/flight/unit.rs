@@ -16,7 +16,7 @@ pub struct Unit {
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 pub enum UnitError {
     #[error(
-        "unknown unit '{symbol}'; known are for instance m, ft, s, rad, deg, m/s, kt, m/s^2, g, N, Pa, hPa, K, kg, %, and '-' for a pure number"
+        "unknown unit '{symbol}'; known units include m, ft, s, rad, deg, m/s, kt, m/s^2, g, N, Pa, hPa, K, kg, %, and '-' for a pure number"
     )]
     Unknown { symbol: String },
     #[error("unit '{text}' cannot be read: {why}; write it like m/s^2, 1/s or kg/(m*s)")]
@@ -69,10 +69,10 @@ impl Unit {
             Misread::Malformed(why) => malformed(why),
         })?;
         if !parser.rest.is_empty() {
-            return Err(malformed("there is something behind its end"));
+            return Err(malformed("something follows its end"));
         }
         if !SCALES.contains(&unit.scale) {
-            return Err(malformed("it is too far from SI to convert from"));
+            return Err(malformed("it is too far from SI to be converted"));
         }
         Ok(unit)
     }
@@ -140,7 +140,7 @@ impl Parser<'_> {
         let digits = self.take_while(|c| c.is_ascii_digit() || matches!(c, '-' | '.'));
         let exponent: f64 = digits
             .parse()
-            .map_err(|_| Misread::Malformed("'^' needs a number behind it"))?;
+            .map_err(|_| Misread::Malformed("'^' needs a number after it"))?;
         if exponent.abs() > 9.0 {
             return Err(Misread::Malformed("a power is larger than 9"));
         }

@@ -118,20 +118,20 @@ pub mod code {
         (INVALID_JSON, "The body is not JSON."),
         (
             WRONG_SHAPE,
-            "The body is JSON of another shape than a recording's.",
+            "The body is JSON, but not in the shape of a recording.",
         ),
         (TOO_MANY_COLUMNS, "The limit of columns is exceeded."),
         (TOO_MANY_SAMPLES, "The limit of samples is exceeded."),
         (TOO_MANY_VALUES, "The limit of values is exceeded."),
         (TOO_FEW_SAMPLES, "A maneuver needs at least two samples."),
-        (NO_CHANNELS, "There is no channel beside time."),
+        (NO_CHANNELS, "There is no channel besides time."),
         (EMPTY_NAME, "A channel has no name."),
         (
             INVALID_NAME,
             "A channel's name is not an identifier, or is reserved.",
         ),
         (NAME_TOO_LONG, "A channel's name is too long."),
-        (DUPLICATE_CHANNEL, "Two channels have one name."),
+        (DUPLICATE_CHANNEL, "Two channels have the same name."),
         (UNKNOWN_UNIT, "A unit is unknown or cannot be read."),
         (
             UNIT_CONFLICT,
@@ -147,11 +147,11 @@ pub mod code {
         ),
         (
             ROW_LENGTH,
-            "A row has another number of cells than the header.",
+            "A row does not have as many cells as the header.",
         ),
         (
             LENGTH_MISMATCH,
-            "A channel has another number of values than the time axis.",
+            "A channel does not have as many values as the time axis.",
         ),
         (
             MAPPING_NEEDED,
@@ -161,14 +161,17 @@ pub mod code {
             MAPPING_NOT_USED,
             "The file says names and units itself, in a format for which there is no mapping.",
         ),
-        (INVALID_MAPPING, "The mapping is unknown, or no mapping."),
+        (
+            INVALID_MAPPING,
+            "The mapping is unknown, or is not a mapping.",
+        ),
         (
             UNKNOWN_SOURCE,
             "The file does not have what the mapping names.",
         ),
         (
             UNREADABLE_SOURCE,
-            "What the mapping names is no matrix of real numbers.",
+            "What the mapping names is not a matrix of real numbers.",
         ),
         (NOT_A_MAT_FILE, "The body is not a MAT file."),
         (

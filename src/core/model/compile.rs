@@ -235,7 +235,7 @@ impl Builder<'_> {
                 };
                 let first = cycle.first().map_or("?", name);
                 let message = format!(
-                    "the definition needs itself: {}; break the circle",
+                    "the definition depends on itself: {}; break the cycle",
                     cycle.iter().map(name).collect::<Vec<_>>().join(" -> ")
                 );
                 vec![Fault::new(

@@ -270,8 +270,9 @@ async fn get_model(
 
 pub(crate) fn unknown_model(id: &str) -> Problem {
     let id: String = id.chars().take(80).collect();
-    let detail =
-        format!("there is no model '{id}'; the catalog goes by name, stored models by their id");
+    let detail = format!(
+        "there is no model '{id}'; name a catalog model by its name, a stored one by its id"
+    );
     Problem::new(Code::UnknownModel, detail)
 }
 

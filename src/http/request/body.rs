@@ -37,7 +37,7 @@ pub(crate) async fn read(
     if let Some(encoding) = headers.get(header::CONTENT_ENCODING)
         && encoding != "identity"
     {
-        let detail = "bodies are read as they are; send it without Content-Encoding";
+        let detail = "encoded bodies are not read; send it without Content-Encoding";
         return Err(Problem::new(Code::UnsupportedMediaType, detail));
     }
     let announced = headers.get(header::CONTENT_LENGTH);

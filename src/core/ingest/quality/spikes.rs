@@ -40,7 +40,7 @@ pub(super) fn spikes(name: &str, values: &[f64], segments: &[Range<usize>]) -> O
         return None;
     }
     let message = format!(
-        "{} sample(s) lie far off their neighbours, measured by the channel's own noise",
+        "{} sample(s) lie far from their neighbours, measured by the channel's own noise",
         rows.len()
     );
     Some(finding(

@@ -130,7 +130,7 @@ impl Scenario {
             let known = model.states.iter().any(|state| state.name == *name);
             (!(known && *value >= 0.0 && value.is_finite())).then(|| ScenarioError::Unfit {
                 what: format!("process_noise.{name}"),
-                message: "an intensity of a state of the model, 0 or more, is asked for".into(),
+                message: "give the intensity of a state of the model, 0 or more".into(),
             })
         };
         match self.process_noise.iter().find_map(unfit) {
@@ -171,12 +171,12 @@ impl Scenario {
                 let number = formula.and_then(|formula| formula.number(designed));
                 number.map_err(|error| ScenarioError::Unfit {
                     what: what(&info.name),
-                    message: format!("{error}; state its truth"),
+                    message: format!("{error}; give its true value"),
                 })
             }
             (None, Start::FromData(_)) => {
                 let message =
-                    "the model reads this parameter off the data: state its truth".to_string();
+                    "the model reads this parameter off the data: give its true value".to_string();
                 Err(ScenarioError::Unfit {
                     what: what(&info.name),
                     message,

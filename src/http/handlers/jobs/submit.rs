@@ -210,7 +210,7 @@ async fn resolve_model(
     Ok(model.ok_or_else(|| {
         let name: String = name.chars().take(80).collect();
         let message = format!(
-            "there is no model '{name}'; the catalog goes by name, stored models by their id: /v1/models lists both"
+            "there is no model '{name}'; name a catalog model by its name, a stored one by its id: /v1/models lists both"
         );
         Fault::new("/model", "unknown_model", message)
     }))
