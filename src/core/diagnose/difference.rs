@@ -63,7 +63,7 @@ mod tests {
             parameter: None,
             unit: None,
         };
-        let changes = difference(&before, &edit.apply(&before).unwrap());
+        let changes = difference(&before, &edit.apply(&before).unwrap().document);
         let places: Vec<&str> = changes
             .iter()
             .map(|change| change.pointer.as_str())

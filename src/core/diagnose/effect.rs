@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::model::{Edit, EditError, EditKind, ModelDocument};
+use crate::model::{Edit, EditError, EditKind, Edited, ModelDocument};
 
 /// What kind of effect. Most are edits of the model document; the others change how it is fitted.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
@@ -75,13 +75,23 @@ impl Effect {
         }
     }
 
-    /// The document with the effect in it.
+    /// The document with the effect in it, and what all its edits added.
     ///
     /// # Errors
     /// An edit does not fit the document.
-    pub fn apply(&self, document: &ModelDocument) -> Result<ModelDocument, EditError> {
-        let apply = |document: ModelDocument, edit: &Edit| edit.apply(&document);
-        self.edits.iter().try_fold(document.clone(), apply)
+    pub fn apply(&self, document: &ModelDocument) -> Result<Edited, EditError> {
+        let mut whole = Edited {
+            document: document.clone(),
+            added: Vec::new(),
+            inputs: Vec::new(),
+        };
+        for edit in &self.edits {
+            let edited = edit.apply(&whole.document)?;
+            whole.document = edited.document;
+            whole.added.extend(edited.added);
+            whole.inputs.extend(edited.inputs);
+        }
+        Ok(whole)
     }
 
     /// Process noise: what no model document expresses, and what ends a diagnosis.

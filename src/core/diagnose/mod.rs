@@ -17,6 +17,7 @@ mod fitted;
 mod flight;
 mod found;
 mod group;
+mod needless;
 mod outliers;
 mod polish;
 mod projection;
@@ -26,6 +27,7 @@ mod rival;
 mod round;
 mod screen;
 mod sentence;
+mod size;
 mod stack;
 mod terms;
 mod trial;
@@ -45,8 +47,8 @@ pub use round::Watcher;
 
 use answer::answer;
 use fitted::Fitted;
-use found::{Accepted, Found};
-use round::{cost_of_removal, round};
+use found::Found;
+use round::round;
 
 use crate::estimate::{TimeHistory, estimate};
 
@@ -112,7 +114,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
             round: number,
             name: accepted.effect.name(),
             likelihood_ratio: accepted.evidence.likelihood_ratio,
-            sentence: sentence::of(&accepted.effect, &accepted.added, &accepted.fitted.estimate),
+            sentence: sentence::of(&accepted.effect, &accepted.fitted.sizes(&accepted.added)),
         };
         let last = accepted.effect.is_noise();
         let calm = std::mem::replace(&mut base, accepted.fitted.clone());
@@ -125,7 +127,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
             break;
         }
     }
-    remove_needless(case, &declared, &mut base, &mut found);
+    needless::remove(case, &declared, &mut base, &mut found);
     Ok(answer(case, &declared, &fitted, &base, found)?)
 }
 
@@ -153,49 +155,6 @@ fn declared(
     if stopped {
         return Err(Inconclusive::Stopped);
     }
-    let fitted = Fitted::of(
-        case.document.clone(),
-        problem,
-        solution.estimate,
-        &solution.histories,
-    );
+    let fitted = Fitted::of(case.document.clone(), problem, &solution);
     Ok((fitted, solution.histories))
-}
-
-/// Takes out again what later effects made needless.
-fn remove_needless(case: &Case, declared: &Fitted, base: &mut Fitted, found: &mut Found) {
-    let mut at = 0;
-    while found.accepted.len() > 1 && at < found.accepted.len() {
-        let without = (found.accepted.iter().enumerate())
-            .filter(|(other, _)| *other != at)
-            .try_fold(declared.document.clone(), |document, (_, a)| {
-                a.effect.apply(&document)
-            });
-        let removal = without.ok().and_then(|without| {
-            Some((
-                cost_of_removal(case, base, without.clone(), &base.values)?,
-                without,
-            ))
-        });
-        let Accepted {
-            evidence, effect, ..
-        } = &found.accepted[at];
-        if effect.edits.is_empty() {
-            at += 1;
-            continue;
-        }
-        match removal {
-            Some((cost, without)) if cost < evidence.threshold => {
-                let Ok(fitted) = Fitted::trial(case, without, &base.values) else {
-                    at += 1;
-                    continue;
-                };
-                *base = fitted;
-                let removed = found.accepted.remove(at);
-                found.needless(removed, cost);
-                at = 0;
-            }
-            _ => at += 1,
-        }
-    }
 }

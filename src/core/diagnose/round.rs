@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
-use super::case::{Case, Values};
+use super::case::Case;
 use super::colour::Colour;
 use super::effect::{Effect, EffectKind, Treatment};
 use super::fitted::Fitted;
@@ -231,15 +231,15 @@ fn screened(
     screen: &Screen<'_>,
     effect: &Effect,
 ) -> Result<Screened, String> {
-    let document = effect
+    let edited = effect
         .apply(&base.document)
         .map_err(|error| error.to_string())?;
     let mut best: Option<Screened> = None;
     let mut failure = String::new();
-    let starts = starts(case, effect, &document, &base.document);
+    let starts = starts(case, effect, &edited);
     let count = starts.len();
     for start in starts {
-        match screen.of(&document, &start) {
+        match screen.of(&edited, &start) {
             Ok(seen) if best.as_ref().is_none_or(|best| seen.promise > best.promise) => {
                 best = Some(seen)
             }
@@ -322,17 +322,4 @@ fn of_screen(
         Some(seen.promise),
         Some((seen, root)),
     )
-}
-
-/// The likelihood ratio that removing an effect costs, and what it would have to be to keep it.
-pub(super) fn cost_of_removal(
-    case: &Case,
-    with: &Fitted,
-    without: crate::model::ModelDocument,
-    start: &Values,
-) -> Option<f64> {
-    let layout = Layout::of(&with.problem);
-    let fitted = Fitted::trial(case, without, start).ok()?;
-    let orders = Colour::of_best_order(&layout, &fitted.residual).orders();
-    Some(2.0 * (with.ln_likelihood(&orders) - fitted.ln_likelihood(&orders)))
 }

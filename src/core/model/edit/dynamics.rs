@@ -1,5 +1,6 @@
 //! Effects in the equations of motion: terms, channels and states that the model leaves out.
 
+use super::edited::AddedRole;
 use super::sheet::{Sheet, dimension, unknown};
 use super::text::{names, replace};
 use super::{Edit, EditError};
@@ -40,7 +41,11 @@ pub(super) fn missing_term(sheet: &mut Sheet) -> Result<(), EditError> {
     };
     let unit = target_dimension.over(measured.unwrap_or(Dimension::NONE));
     let words = format!("missing term of {target}");
-    sheet.add(&name, unknown(unit.to_string(), 0.0, None, words));
+    sheet.add(
+        &name,
+        AddedRole::Size,
+        unknown(unit.to_string(), 0.0, None, words),
+    );
     Ok(())
 }
 
@@ -107,7 +112,11 @@ pub(super) fn unrecorded_input(sheet: &mut Sheet) -> Result<(), EditError> {
     *equation = format!("{equation} + {name}*{channel}");
     let unit = measures.over(dimension(&unit));
     let words = format!("{channel} in the equation of {target}");
-    sheet.add(&name, unknown(unit.to_string(), 0.0, None, words));
+    sheet.add(
+        &name,
+        AddedRole::Size,
+        unknown(unit.to_string(), 0.0, None, words),
+    );
     Ok(())
 }
 
@@ -147,10 +156,18 @@ pub(super) fn unsteady(sheet: &mut Sheet) -> Result<(), EditError> {
     let name = sheet.name(&format!("{target}_unsteady"))?;
     let words = format!("effect on {target} of {angle} ahead of the flow");
     let of_name = measures.over(dimension(&unit));
-    sheet.add(&name, unknown(of_name.to_string(), 0.0, None, words));
+    sheet.add(
+        &name,
+        AddedRole::Size,
+        unknown(of_name.to_string(), 0.0, None, words),
+    );
     let time = sheet.free(&format!("{target}_unsteady_time"));
     let words = format!("time constant of the flow behind {angle}");
-    sheet.add(&time, unknown("s", 0.2, Some((0.01, 5.0)), words));
+    sheet.add(
+        &time,
+        AddedRole::TimeConstant,
+        unknown("s", 0.2, Some((0.01, 5.0)), words),
+    );
     let lagged = sheet.free(&format!("{angle}_lagged"));
     let (equation, _) = sheet.law(target)?;
     *equation = format!("{equation} + {name}*({angle} - {lagged})");
@@ -176,6 +193,6 @@ pub(super) fn initial_state(sheet: &mut Sheet) -> Result<(), EditError> {
         per: Per::Maneuver,
         ..unknown(unit, 0.0, None, words)
     };
-    sheet.add(&name, parameter);
+    sheet.add(&name, AddedRole::Size, parameter);
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! Derivatives that scale with dynamic pressure, in a model of constant speed.
 
 use super::EditError;
+use super::edited::AddedRole;
 use super::sheet::{Sheet, Speed, unknown};
 use super::text::laws;
 use crate::flight::{Dimension, Unit};
@@ -27,7 +28,11 @@ pub(super) fn scaled(sheet: &mut Sheet) -> Result<(), EditError> {
     let speed = sheet.speed(Speed::Varying)?;
     let name = sheet.name("qbar_share")?;
     let words = "share of the derivatives that follows the dynamic pressure".to_string();
-    sheet.add(&name, unknown("-", 0.0, Some((-2.0, 3.0)), words));
+    sheet.add(
+        &name,
+        AddedRole::Size,
+        unknown("-", 0.0, Some((-2.0, 3.0)), words),
+    );
     let reference = reference.unwrap_or_else(|| {
         let name = sheet.free("V_ref");
         let start = Start::FromData(format!("mean({}, 5)", speed_channel(&speed)));
@@ -37,7 +42,7 @@ pub(super) fn scaled(sheet: &mut Sheet) -> Result<(), EditError> {
             per: Per::Maneuver,
             ..unknown("m/s", 0.0, None, "speed of the steady flight".to_string())
         };
-        sheet.add(&name, parameter);
+        sheet.add(&name, AddedRole::Reference, parameter);
         name
     });
     let ratio = sheet.free("qbar_ratio");

@@ -1,5 +1,6 @@
 //! A document while it is edited: free names, what a name measures, what a quantity is called.
 
+use super::edited::{Added, AddedRole};
 use super::text::{names, replace};
 use super::{Edit, EditError};
 use crate::flight::{Dimension, Unit};
@@ -10,6 +11,9 @@ use crate::model::names::Names;
 pub(super) struct Sheet<'a> {
     pub edit: &'a Edit,
     pub document: ModelDocument,
+    /// Parameters and inputs that the document did not have.
+    pub added: Vec<Added>,
+    pub inputs: Vec<String>,
 }
 
 /// Names of a speed that varies, and of one that is held.
@@ -33,6 +37,8 @@ impl<'a> Sheet<'a> {
         Self {
             edit,
             document: document.clone(),
+            added: Vec::new(),
+            inputs: Vec::new(),
         }
     }
 
@@ -75,8 +81,12 @@ impl<'a> Sheet<'a> {
             || Function::find(name).is_some()
     }
 
-    pub(super) fn add(&mut self, name: &str, parameter: Parameter) {
+    pub(super) fn add(&mut self, name: &str, role: AddedRole, parameter: Parameter) {
         self.document.parameters.insert(name.to_string(), parameter);
+        self.added.push(Added {
+            name: name.to_string(),
+            role,
+        });
     }
 
     pub(super) fn add_state(
@@ -215,6 +225,7 @@ impl<'a> Sheet<'a> {
             description: description.to_string(),
         };
         self.document.inputs.insert(name.to_string(), input);
+        self.inputs.push(name.to_string());
         Ok(name.to_string())
     }
 
@@ -237,7 +248,7 @@ impl<'a> Sheet<'a> {
             per: Per::Maneuver,
             ..unknown(unit, 0.0, None, format!("{channel} at the start"))
         };
-        self.add(&name, unknown);
+        self.add(&name, AddedRole::Reference, unknown);
         name
     }
 
@@ -286,7 +297,7 @@ impl<'a> Sheet<'a> {
                 per: Per::Maneuver,
                 ..unknown(unit, 0.0, None, format!("{input} at the start"))
             };
-            self.add(&name, parameter);
+            self.add(&name, AddedRole::Reference, parameter);
         }
         name
     }
