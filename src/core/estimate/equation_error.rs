@@ -19,7 +19,7 @@ use crate::estimate::report::iteration::Outcome;
 use crate::estimate::report::progress::Observer;
 
 /// Whether an equation-error estimation of the problem can be made.
-pub fn has_equation_error(problem: &Problem) -> bool {
+pub(crate) fn has_equation_error(problem: &Problem) -> bool {
     Regression::new(problem).is_some()
 }
 

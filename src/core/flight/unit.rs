@@ -7,20 +7,33 @@ use super::Dimension;
 /// A unit: how to get to SI (`si = scale * value + offset`) and what it measures.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Unit {
+    /// The factor to SI.
     pub scale: f64,
     /// Zero but for temperatures in degrees Celsius and Fahrenheit.
     pub offset: f64,
+    /// What is measured, in SI base units.
     pub dimension: Dimension,
 }
 
+/// Why a text is no unit.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 pub enum UnitError {
+    /// A symbol of the unit is not known.
     #[error(
         "unknown unit '{symbol}'; known units include m, ft, s, rad, deg, m/s, kt, m/s^2, g, N, Pa, hPa, K, kg, %, and '-' for a pure number"
     )]
-    Unknown { symbol: String },
+    Unknown {
+        /// The symbol as written.
+        symbol: String,
+    },
+    /// The text does not read as factors and powers of symbols.
     #[error("unit '{text}' cannot be read: {why}; write it like m/s^2, 1/s or kg/(m*s)")]
-    Malformed { text: String, why: &'static str },
+    Malformed {
+        /// The unit as written, at most its first 64 characters.
+        text: String,
+        /// What is wrong with it.
+        why: &'static str,
+    },
 }
 
 const LONGEST_UNIT: usize = 64;
@@ -29,12 +42,14 @@ const LONGEST_UNIT: usize = 64;
 const SCALES: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
 impl Unit {
+    /// Of a pure number.
     pub const NONE: Self = Self {
         scale: 1.0,
         offset: 0.0,
         dimension: Dimension::NONE,
     };
 
+    /// A value in this unit, in SI.
     pub fn to_si(self, value: f64) -> f64 {
         value * self.scale + self.offset
     }

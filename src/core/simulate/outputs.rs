@@ -17,6 +17,7 @@ pub struct Outputs<'m> {
 }
 
 impl<'m> Outputs<'m> {
+    /// Machinery with room for one block of samples.
     pub fn new(
         model: &'m Model,
         integrator: Integrator,

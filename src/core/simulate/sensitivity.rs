@@ -40,6 +40,7 @@ pub struct Sensitivities<'m> {
 }
 
 impl<'m> Sensitivities<'m> {
+    /// Machinery with room for one block of samples; `columns` say by which parameters outputs are differentiated.
     pub fn new(
         model: &'m Model,
         columns: &'m Columns,

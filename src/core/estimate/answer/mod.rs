@@ -27,6 +27,7 @@ pub struct Solution {
     pub covariance: DMatrix<f64>,
     /// What there is to read of it.
     pub estimate: Estimate,
+    /// Measured and modelled outputs of each segment.
     pub histories: Vec<TimeHistory>,
 }
 

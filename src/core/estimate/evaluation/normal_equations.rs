@@ -44,6 +44,7 @@ impl NormalEquations {
         })
     }
 
+    /// det R, SI: R of greatest likelihood for θ, or the one that was given.
     pub fn det_r(&self) -> f64 {
         self.weighting.det()
     }

@@ -40,7 +40,7 @@ use search::{Nothing, Trial, search};
 pub use evaluation::{FilterEquations, FilterEvaluator};
 
 /// Names of the free intensities, in the order in which they follow the parameters.
-pub fn process_noise_names(problem: &Problem) -> Vec<String> {
+pub(crate) fn process_noise_names(problem: &Problem) -> Vec<String> {
     let states = problem.model.states.iter();
     let free = states.filter(|state| {
         let asked = problem.options.process_noise.get(&state.name);

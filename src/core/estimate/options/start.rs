@@ -25,6 +25,7 @@ pub enum StartMethod {
     },
     /// Random starts, each run to its end by the estimator; the best is kept, and how many reached it is told.
     MultiStart {
+        /// How many are drawn.
         #[serde(default = "default_starts")]
         #[schema(example = 20, minimum = 1, maximum = 1000)]
         starts: usize,

@@ -54,6 +54,7 @@ pub enum Derivatives {
     /// are those of a quasi-Newton method (BFGS), whatever `method` says; error bounds are taken from one
     /// evaluation with forward sensitivities at the end.
     Adjoint {
+        /// What the first inverse Hessian is.
         #[serde(default)]
         scaling: Scaling,
     },

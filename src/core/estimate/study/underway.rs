@@ -18,7 +18,9 @@ pub type Listener<'o> = dyn FnMut(Option<&StudyStep>) -> ControlFlow<()> + 'o;
 /// Why a study comes to no end.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum NoStudy {
+    /// The listener wanted no more.
     Stopped,
+    /// The start values give no cost.
     Unusable(Unusable),
 }
 

@@ -13,7 +13,9 @@ use crate::job::result::JobResult;
 /// What a study tells as it goes.
 #[derive(Clone, Copy, Debug)]
 pub enum StudyProgress<'a> {
+    /// The estimation got on.
     Estimation(estimate::Progress<'a>),
+    /// A result of the comparison.
     Finding(&'a StudyStep),
     /// Nothing new, but an occasion to stop it.
     Underway,

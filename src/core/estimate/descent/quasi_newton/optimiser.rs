@@ -44,8 +44,11 @@ const LEAST_CURVATURE: f64 = 1e-10;
 /// An iterate, and the idea of the Hessian that goes with it.
 #[derive(Clone, Debug)]
 pub struct Optimiser {
+    /// Where it is.
     pub theta: Vec<f64>,
+    /// The cost there.
     pub cost: f64,
+    /// The gradient of the cost there.
     pub gradient: DVector<f64>,
     lower: Vec<f64>,
     upper: Vec<f64>,
