@@ -144,7 +144,7 @@ impl ChannelFormula {
         match evaluate(&self.expression, on) {
             Value::One(value) if value.is_finite() => Ok(value),
             Value::One(_) => Err(no_number(
-                "a value is missing there, or the arithmetic has none",
+                "a value is missing there, or the arithmetic has no result",
             )),
             Value::Each(_) => Err(no_number(
                 "it varies with the sample; use first(channel) or mean(channel, seconds)",

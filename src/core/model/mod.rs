@@ -37,7 +37,7 @@ pub use edit::{Added, AddedRole, Edit, EditError, EditKind, Edited};
 pub use formula::{ChannelFormula, FormulaError, Recorded};
 pub use jacobian::Jacobian;
 use native::Native;
-pub(crate) use native::{NativeSteps, Stretch};
+pub(crate) use native::{NativeSteps, StepBlock};
 pub use program::{Program, Workspace};
 pub use scalar::Scalar;
 pub(crate) use scalar::{BLOCK, LANES, Lanes};

@@ -18,8 +18,8 @@
 use super::method::{InputInterpolation, Integrator, Stage};
 use super::segment::Segment;
 use super::side_by_side::{SPAN, SideBySide};
+use super::simulation::{Diverged, initial_state};
 use super::stepper::{Stepper, between};
-use super::trajectory::{Diverged, initial_state};
 use crate::model::{LANES, Lanes, Model, Program, Workspace};
 
 /// States on the way forward, one for each block, from which the way back starts anew.

@@ -7,7 +7,7 @@ use super::segment::Segment;
 use crate::model::Model;
 
 /// Most samples that an input or output may be delayed by, either way.
-pub(crate) const MOST_DELAY: f64 = 1000.0;
+pub const MOST_DELAY: f64 = 1000.0;
 
 /// The segment with its delayed inputs u replaced by v = u(t - D0) - ρ D0, and the ρ = -du/dt at t - D0 behind all
 /// inputs, where D0 = D(θ); see [`crate::model::Delays`]. A model without delayed inputs sees what is recorded.

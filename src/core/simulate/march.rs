@@ -2,8 +2,8 @@
 
 use super::method::{InputInterpolation, Integrator};
 use super::segment::Segment;
+use super::simulation::initial_state;
 use super::stepper::Stepper;
-use super::trajectory::initial_state;
 use crate::model::{Model, Scalar, Workspace};
 
 /// The machinery, shared by any number of simulations that go along side by side.

@@ -10,7 +10,7 @@ mod emit;
 mod functions;
 mod handed;
 
-pub(crate) use handed::Stretch;
+pub(crate) use handed::StepBlock;
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -87,14 +87,14 @@ impl NativeSteps {
     }
 
     /// Takes steps. θ stands in `workspace`, which is one of the program that this was compiled from.
-    pub(crate) fn take(&self, workspace: &Workspace<f64>, stretch: &mut Stretch<'_>) {
-        let stages = stretch.stages.len();
-        assert!(stages > 0 && stretch.lengths.len() <= BLOCK);
+    pub(crate) fn take(&self, workspace: &Workspace<f64>, block: &mut StepBlock<'_>) {
+        let stages = block.stages.len();
+        assert!(stages > 0 && block.lengths.len() <= BLOCK);
         assert_eq!(workspace.registers().len(), self.registers);
-        assert_eq!(stretch.inputs.len(), stages * self.inputs);
-        assert_eq!(stretch.times.len(), stages);
-        assert_eq!(stretch.stage_states.len(), stages * self.states);
-        assert_eq!(stretch.state.len(), self.states);
-        self.code.run(workspace.registers(), stretch);
+        assert_eq!(block.inputs.len(), stages * self.inputs);
+        assert_eq!(block.times.len(), stages);
+        assert_eq!(block.stage_states.len(), stages * self.states);
+        assert_eq!(block.state.len(), self.states);
+        self.code.run(workspace.registers(), block);
     }
 }
