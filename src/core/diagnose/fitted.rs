@@ -65,7 +65,7 @@ impl Fitted {
         problem.options.tolerance = problem.options.tolerance.max(TRIAL_TOLERANCE);
         problem.options.max_iterations = iterations;
         let solution = output_error(&problem, &mut |_| ControlFlow::Continue(()))
-            .map_err(|_| Unfit("the simulation leaves the range of numbers".into()))?;
+            .map_err(|why| Unfit(why.to_string()))?;
         if solution.estimate.outcome == Outcome::Diverged {
             return Err(Unfit(solution.estimate.reason));
         }

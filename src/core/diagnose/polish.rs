@@ -37,7 +37,7 @@ impl Fitted {
         free.dedup();
         let at = |theta: &[f64]| {
             // columns stand as the unknowns do: parameter by parameter, each followed by its segments
-            let model = linearised(&self.problem, &layout, theta, &free);
+            let model = linearised(&self.problem, &layout, theta, &free).ok();
             model.filter(|model| model.sensitivities.len() == theta.len())
         };
         let ln_likelihood = |model: &Linearised| {

@@ -7,7 +7,7 @@ use super::bounds::JOB_TOO_LARGE;
 use super::checks::{MOST_EDITS, too_many_edits};
 use super::prepare::Plan;
 use super::resolve::Stretch;
-use super::run::JobResult;
+use super::run::{JobResult, no_start};
 use super::spec::JobSpec;
 use crate::diagnose::{Case, Effect, Flight, Inconclusive, Step, diagnose};
 use crate::estimate::{Derivatives, Estimator, Outcome, Problem, Role};
@@ -145,6 +145,7 @@ pub fn run_diagnosis(
             "diverged_at_start",
             why.to_string(),
         )]),
+        Err(Inconclusive::NoStart(why)) => Err(vec![no_start(&plan.problem, why)]),
         // what there is so far is where the declared model starts from
         Err(Inconclusive::Stopped) => {
             let mut result = super::run(plan, &mut |_| ControlFlow::Break(()))?;

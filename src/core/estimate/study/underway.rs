@@ -16,16 +16,12 @@ use crate::estimate::problem::unusable::Unusable;
 pub type Listener<'o> = dyn FnMut(Option<&StudyStep>) -> ControlFlow<()> + 'o;
 
 /// Why a study comes to no end.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug, thiserror::Error)]
 pub enum NoStudy {
+    #[error("stopped on request")]
     Stopped,
-    Unusable(Unusable),
-}
-
-impl From<Unusable> for NoStudy {
-    fn from(why: Unusable) -> Self {
-        Self::Unusable(why)
-    }
+    #[error(transparent)]
+    Unusable(#[from] Unusable),
 }
 
 pub(super) struct Study<'a, 'o> {

@@ -35,7 +35,8 @@ pub struct Moved {
 }
 
 /// No step lowers the cost.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
+#[error("no step lowers the cost")]
 pub struct NoWay;
 
 /// A share of |s||y| below which sᵀy says nothing of the curvature.
