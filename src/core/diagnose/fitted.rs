@@ -23,7 +23,7 @@ pub(super) struct Fitted {
     pub bounds: Vec<Option<Bound>>,
     /// R.
     pub covariance: DMatrix<f64>,
-    /// What the estimation answered; θ may have moved since, see [`Self::polished`].
+    /// The report of the estimation; θ may have moved since, see [`Self::polished`].
     pub estimate: Estimate,
     /// Over [`Layout::of`] the problem, at θ.
     pub residual: Vec<f64>,

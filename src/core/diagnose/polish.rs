@@ -13,7 +13,7 @@ use crate::estimate::Bound;
 /// The colour is that of the residual, so that each step has another: some are needed.
 const STEPS: usize = 8;
 
-/// What is left of ln L to be gained is not worth a step.
+/// A gain of ln L that is not worth a step.
 const SETTLED: f64 = 0.01;
 
 /// Shares of a step that are tried.

@@ -39,7 +39,7 @@ pub(super) struct Screen<'c> {
     metrics: Vec<Metric>,
 }
 
-/// What the screen says of a candidate.
+/// A candidate, as the screen sees it.
 #[derive(Clone, Debug)]
 pub(super) struct Screened {
     /// Where a fit of it begins: the one step.

@@ -12,7 +12,7 @@ use crate::model::{Jacobian, Model, Program, Workspace};
 use crate::simulate::{Segment, Stepper, between, initial_state};
 
 /// One sample.
-pub(super) struct Prediction<'a> {
+pub(super) struct Predicted<'a> {
     pub sample: usize,
     /// By output.
     pub outputs: &'a [f64],
@@ -51,7 +51,7 @@ impl<'p> Predictor<'p> {
         parameters: &[f64],
         gain: &Gain,
         (columns, changes): (&[Column], &[Change]),
-        mut sink: impl FnMut(&Prediction<'_>),
+        mut sink: impl FnMut(&Predicted<'_>),
     ) {
         let model = &self.problem.model;
         let (states, outputs, width) = (model.states.len(), model.outputs.len(), columns.len());
@@ -102,7 +102,7 @@ impl<'p> Predictor<'p> {
                     }
                 }
             }
-            sink(&Prediction {
+            sink(&Predicted {
                 sample: k,
                 outputs: &y,
                 innovations: &innovations,

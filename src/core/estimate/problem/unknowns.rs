@@ -13,7 +13,7 @@ pub struct Unknown {
     pub lower: f64,
     pub upper: f64,
     pub fixed: bool,
-    /// What was known of it before the data, SI.
+    /// Knowledge of it from before the data, SI.
     pub prior: Option<Prior>,
 }
 

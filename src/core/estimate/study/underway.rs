@@ -28,7 +28,7 @@ pub(super) struct Study<'a, 'o> {
     pub problem: Problem,
     pub theta: Vec<f64>,
     pub weighting: Weighting,
-    /// What each unknown's standard error would be if it were the only one.
+    /// The standard error that each unknown would have if it were the only one.
     pub errors: DVector<f64>,
     pub reference: DVector<f64>,
     pub clock: &'a dyn Clock,
