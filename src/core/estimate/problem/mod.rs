@@ -53,7 +53,7 @@ impl Problem {
         self.segments.iter().map(Segment::len).sum()
     }
 
-    /// What an unknown is called: the parameter's name, with the segment where each has its own.
+    /// The name of an unknown: the parameter's, with the segment where each has its own.
     pub fn name(&self, place: usize) -> String {
         let unknown = self.unknowns.at(place);
         let name = &self.model.parameters[unknown.parameter].name;

@@ -34,7 +34,7 @@ pub(crate) trait Perturbation {
 }
 
 /// Residuals and columns of ∂y/∂θ over some consecutive samples of a segment.
-pub(crate) struct Columns<'a> {
+pub(crate) struct Differentiated<'a> {
     /// z − y by output, then sample of the stretch.
     pub(crate) residuals: &'a [DVector<f64>],
     /// By output: samples by the segment's own columns.
@@ -52,7 +52,7 @@ pub(crate) fn columns<P: Perturbation>(
     index: usize,
     theta: &[f64],
     places: &[usize],
-    mut sink: impl FnMut(&Columns<'_>),
+    mut sink: impl FnMut(&Differentiated<'_>),
 ) -> Result<Vec<usize>, Unusable> {
     let (model, options) = (&problem.model, &problem.options);
     let (segment, outputs) = (&problem.segments[index], model.outputs.len());
@@ -123,7 +123,7 @@ pub(crate) fn columns<P: Perturbation>(
                 slopes[i].row_mut(k).fill(0.0);
             }
         }
-        sink(&Columns {
+        sink(&Differentiated {
             residuals: &y,
             slopes: &slopes,
         });
@@ -172,7 +172,7 @@ impl LocalSums {
         }
     }
 
-    fn add(&mut self, stretch: &Columns<'_>, full: bool) {
+    fn add(&mut self, stretch: &Differentiated<'_>, full: bool) {
         let (slopes, residuals) = (stretch.slopes, stretch.residuals);
         for (product, (i, j)) in self.products.iter_mut().zip(pairs(slopes.len(), full)) {
             self.sums.residuals[(i, j)] += residuals[i].dot(&residuals[j]);
