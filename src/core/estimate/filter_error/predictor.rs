@@ -8,6 +8,7 @@ use nalgebra::DMatrix;
 use super::gain::{Change, Gain};
 use super::layout::Column;
 use crate::estimate::problem::Problem;
+use crate::estimate::problem::missing::present;
 use crate::model::{Jacobian, Model, Program, Workspace};
 use crate::simulate::{Segment, Stepper, between, initial_state};
 
@@ -84,11 +85,7 @@ impl<'p> Predictor<'p> {
             model.observation.results(&self.observation, &mut y);
             for (j, innovation) in innovations.iter_mut().enumerate() {
                 let measured = segment.measured[j][k];
-                *innovation = if measured.is_nan() {
-                    0.0
-                } else {
-                    measured - y[j]
-                };
+                *innovation = present(measured - y[j], measured);
             }
             if width > 0 {
                 let program = &model.observation_jacobian.program;
