@@ -377,8 +377,8 @@ fn sizes_are_bounded_before_anything_is_made() {
         let recordings = vec![recording.clone(); spec.maneuvers.len()];
         job::prepare(&spec, document, &recordings)
             .err()
-            .expect("a refusal")
-            .remove(0)
+            .expect("a refusal")[0]
+            .clone()
     };
     let same = json!({"maneuvers": [{"id": "x", "label": "run"}, {"id": "x", "label": "run"}]});
     assert_eq!(refusal(same).code, "duplicate_label");

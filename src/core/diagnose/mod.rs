@@ -20,12 +20,12 @@ mod flight;
 mod found;
 mod group;
 mod needless;
+mod null_model;
 mod outliers;
 mod polish;
 mod projection;
 mod report;
 mod residual;
-mod rival;
 mod round;
 mod screen;
 mod sentence;
@@ -52,24 +52,23 @@ use fitted::Fitted;
 use found::Found;
 use round::round;
 
-use crate::estimate::{TimeHistory, estimate};
+use crate::estimate::{TimeHistory, Unusable, estimate};
 
 /// Rounds, and so effects, at most: who lacks more than these has another model.
 const MOST_ROUNDS: usize = 4;
 
 /// Why there is no conclusion.
-#[derive(Debug)]
+#[derive(Clone, PartialEq, Debug, thiserror::Error)]
 pub enum Inconclusive {
-    /// The declared model cannot be fitted.
-    Unfit(Unfit),
+    /// A model does not meet the recordings, or comes to nothing.
+    #[error(transparent)]
+    Unfit(#[from] Unfit),
+    /// The start values of the declared model lead nowhere.
+    #[error("the declared model cannot be fitted from its start values: {0}")]
+    NoStart(#[from] Unusable),
     /// It was asked to stop.
+    #[error("stopped on request")]
     Stopped,
-}
-
-impl From<Unfit> for Inconclusive {
-    fn from(why: Unfit) -> Self {
-        Self::Unfit(why)
-    }
 }
 
 /// Finds what the declared model of a case lacks.
@@ -145,9 +144,7 @@ fn declared(
         stopped |= asked.is_break();
         asked
     });
-    let solution = solution.map_err(|_| {
-        Unfit("with the start values the simulation of the declared model leaves the range of numbers".into())
-    })?;
+    let solution = solution?;
     let step = Step::Fitted {
         round: 0,
         cost: solution.estimate.cost,

@@ -49,7 +49,7 @@ struct Without {
     document: ModelDocument,
     /// Values of the model with the effect, under the names that parameters have without it.
     values: Values,
-    /// What each of the others adds now.
+    /// The parameters that each of the others adds now.
     added: Vec<Vec<Added>>,
 }
 

@@ -10,8 +10,8 @@ use super::effect::{Effect, EffectKind, Treatment};
 use super::fitted::Fitted;
 use super::found::Accepted;
 use super::group::group;
+use super::null_model::{NullModel, POWER, Threshold};
 use super::report::{Refusal, RefusedEffect, Step};
-use super::rival::{POWER, Rival, Threshold};
 use super::screen::{Screen, Screened, independent_questions};
 use super::stack::Layout;
 use super::trial::{Trial, is_tried_outright, starts};
@@ -34,7 +34,7 @@ const MOST_TRIALS: usize = 16;
 /// Candidates between two occasions to stop.
 const TOGETHER: usize = 8;
 
-/// What came of a round.
+/// The outcome of a round.
 pub(super) struct Round {
     pub accepted: Option<Accepted>,
     pub refused: Vec<RefusedEffect>,
@@ -128,7 +128,7 @@ pub(super) fn round(
     );
 
     let orders = colour.orders();
-    let rival = Rival::new(case, base, &orders);
+    let null_model = NullModel::new(case, base, &orders);
     let mut trials: Vec<Trial> = Vec::new();
     for some in to_try.chunks(TOGETHER) {
         if watcher(None).is_break() {
@@ -136,7 +136,7 @@ pub(super) fn round(
             return result;
         }
         let tried: Vec<(Effect, Result<Trial, String>)> = (some.to_vec().into_par_iter())
-            .map(|(effect, screened)| (effect.clone(), rival.trial(effect, screened)))
+            .map(|(effect, screened)| (effect.clone(), null_model.trial(effect, screened)))
             .collect();
         for (effect, trial) in tried {
             match trial {
@@ -163,7 +163,7 @@ pub(super) fn round(
 
     let mut passing: Vec<Trial> = Vec::new();
     for trial in trials {
-        match rival.objection(&trial, &threshold) {
+        match null_model.objection(&trial, &threshold) {
             None => passing.push(trial),
             Some((reason, why)) => {
                 if reason != Refusal::NotSignificant {
@@ -208,7 +208,7 @@ pub(super) fn round(
                 .refused
                 .push(of_trial(other, Refusal::Outdone, why, &threshold));
         }
-        result.accepted = Some(rival.accepted(best, group, &threshold));
+        result.accepted = Some(null_model.accepted(best, group, &threshold));
     }
     result.refused.extend(untried);
     result

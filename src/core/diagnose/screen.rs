@@ -39,7 +39,7 @@ pub(super) struct Screen<'c> {
     metrics: Vec<Metric>,
 }
 
-/// What the screen says of a candidate.
+/// A candidate, as the screen sees it.
 #[derive(Clone, Debug)]
 pub(super) struct Screened {
     /// Where a fit of it begins: the one step.
@@ -100,7 +100,7 @@ impl<'c> Screen<'c> {
         free.dedup();
         free.sort_unstable();
         free.dedup();
-        let declared = sensitivities(&base.problem, &layout, &base.theta, &free)?;
+        let declared = sensitivities(&base.problem, &layout, &base.theta, &free).ok()?;
         let metric = |colour: Colour, orders: Vec<usize>| {
             let whiten = |column: &Vec<f64>| colour.whiten(&layout, &base.residual, column);
             let declared = Basis::of(declared.iter().map(whiten));
@@ -148,8 +148,8 @@ impl<'c> Screen<'c> {
         };
         let added: Vec<usize> = (0..model.parameters.len()).filter(is_added).collect();
         let theta = problem.unknowns.start();
-        let columns = sensitivities(&problem, &self.layout, &theta, &added)
-            .ok_or("the simulation leaves the range of numbers")?;
+        let columns =
+            sensitivities(&problem, &self.layout, &theta, &added).map_err(|why| why.to_string())?;
         // a parameter without influence at no effect (a time constant) waits for the trial
         let counts = |index: &usize| match model.parameters[*index].document.per {
             Per::Job => 1,
@@ -310,9 +310,9 @@ impl<'c> Screen<'c> {
                 .colour
                 .whiten(&self.layout, &self.base.residual, column)
         };
-        let others = sensitivities(problem, &self.layout, theta, &free)?;
+        let others = sensitivities(problem, &self.layout, theta, &free).ok()?;
         let others = Basis::of(others.iter().map(whiten));
-        let own = sensitivities(problem, &self.layout, theta, &[index])?;
+        let own = sensitivities(problem, &self.layout, theta, &[index]).ok()?;
         let [own] = own.as_slice() else { return None };
         let mut clear = whiten(own);
         others.remove_from(&mut clear);

@@ -20,7 +20,7 @@ pub(super) struct Trial {
     pub starts: usize,
     pub screened: Option<Screened>,
     pub fitted: Fitted,
-    /// What it takes off the whitened residual, of length 1.
+    /// The part of the whitened residual that it explains, of length 1.
     pub explained: Vec<f64>,
     /// Twice the gain of the colour-aware log-likelihood.
     pub likelihood_ratio: f64,
@@ -181,7 +181,7 @@ pub(super) fn fit(
     Fitted::trial(case, document, &base.values_with(start))
 }
 
-/// What disturbs one state disturbs others: the same model with process noise on all of them, where the likelihood says
+/// Turbulence that disturbs one state disturbs others: the same model with process noise on all of them, where the likelihood says
 /// so. `calm` is the fit without any.
 pub(super) fn disturbed_throughout(case: &Case, calm: &Fitted, one: Fitted) -> Fitted {
     const ERROR: f64 = 0.01;
@@ -216,7 +216,7 @@ fn filtered(case: &Case, base: &Fitted, held: &dyn Fn(&str) -> bool) -> Result<F
         })
         .collect();
     let solution = filter_error(&problem, &mut |_| ControlFlow::Continue(()))
-        .map_err(|_| Unfit("the filter finds no steady gain".into()))?;
+        .map_err(|why| Unfit(why.to_string()))?;
     if solution.estimate.outcome == Outcome::Diverged {
         return Err(Unfit(solution.estimate.reason));
     }

@@ -49,7 +49,7 @@ pub fn equation_error(
     Ok(solution)
 }
 
-/// What the regression's reason leaves unsaid.
+/// The regression's reason, with a reader of the original problem in mind.
 fn reason(found: &Estimate, left: &[String], integrated: &[String]) -> String {
     let mut reason = format!("equation error: {}", found.reason);
     if found.outcome == Outcome::Converged {

@@ -25,10 +25,9 @@ mod start;
 
 use crate::estimate::accuracy::error_bounds::ErrorBounds;
 use crate::estimate::answer::Solution;
+use crate::estimate::descent::damping;
 use crate::estimate::descent::iterate::Taken;
-use crate::estimate::descent::search::{DAMPING_EASED, DAMPING_NONE, DAMPING_START};
 use crate::estimate::descent::stopped::Stopped;
-use crate::estimate::options::Method;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::progress::Observer;
@@ -57,14 +56,11 @@ pub(crate) fn process_noise_names(problem: &Problem) -> Vec<String> {
 pub fn filter_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<Solution, Unusable> {
     let mut evaluator = FilterEvaluator::new(problem)?;
     let gain_noise = GainNoise::of(&evaluator.start_noise);
-    let mut z = evaluator.start();
-    restore(&mut evaluator, &mut z, &gain_noise.inverse, &[])?;
-    let mut current = Iterate::at(&mut evaluator, z, gain_noise)?;
+    let mut xi = evaluator.start();
+    restore(&mut evaluator, &mut xi, &gain_noise.inverse, &[])?;
+    let mut current = Iterate::at(&mut evaluator, xi, gain_noise)?;
     let mut taken = Taken::default();
-    let mut damping = match problem.options.method {
-        Method::LevenbergMarquardt => DAMPING_START,
-        Method::GaussNewton => 0.0,
-    };
+    let mut damping = damping::start(problem.options.method);
     let mut iteration = 0;
     let stopped = loop {
         let report = current.report(&evaluator, iteration, &taken);
@@ -88,7 +84,7 @@ pub fn filter_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
             // nothing is left to gain with this R in the gain, but R itself still has to follow
             Err(_) if lag > problem.options.tolerance => {
                 let here = Trial {
-                    z: current.z.clone(),
+                    xi: current.xi.clone(),
                     weighting: current.weighting.clone(),
                 };
                 let how = Taken {
@@ -103,8 +99,7 @@ pub fn filter_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
         let Ok(next) = relaxed(&mut evaluator, &current, lower) else {
             break Stopped::Stalled { distance };
         };
-        let eased = how.damping * DAMPING_EASED;
-        damping = if eased < DAMPING_NONE { 0.0 } else { eased };
+        damping = damping::eased(how.damping);
         (current, taken) = (next, how);
         iteration += 1;
     };
@@ -114,6 +109,6 @@ pub fn filter_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
         &current,
         &bounds,
         iteration,
-        &stopped,
+        stopped,
     ))
 }

@@ -8,11 +8,12 @@ use nalgebra::DMatrix;
 use super::gain::{Change, Gain};
 use super::layout::Column;
 use crate::estimate::problem::Problem;
+use crate::estimate::problem::missing::present;
 use crate::model::{Jacobian, Model, Program, Workspace};
 use crate::simulate::{Segment, Stepper, between, initial_state};
 
 /// One sample.
-pub(super) struct Prediction<'a> {
+pub(super) struct Predicted<'a> {
     pub sample: usize,
     /// By output.
     pub outputs: &'a [f64],
@@ -51,7 +52,7 @@ impl<'p> Predictor<'p> {
         parameters: &[f64],
         gain: &Gain,
         (columns, changes): (&[Column], &[Change]),
-        mut sink: impl FnMut(&Prediction<'_>),
+        mut sink: impl FnMut(&Predicted<'_>),
     ) {
         let model = &self.problem.model;
         self.set_parameters(parameters, columns.len());
@@ -61,7 +62,7 @@ impl<'p> Predictor<'p> {
         let mut elapsed = 0.0;
         for k in 0..segment.len() {
             self.observe(segment, (k, elapsed), &state, &tangent, &mut sample);
-            sink(&Prediction {
+            sink(&Predicted {
                 sample: k,
                 outputs: &sample.outputs,
                 innovations: &sample.innovations,
@@ -110,7 +111,7 @@ impl<'p> Predictor<'p> {
         let pairs = to.innovations.iter_mut().zip(&to.outputs);
         for ((innovation, y), measured) in pairs.zip(&segment.measured) {
             let z = measured[k];
-            *innovation = if z.is_nan() { 0.0 } else { z - y };
+            *innovation = present(z - y, z);
         }
         if tangent.width == 0 {
             return;
@@ -152,7 +153,7 @@ impl<'p> Predictor<'p> {
     }
 }
 
-/// What is known at one sample; see [`Prediction`].
+/// What is known at one sample; see [`Predicted`].
 struct Sample {
     outputs: Vec<f64>,
     innovations: Vec<f64>,

@@ -1,4 +1,4 @@
-//! What a user may choose about an estimation. Choices alone: who carries them out is of no concern here.
+//! Choices that a user has about an estimation. They name no code that carries them out.
 
 pub(super) mod error_bounds;
 pub(super) mod estimator;

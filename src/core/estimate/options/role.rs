@@ -1,4 +1,4 @@
-//! What a maneuver is there for.
+//! The part that a maneuver plays in a job.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

@@ -1,4 +1,4 @@
-//! What a user may choose about start values.
+//! Choices about start values.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

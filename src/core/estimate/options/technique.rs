@@ -134,7 +134,7 @@ impl Derivatives {
         ]
     }
 
-    /// What is wrong with the step, if there is one.
+    /// The fault of the step, if it has one.
     pub fn fault(&self) -> Option<String> {
         let step = match *self {
             Self::ForwardDifference { step }

@@ -17,7 +17,7 @@ pub struct Unknown {
     pub upper: f64,
     /// Whether it is held at its start value.
     pub fixed: bool,
-    /// What was known of it before the data, SI.
+    /// Knowledge of it from before the data, SI.
     pub prior: Option<Prior>,
 }
 

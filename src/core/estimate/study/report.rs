@@ -1,4 +1,4 @@
-//! What a derivative study answers.
+//! The answer of a derivative study.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

@@ -6,6 +6,7 @@ use super::run;
 use crate::diagnose::{Inconclusive, Step, diagnose};
 use crate::estimate::Outcome;
 use crate::flight::{Fault, Faults};
+use crate::job::no_start::no_start;
 use crate::job::plan::Plan;
 use crate::job::result::JobResult;
 
@@ -32,6 +33,7 @@ pub fn run_diagnosis(
         Err(Inconclusive::Unfit(why)) => {
             Err(Fault::new("/parameters", "diverged_at_start", why.to_string()).into())
         }
+        Err(Inconclusive::NoStart(why)) => Err(no_start(&plan.problem, why).into()),
         // what there is so far is where the declared model starts from
         Err(Inconclusive::Stopped) => {
             let mut result = run(plan, &mut |_| ControlFlow::Break(()))?;

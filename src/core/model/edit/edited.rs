@@ -1,4 +1,4 @@
-//! What an edit made of a document, and what each parameter that it added is there for.
+//! A document that was edited, and the role of each parameter that was added.
 
 use crate::model::document::ModelDocument;
 
@@ -22,7 +22,7 @@ pub struct Added {
     pub role: AddedRole,
 }
 
-/// What a parameter is to the effect that it belongs to.
+/// The role of a parameter in the effect that added it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum AddedRole {
     /// How much there is of the effect: a bias, a scale, the factor of a term.
@@ -43,6 +43,6 @@ pub enum AddedRole {
     Damping,
     /// How sharply a flow separates with the angle of attack.
     Steepness,
-    /// What something is at the start of the maneuver, or in its steady part: read off the recording.
+    /// The value of something at the start of the maneuver, or in its steady part: read off the recording.
     Reference,
 }

@@ -24,7 +24,7 @@ const STEADY_SPEEDS: [&str; 10] = [
     "V_e", "V_ref", "Vbar", "V_bar", "V_0", "V0", "V_trim", "Ve", "U_0", "U0",
 ];
 
-/// What a speed may be read from.
+/// The quantities that a speed may be read from.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Speed {
     /// A quantity that varies, or the steady flight's.
@@ -229,7 +229,7 @@ impl<'a> Sheet<'a> {
         Ok(name.to_string())
     }
 
-    /// What an expression is at the start of a segment, in parameters and constants: states are replaced by their
+    /// An expression at the start of a segment, in parameters and constants: states are replaced by their
     /// initial values, definitions written out, inputs replaced by fixed parameters that read their first sample.
     /// Where that is too long, a free parameter of each maneuver that starts at the first sample of `channel`.
     pub(super) fn at_start(&mut self, text: &str, unit: &str, channel: &str) -> String {

@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::estimate::likelihood::sums::{Product, Sums, mirror, pairs};
 use crate::estimate::problem::Problem;
+use crate::estimate::problem::missing::present;
 use crate::estimate::problem::unusable::Unusable;
 use crate::model::Scalar;
 use crate::simulate::{March, Standing};
@@ -34,7 +35,7 @@ pub(crate) trait Perturbation {
 }
 
 /// Residuals and columns of ∂y/∂θ over some consecutive samples of a segment.
-pub(crate) struct Columns<'a> {
+pub(crate) struct Differentiated<'a> {
     /// z − y by output, then sample of the stretch.
     pub(crate) residuals: &'a [DVector<f64>],
     /// By output: samples by the segment's own columns.
@@ -52,7 +53,7 @@ pub(crate) fn columns<P: Perturbation>(
     index: usize,
     theta: &[f64],
     places: &[usize],
-    mut sink: impl FnMut(&Columns<'_>),
+    mut sink: impl FnMut(&Differentiated<'_>),
 ) -> Result<Vec<usize>, Unusable> {
     let (model, options) = (&problem.model, &problem.options);
     let (segment, outputs) = (&problem.segments[index], model.outputs.len());
@@ -116,14 +117,14 @@ pub(crate) fn columns<P: Perturbation>(
         }
         for (i, y) in y.iter_mut().enumerate() {
             let measured = &segment.measured[i][first..until];
-            y.iter_mut().zip(measured).for_each(|(y, z)| *y = z - *y);
-            // a missing sample does not count
+            y.iter_mut()
+                .zip(measured)
+                .for_each(|(y, z)| *y = present(z - *y, *z));
             for k in (0..len).filter(|&k| measured[k].is_nan()) {
-                y[k] = 0.0;
                 slopes[i].row_mut(k).fill(0.0);
             }
         }
-        sink(&Columns {
+        sink(&Differentiated {
             residuals: &y,
             slopes: &slopes,
         });
@@ -172,7 +173,7 @@ impl LocalSums {
         }
     }
 
-    fn add(&mut self, stretch: &Columns<'_>, full: bool) {
+    fn add(&mut self, stretch: &Differentiated<'_>, full: bool) {
         let (slopes, residuals) = (stretch.slopes, stretch.residuals);
         for (product, (i, j)) in self.products.iter_mut().zip(pairs(slopes.len(), full)) {
             self.sums.residuals[(i, j)] += residuals[i].dot(&residuals[j]);

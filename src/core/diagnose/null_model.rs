@@ -1,4 +1,4 @@
-//! What a candidate has to beat: the model as it is, and how much better noise alone would make it look.
+//! The null model: the model as it is, which a candidate has to beat by more than noise alone would.
 
 use super::case::Case;
 use super::colour::Colour;
@@ -28,7 +28,7 @@ const SAME: f64 = 1e-3;
 /// So many of the minima found are followed to where the likelihood is greatest.
 const BEST: usize = 4;
 
-/// What a likelihood ratio has to pass.
+/// The value that a likelihood ratio has to exceed.
 pub(super) struct Threshold {
     /// Independent ones that the candidates ask.
     pub questions: f64,
@@ -42,8 +42,8 @@ impl Threshold {
     }
 }
 
-/// What a candidate has to beat: the model as it is.
-pub(super) struct Rival<'c> {
+/// The model as it is, which a candidate has to beat.
+pub(super) struct NullModel<'c> {
     case: &'c Case,
     base: &'c Fitted,
     orders: &'c [usize],
@@ -52,7 +52,7 @@ pub(super) struct Rival<'c> {
     held_out: Option<Vec<f64>>,
 }
 
-impl<'c> Rival<'c> {
+impl<'c> NullModel<'c> {
     pub(super) fn new(case: &'c Case, base: &'c Fitted, orders: &'c [usize]) -> Self {
         // both sides at the likeliest for coloured noise
         let polished = base.clone().polished(orders);
@@ -151,7 +151,7 @@ impl<'c> Rival<'c> {
         })
     }
 
-    /// What a fit takes off the whitened residual, of length 1.
+    /// The part of the whitened residual that a fit explains, of length 1.
     fn explained(&self, fitted: &Fitted) -> Vec<f64> {
         let layout = Layout::of(&self.base.problem);
         let before = &self.base.residual;
@@ -167,7 +167,7 @@ impl<'c> Rival<'c> {
         taken
     }
 
-    /// What speaks against accepting it.
+    /// The objection to accepting it, if there is one.
     pub(super) fn objection(
         &self,
         trial: &Trial,
