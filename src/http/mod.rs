@@ -5,6 +5,8 @@
 //! ([`answer`]). It never waits for a job and never runs long itself: reading recordings and checking models happens on
 //! blocking threads, as many at a time as there are cores ([`compute`]). What goes wrong is a [`problem::Problem`] with a
 //! [`code::Code`].
+//!
+//! Invariant: every failure is a problem document, and every route but a few open ones needs a scope once there are keys.
 
 mod answer;
 mod caller;

@@ -26,9 +26,11 @@ use crate::model::{ModelDocument, Start};
 
 /// Everything that a diagnosis comes to.
 pub struct Conclusion {
+    /// Verdict, effects, evidence.
     pub diagnosis: Diagnosis,
     /// Of the model with the effects in it.
     pub estimate: Estimate,
+    /// Measured outputs beside those of the model with its effects and of the declared one, for each segment.
     pub histories: Vec<TimeHistory>,
 }
 

@@ -26,6 +26,8 @@
 //! start        where to begin; multiple shooting
 //! output_error, filter_error, study
 //! ```
+//!
+//! Invariant: the same problem gives the same estimate to the last bit, and a solver that stops says why.
 
 mod accuracy;
 mod answer;

@@ -10,6 +10,8 @@
 //!
 //! What is readable may still be poor: [`quality`] finds gaps, missing values, stuck sensors and spikes,
 //! and [`summary`] is what a user sees of a maneuver without downloading it.
+//!
+//! Invariant: no bytes panic, and none use more memory than [`Limits`] allow.
 
 mod ascii;
 mod assemble;

@@ -4,6 +4,9 @@
 //! [`simulate`] gives y for any kind of number; [`Sensitivities`] gives y and ∂y/∂θ, the adjoint the
 //! product (∂y/∂θ)ᵀ ȳ alone. A [`Scenario`] makes a maneuver of known truth. Inputs and outputs that the model delays
 //! are delayed here: inputs before a run, outputs behind it.
+//!
+//! Invariant: derivatives are those of the discretised model itself, and numbers do not depend on how many threads or
+//! lanes there are.
 
 mod adjoint;
 mod aligned;

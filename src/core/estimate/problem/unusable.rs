@@ -7,17 +7,30 @@ use crate::simulate::{Diverged, MOST_DELAY};
 pub enum Unusable {
     /// The simulation left the range of numbers.
     #[error("the simulation leaves the range of numbers (segment {}, sample {})", segment + 1, sample + 1)]
-    LeftRange { segment: usize, sample: usize },
+    LeftRange {
+        /// Its index.
+        segment: usize,
+        /// Index of the first sample, as far as it is known.
+        sample: usize,
+    },
     /// Outputs are finite, but the cost or a derivative of an output is not.
     #[error("the cost, an output or a derivative of an output is not a finite number")]
     NotFinite,
     /// The Riccati equation of the Kalman filter has no solution with which the filter is stable.
     #[error("the Kalman filter of segment {} has no steady gain with which it is stable", segment + 1)]
-    NoSteadyGain { segment: usize },
+    NoSteadyGain {
+        /// Its index.
+        segment: usize,
+    },
     /// An input or output is delayed by more than [`MOST_DELAY`] samples, or by no number; by its
     /// place in [`crate::model::Delays::at`].
     #[error("an input or output is delayed by more than {MOST_DELAY} samples of segment {}", segment + 1)]
-    Delayed { segment: usize, delay: usize },
+    Delayed {
+        /// Its index.
+        segment: usize,
+        /// Of the delay.
+        delay: usize,
+    },
     /// The covariance of the residuals is singular: some outputs' residuals are not independent.
     #[error("the residuals of some outputs are not independent: their covariance is singular")]
     SingularNoise,

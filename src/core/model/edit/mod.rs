@@ -36,6 +36,7 @@ const LONGEST_TARGET: usize = 1024;
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Edit {
+    /// What is changed, and how.
     pub kind: EditKind,
     /// An output for `sensor_*` (or an input that is measured, as the accelerometers of a reconstruction), an input
     /// for `input_*`, `actuator_*` and `backlash`, a state or definition (its equation) for the others. Several
@@ -59,6 +60,7 @@ pub struct Edit {
     pub unit: Option<String>,
 }
 
+/// The effects that equations express; y is an output, u an input, x a state, ψ a parameter that is added.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum EditKind {
@@ -105,6 +107,7 @@ pub enum EditKind {
 }
 
 impl EditKind {
+    /// All of them, in the order of the catalogue.
     pub const ALL: [Self; 20] = [
         Self::SensorBias,
         Self::SensorScale,
@@ -154,6 +157,7 @@ impl EditKind {
         }
     }
 
+    /// The kind of this name.
     pub fn find(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
@@ -171,6 +175,7 @@ impl Edit {
         }
     }
 
+    /// The same edit with a term.
     #[must_use]
     pub fn with_term(self, term: impl Into<String>) -> Self {
         Self {
