@@ -6,6 +6,7 @@
 //! Invariant: nothing is sent to an address inside the network unless that was allowed.
 
 mod address;
+mod client;
 mod send;
 mod sign;
 
@@ -17,6 +18,7 @@ use tokio_util::sync::CancellationToken;
 use crate::store::Store;
 
 pub use address::{Allowed, Refused};
+pub use client::http_client;
 pub use sign::{new_secret, signature};
 
 use send::Sender;
