@@ -11,11 +11,11 @@
 //! **Build and run.** `cargo build` (Rust as `rust-toolchain.toml` says, and a C compiler for SQLite);
 //! `cargo run -- serve` serves <http://127.0.0.1:8300>, `cargo run -- demo` shows what it can do.
 //!
-//! **Test.** `tests/run` is everything, `tests/quick <room>` what is wanted while one works on a room. One kind: `cargo test -p trimtab-core --lib` (beside the code of the core),
-//! `--test numbers` and `--test ingest` (the core), `cargo test --lib`, `--test store` and `--test service` (the
-//! service). One subject: its module behind the kind, `cargo test -p trimtab-core --test numbers effects::`. Tests of
-//! PostgreSQL and of pages run behind `tests/postgres` and `tests/browser`, as in `tests/browser cargo test --test
-//! service pages::`.
+//! **Test.** `tests/run` is everything, `tests/quick <room>` what is wanted while one works on a room. One kind:
+//! `cargo test -p trimtab-core --lib` (beside the code of the core), `--test numbers` and `--test ingest` (the core),
+//! `cargo test --lib`, `--test store` and `--test service` (the service). One subject: its module behind the kind,
+//! `cargo test -p trimtab-core --test numbers effects::`. Tests of PostgreSQL and of pages run behind `tests/postgres` and
+//! `tests/browser`, as in `tests/browser cargo test --test service pages::`.
 //!
 //! **Add an effect.** An effect is an edit of a model document with parameters more, without effect at a value of them.
 //! 1. `src/core/model/edit/mod.rs`: a variant of `EditKind` whose doc comment is its formula; in `ALL`, `name` and
