@@ -69,8 +69,8 @@
 //! }
 //! ```
 //!
-//! What a job can ask besides (options, edits, priors, other channels) is a [`job::JobSpec`], which [`job::prepare`] makes
-//! a plan of and [`job::run`] runs, telling of each iteration.
+//! What a job can ask besides (options, edits, priors, other channels) is a [`job::JobSpec`], which [`job::prepare()`] makes
+//! a plan of and [`job::run()`] runs, telling of each iteration.
 
 #![warn(missing_docs)]
 

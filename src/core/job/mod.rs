@@ -1,7 +1,7 @@
 //! What a job is, without saying where it is kept or who runs it: its spec, its log of events, its
 //! status, and the pure function from a spec and its data to a result.
 //!
-//! Invariant: spec and data alone decide the result; all that bad input could break is found by [`prepare`].
+//! Invariant: spec and data alone decide the result; all that bad input could break is found by [`prepare()`].
 
 mod event;
 mod no_start;
