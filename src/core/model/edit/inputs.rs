@@ -1,7 +1,7 @@
 //! Effects between a recorded input and the control surface.
 
-use super::EditError;
 use super::edited::AddedRole;
+use super::error::EditError;
 use super::sensors::{DELAY, LAG, LAGS, SCALE, later};
 use super::sheet::{Sheet, dimension, of_a_difference, per_second, unknown};
 use crate::model::document::Parameter;

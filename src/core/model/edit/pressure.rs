@@ -1,7 +1,7 @@
 //! Derivatives that scale with dynamic pressure, in a model of constant speed.
 
-use super::EditError;
 use super::edited::AddedRole;
+use super::error::EditError;
 use super::sheet::{Sheet, Speed, unknown};
 use super::text::laws;
 use crate::flight::{Dimension, Unit};

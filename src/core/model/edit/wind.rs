@@ -1,7 +1,7 @@
 //! Moving air: a gust, and wind that is not the constant the model has.
 
-use super::EditError;
 use super::edited::AddedRole;
+use super::error::EditError;
 use super::sheet::{Sheet, dimension, unknown};
 use super::text::{laws, names, replace_name};
 use crate::flight::Dimension;

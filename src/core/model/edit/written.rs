@@ -1,0 +1,199 @@
+//! One edit as it is written: kind, target, term.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::error::EditError;
+use crate::model::expression::{LONGEST, LONGEST_NAME};
+
+/// Longest target, in bytes: the names of some outputs.
+const LONGEST_TARGET: usize = 1024;
+
+/// One edit. `kind` and `target` are the words of the effect catalogue.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Edit {
+    /// What is changed, and how.
+    pub kind: EditKind,
+    /// An output for `sensor_*` (or an input that is measured, as the accelerometers of a reconstruction), an input
+    /// for `input_*`, `actuator_*` and `backlash`, a state or definition (its equation) for the others. Several
+    /// joined by `+` for `sensor_delay` and `stall_hysteresis`; `all` for the `missing_term` `qbar`.
+    #[schema(example = "q")]
+    pub target: String,
+    /// What else the kind needs: the term of a `missing_term` (`alpha^2`, `de*abs(de)`, `alphadot`, `qbar`), the arm of a
+    /// `sensor_position` (`x`, `y`, `z`), the channel of an `unrecorded_input` (`dt` or `dt[rad]`), the angle of
+    /// `unsteady_aero` and `stall_hysteresis` (`alpha`), the course of a `wind` (`constant`, `ramp`, `shear`), the input
+    /// that drives a `structural_mode`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "alpha^2")]
+    pub term: Option<String>,
+    /// Name of the (first) parameter that is added; absent: made from kind and target.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "Maa")]
+    pub parameter: Option<String>,
+    /// The unit of the channel of an `unrecorded_input`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "rad")]
+    pub unit: Option<String>,
+}
+
+/// The effects that equations express; y is an output, u an input, x a state, ψ a parameter that is added.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum EditKind {
+    /// y + b
+    SensorBias,
+    /// (1 + k) y
+    SensorScale,
+    /// y + d t, t from the start of the segment
+    SensorDrift,
+    /// y(t - τ)
+    SensorDelay,
+    /// T ẏ_m = y - y_m
+    SensorLag,
+    /// The lever arm of a vane or an accelerometer: α - x q/V + y p/V, β + x r/V - z p/V, a + ω̇ × r + ω × (ω × r)
+    SensorPosition,
+    /// u + b
+    InputBias,
+    /// (1 + k) u
+    InputScale,
+    /// u(t - τ)
+    InputDelay,
+    /// T δ̇ = u - δ
+    ActuatorLag,
+    /// δ̇ = r tanh((u - δ)/(r T))
+    ActuatorRateLimit,
+    /// T δ̇ = max(0, u - b - δ) + min(0, u + b - δ)
+    Backlash,
+    /// ψ u2, a recorded channel that the model does not use
+    UnrecordedInput,
+    /// ψ term, added to an equation
+    MissingTerm,
+    /// ψ (α - w), T ẇ = α - w
+    UnsteadyAero,
+    /// τ1 Ẋ + X = ½ (1 - tanh a1 (α - τ2 α̇ - α*)), lift by ((1 + √X)/2)² α, moment + C (1 - X)
+    StallHysteresis,
+    /// α + A/2 (1 - cos 2π (t - t0)/L)
+    Gust,
+    /// W + c, W + d t or W + s (h - h0)
+    Wind,
+    /// x0 + dx0
+    InitialState,
+    /// y + η, η̈ = -ω² η - 2 ζ ω η̇ + ω² k (u - u0)
+    StructuralMode,
+}
+
+impl EditKind {
+    /// All of them, in the order of the catalogue.
+    pub const ALL: [Self; 20] = [
+        Self::SensorBias,
+        Self::SensorScale,
+        Self::SensorDrift,
+        Self::SensorDelay,
+        Self::SensorLag,
+        Self::SensorPosition,
+        Self::InputBias,
+        Self::InputScale,
+        Self::InputDelay,
+        Self::ActuatorLag,
+        Self::ActuatorRateLimit,
+        Self::Backlash,
+        Self::UnrecordedInput,
+        Self::MissingTerm,
+        Self::UnsteadyAero,
+        Self::StallHysteresis,
+        Self::Gust,
+        Self::Wind,
+        Self::InitialState,
+        Self::StructuralMode,
+    ];
+
+    /// The word of the catalogue.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::SensorBias => "sensor_bias",
+            Self::SensorScale => "sensor_scale",
+            Self::SensorDrift => "sensor_drift",
+            Self::SensorDelay => "sensor_delay",
+            Self::SensorLag => "sensor_lag",
+            Self::SensorPosition => "sensor_position",
+            Self::InputBias => "input_bias",
+            Self::InputScale => "input_scale",
+            Self::InputDelay => "input_delay",
+            Self::ActuatorLag => "actuator_lag",
+            Self::ActuatorRateLimit => "actuator_rate_limit",
+            Self::Backlash => "backlash",
+            Self::UnrecordedInput => "unrecorded_input",
+            Self::MissingTerm => "missing_term",
+            Self::UnsteadyAero => "unsteady_aero",
+            Self::StallHysteresis => "stall_hysteresis",
+            Self::Gust => "gust",
+            Self::Wind => "wind",
+            Self::InitialState => "initial_state",
+            Self::StructuralMode => "structural_mode",
+        }
+    }
+
+    /// The kind of this name.
+    pub fn find(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+}
+
+impl Edit {
+    /// An edit of a kind and a target; parameters have their usual names.
+    pub fn new(kind: EditKind, target: impl Into<String>) -> Self {
+        Self {
+            kind,
+            target: target.into(),
+            term: None,
+            parameter: None,
+            unit: None,
+        }
+    }
+
+    /// The same edit with a term.
+    #[must_use]
+    pub fn with_term(self, term: impl Into<String>) -> Self {
+        Self {
+            term: Some(term.into()),
+            ..self
+        }
+    }
+
+    /// What is written here comes back many times in the document.
+    pub(super) fn check_lengths(&self) -> Result<(), EditError> {
+        let term = self.term.as_deref().unwrap_or_default();
+        let parameter = self.parameter.as_deref().unwrap_or_default();
+        let unit = self.unit.as_deref().unwrap_or_default();
+        let bounds = [
+            ("target", self.target.as_str(), LONGEST_TARGET),
+            ("term", term, LONGEST),
+            ("parameter", parameter, LONGEST_NAME),
+            ("unit", unit, LONGEST_NAME),
+        ];
+        match bounds.iter().find(|(_, text, most)| text.len() > *most) {
+            None => Ok(()),
+            Some(&(field, text, most)) => Err(EditError::TooLong {
+                field,
+                length: text.len(),
+                most,
+            }),
+        }
+    }
+
+    /// The term, or that it is needed.
+    pub(super) fn needed_term(&self, wanted: &'static str) -> Result<&str, EditError> {
+        self.term.as_deref().ok_or(EditError::NoTerm {
+            kind: self.kind.name(),
+            wanted,
+        })
+    }
+
+    pub(super) fn bad_term(&self, message: impl Into<String>) -> EditError {
+        EditError::BadTerm {
+            term: self.term.clone().unwrap_or_default(),
+            message: message.into(),
+        }
+    }
+}
