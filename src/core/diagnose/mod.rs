@@ -24,6 +24,7 @@ mod null_model;
 mod outliers;
 mod polish;
 mod projection;
+mod refused;
 mod report;
 mod residual;
 mod round;
@@ -33,6 +34,7 @@ mod size;
 mod stack;
 mod terms;
 mod trial;
+mod watch;
 
 pub use answer::Conclusion;
 pub use case::{Case, Unfit};
@@ -45,12 +47,15 @@ pub use report::{
     OutputGain, ParameterChange, Refusal, RefusedEffect, Step, Verdict,
 };
 pub use residual::{ResidualAnalysis, SpectralLine, analyse};
-pub use round::Watcher;
+pub use watch::Watcher;
+
+use std::ops::ControlFlow;
 
 use answer::answer;
 use fitted::Fitted;
 use found::Found;
 use round::round;
+use watch::{Stopped, ask, tell};
 
 use crate::estimate::{TimeHistory, Unusable, estimate};
 
@@ -69,6 +74,12 @@ pub enum Inconclusive {
     /// It was asked to stop.
     #[error("stopped on request")]
     Stopped,
+}
+
+impl From<Stopped> for Inconclusive {
+    fn from(_: Stopped) -> Self {
+        Self::Stopped
+    }
 }
 
 /// Finds what the declared model of a case lacks.
@@ -90,9 +101,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
             };
             base = accepted.fitted.clone();
             found.accepted.push(accepted);
-            if watcher(Some(&step)).is_break() {
-                return Err(Inconclusive::Stopped);
-            }
+            tell(watcher, &step)?;
         }
         cleaned = Some(without);
     }
@@ -103,10 +112,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
             .filter(|effect| !found.accepted.iter().any(|a| a.effect == **effect))
             .cloned()
             .collect();
-        let round = round(case, &base, left, number, watcher);
-        if round.stopped {
-            return Err(Inconclusive::Stopped);
-        }
+        let round = round(case, &base, left, number, watcher)?;
         found.refuse(round.refused);
         let Some(accepted) = round.accepted else {
             break;
@@ -120,9 +126,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
         let last = accepted.effect.is_noise();
         let calm = std::mem::replace(&mut base, accepted.fitted.clone());
         found.accepted.push(accepted);
-        if watcher(Some(&step)).is_break() {
-            return Err(Inconclusive::Stopped);
-        }
+        tell(watcher, &step)?;
         if last {
             base = trial::disturbed_throughout(case, &calm, base);
             break;
@@ -138,11 +142,13 @@ fn declared(
     watcher: &mut Watcher<'_>,
 ) -> Result<(Fitted, Vec<TimeHistory>), Inconclusive> {
     let problem = case.problem(&case.document, &case::Values::new())?;
-    let mut stopped = false;
+    let mut going = Ok(());
     let solution = estimate(&problem, &mut |_| {
-        let asked = watcher(None);
-        stopped |= asked.is_break();
-        asked
+        going = going.and(ask(watcher));
+        match going {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(Stopped) => ControlFlow::Break(()),
+        }
     });
     let solution = solution?;
     let step = Step::Fitted {
@@ -150,10 +156,7 @@ fn declared(
         cost: solution.estimate.cost,
         iterations: solution.estimate.iterations,
     };
-    stopped |= watcher(Some(&step)).is_break();
-    if stopped {
-        return Err(Inconclusive::Stopped);
-    }
+    going.and(tell(watcher, &step))?;
     let fitted = Fitted::of(case.document.clone(), problem, &solution);
     Ok((fitted, solution.histories))
 }

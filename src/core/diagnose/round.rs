@@ -1,6 +1,4 @@
-//! One round: screen the catalogue, try what is promising, accept one effect or none.
-
-use std::ops::ControlFlow;
+//! One round: screen the catalogue, try what is promising, hear what speaks against it, accept one effect or none.
 
 use rayon::prelude::*;
 
@@ -10,22 +8,14 @@ use super::effect::{Effect, EffectKind, Treatment};
 use super::fitted::Fitted;
 use super::found::Accepted;
 use super::group::group;
-use super::null_model::{NullModel, POWER, Threshold};
+use super::null_model::{NullModel, Threshold};
+use super::refused::{after_screen, after_trial, is_visible, refused};
 use super::report::{Refusal, RefusedEffect, Step};
 use super::screen::{Screen, Screened, independent_questions};
 use super::stack::Layout;
 use super::trial::{Trial, is_tried_outright, starts};
+use super::watch::{Stopped, Watcher, ask, tell};
 use crate::model::EditKind;
-
-/// Below this share the declared parameters imitate an effect but for their own curvature: it counts as visible only
-/// where even so a step promises much.
-const INVISIBLE: f64 = 0.01;
-
-/// A promise that curvature alone does not make.
-const MUCH: f64 = 20.0;
-
-/// Below this share what is left of an effect is rounding.
-const ROUNDING: f64 = 1e-4;
 
 /// A linear step must promise this much for a candidate to be fitted.
 const WORTH_A_TRIAL: f64 = 6.0;
@@ -35,106 +25,145 @@ const MOST_TRIALS: usize = 16;
 const TOGETHER: usize = 8;
 
 /// The outcome of a round.
+#[derive(Default)]
 pub(super) struct Round {
     pub accepted: Option<Accepted>,
     pub refused: Vec<RefusedEffect>,
-    pub stopped: bool,
 }
-
-/// Told of all progress, and asked every now and then with nothing to tell; may stop the diagnosis.
-pub type Watcher<'o> = dyn FnMut(Option<&Step>) -> ControlFlow<()> + 'o;
 
 /// A screened candidate, or why it was not.
 type Seen = (Effect, Result<Screened, String>);
 
+/// A candidate to be tried, with its screen where it has one.
+type ToTry = (Effect, Option<Screened>);
+
+/// The round of that number, from the fit of the model as it is.
+///
+/// # Errors
+/// The watcher stopped it.
 pub(super) fn round(
     case: &Case,
     base: &Fitted,
     candidates: Vec<Effect>,
     number: usize,
     watcher: &mut Watcher<'_>,
-) -> Round {
+) -> Result<Round, Stopped> {
+    let mut result = Round::default();
     let layout = Layout::of(&base.problem);
     let colour = Colour::of_best_order(&layout, &base.residual);
-    let mut result = Round {
-        accepted: None,
-        refused: Vec::new(),
-        stopped: false,
-    };
     let Some(screen) = Screen::new(case, base, &colour) else {
-        return result;
+        return Ok(result);
     };
     let (outright, local): (Vec<Effect>, Vec<Effect>) =
-        candidates.into_iter().partition(|effect| {
-            is_tried_outright(effect.kind)
-                || matches!(effect.kind, EffectKind::Treatment(Treatment::ProcessNoise))
-        });
+        (candidates.into_iter()).partition(has_no_derivative);
+    let seen = screen_all(case, base, &screen, &local, watcher)?;
+    let threshold = Threshold {
+        questions: questions(&seen) + outright.len() as f64,
+    };
+    tell(watcher, &screened_step(&seen, outright.len(), number))?;
+
+    let orders = colour.orders();
+    let coloured = orders.iter().any(|&order| order > 0);
+    let outright = outright
+        .into_iter()
+        .filter(|effect| coloured || !effect.is_noise())
+        .map(|effect| (effect, None));
+    let to_try: Vec<ToTry> = promising(&seen).into_iter().chain(outright).collect();
+    let null_model = NullModel::new(case, base, &orders);
+    let trials = try_all(&null_model, &to_try, number, &mut result, watcher)?;
+    let passing = object(
+        &null_model,
+        trials,
+        &threshold,
+        number,
+        &mut result,
+        watcher,
+    )?;
+    let untried = untried(&seen, &passing, &result, &threshold);
+    choose(&null_model, passing, &threshold, &mut result);
+    result.refused.extend(untried);
+    Ok(result)
+}
+
+/// What has no derivative at no effect, so that the screen cannot see it.
+fn has_no_derivative(effect: &Effect) -> bool {
+    is_tried_outright(effect.kind)
+        || matches!(effect.kind, EffectKind::Treatment(Treatment::ProcessNoise))
+}
+
+fn screen_all(
+    case: &Case,
+    base: &Fitted,
+    screen: &Screen<'_>,
+    candidates: &[Effect],
+    watcher: &mut Watcher<'_>,
+) -> Result<Vec<Seen>, Stopped> {
     let mut seen: Vec<Seen> = Vec::new();
-    for some in local.chunks(TOGETHER) {
-        if watcher(None).is_break() {
-            result.stopped = true;
-            return result;
-        }
+    for some in candidates.chunks(TOGETHER) {
+        ask(watcher)?;
         let screened = some.to_vec().into_par_iter().map(|effect| {
-            let screened = screened(case, base, &screen, &effect);
+            let screened = screened(case, base, screen, &effect);
             (effect, screened)
         });
         seen.extend(screened.collect::<Vec<Seen>>());
     }
-    let visible: Vec<&Seen> = seen.iter().filter(|(_, s)| is_visible(s)).collect();
+    Ok(seen)
+}
+
+/// How many independent questions the candidates that can be seen ask.
+fn questions(seen: &[Seen]) -> f64 {
+    let visible = seen.iter().filter(|(_, s)| is_visible(s));
     let directions: Vec<&[f64]> = visible
-        .iter()
         .filter_map(|(_, s)| Some(&*s.as_ref().ok()?.direction))
         .collect();
-    let questions = independent_questions(&directions) + outright.len() as f64;
-    let step = Step::Screened {
-        round: number,
-        candidates: seen.len() + outright.len(),
-        visible: visible.len() + outright.len(),
-    };
-    if watcher(Some(&step)).is_break() {
-        result.stopped = true;
-        return result;
-    }
-    let threshold = Threshold { questions };
+    independent_questions(&directions)
+}
 
-    let mut promising: Vec<&Seen> = visible;
-    promising.retain(|(_, s)| {
-        s.as_ref()
-            .is_ok_and(|s| s.promise.max(s.score) > WORTH_A_TRIAL)
-    });
+fn screened_step(seen: &[Seen], outright: usize, round: usize) -> Step {
+    let visible = seen.iter().filter(|(_, s)| is_visible(s)).count();
+    Step::Screened {
+        round,
+        candidates: seen.len() + outright,
+        visible: visible + outright,
+    }
+}
+
+/// The candidates of which a linear step promises most, and all delays that can be seen.
+fn promising(seen: &[Seen]) -> Vec<ToTry> {
+    let mut promising: Vec<&Seen> = (seen.iter())
+        .filter(|(_, s)| is_visible(s))
+        .filter(|(_, s)| {
+            s.as_ref()
+                .is_ok_and(|s| s.promise.max(s.score) > WORTH_A_TRIAL)
+        })
+        .collect();
     let promise = |seen: &Seen| seen.1.as_ref().map_or(0.0, |s| s.promise);
     promising.sort_by(|a, b| promise(b).total_cmp(&promise(a)));
     promising.truncate(MOST_TRIALS);
     // a delay of some samples is no small change: one linear step says little of it
-    let delays = seen
-        .iter()
-        .filter(|(effect, s)| is_visible(s) && is_delay(effect));
+    let delays = (seen.iter()).filter(|(effect, s)| is_visible(s) && is_delay(effect));
     for delay in delays {
         if !promising.iter().any(|(effect, _)| *effect == delay.0) {
             promising.push(delay);
         }
     }
-    let mut to_try: Vec<(Effect, Option<Screened>)> = promising
-        .iter()
+    promising
+        .into_iter()
         .filter_map(|(effect, s)| Some((effect.clone(), Some(s.clone().ok()?))))
-        .collect();
-    let coloured = colour.orders().iter().any(|&order| order > 0);
-    to_try.extend(
-        outright
-            .into_iter()
-            .filter(|effect| coloured || !effect.is_noise())
-            .map(|e| (e, None)),
-    );
+        .collect()
+}
 
-    let orders = colour.orders();
-    let null_model = NullModel::new(case, base, &orders);
+/// Fits the candidates; those that cannot be fitted are refused.
+fn try_all(
+    null_model: &NullModel<'_>,
+    to_try: &[ToTry],
+    number: usize,
+    result: &mut Round,
+    watcher: &mut Watcher<'_>,
+) -> Result<Vec<Trial>, Stopped> {
     let mut trials: Vec<Trial> = Vec::new();
     for some in to_try.chunks(TOGETHER) {
-        if watcher(None).is_break() {
-            result.stopped = true;
-            return result;
-        }
+        ask(watcher)?;
         let tried: Vec<(Effect, Result<Trial, String>)> = (some.to_vec().into_par_iter())
             .map(|(effect, screened)| (effect.clone(), null_model.trial(effect, screened)))
             .collect();
@@ -147,81 +176,94 @@ pub(super) fn round(
                         likelihood_ratio: trial.likelihood_ratio,
                     };
                     trials.push(trial);
-                    if watcher(Some(&step)).is_break() {
-                        result.stopped = true;
-                        return result;
-                    }
+                    tell(watcher, &step)?;
                 }
                 Err(why) => {
-                    result
-                        .refused
-                        .push(refused(effect, Refusal::NotFitted, why, None, None))
+                    let refused = refused(effect, Refusal::NotFitted, why, None, None);
+                    result.refused.push(refused);
                 }
             }
         }
     }
+    Ok(trials)
+}
 
+/// The trials that nothing speaks against; the others are refused.
+fn object(
+    null_model: &NullModel<'_>,
+    trials: Vec<Trial>,
+    threshold: &Threshold,
+    number: usize,
+    result: &mut Round,
+    watcher: &mut Watcher<'_>,
+) -> Result<Vec<Trial>, Stopped> {
     let mut passing: Vec<Trial> = Vec::new();
     for trial in trials {
-        match null_model.objection(&trial, &threshold) {
-            None => passing.push(trial),
-            Some((reason, why)) => {
-                if reason != Refusal::NotSignificant {
-                    let step = Step::Refused {
-                        round: number,
-                        name: trial.effect.name(),
-                        reason,
-                        sentence: why.clone(),
-                    };
-                    if watcher(Some(&step)).is_break() {
-                        result.stopped = true;
-                    }
-                }
-                result
-                    .refused
-                    .push(of_trial(&trial, reason, why, &threshold));
-            }
+        let Some((reason, why)) = null_model.objection(&trial, threshold) else {
+            passing.push(trial);
+            continue;
+        };
+        if reason != Refusal::NotSignificant {
+            let step = Step::Refused {
+                round: number,
+                name: trial.effect.name(),
+                reason,
+                sentence: why.clone(),
+            };
+            tell(watcher, &step)?;
         }
+        let refused = after_trial(&trial, reason, why, threshold);
+        result.refused.push(refused);
     }
     passing.sort_by(|a, b| b.merit().total_cmp(&a.merit()));
+    Ok(passing)
+}
+
+/// Candidates that were screened and not tried, refused for what the screen said.
+fn untried(
+    seen: &[Seen],
+    passing: &[Trial],
+    result: &Round,
+    threshold: &Threshold,
+) -> Vec<RefusedEffect> {
     let tried = |effect: &Effect| {
         result.refused.iter().any(|r| r.effect == *effect)
             || passing.iter().any(|t| t.effect == *effect)
     };
-    let untried: Vec<RefusedEffect> = seen
-        .iter()
+    (seen.iter())
         .filter(|(effect, _)| !tried(effect))
-        .map(|(effect, screened)| of_screen(effect, screened, &threshold))
-        .collect();
+        .map(|(effect, screened)| after_screen(effect, screened, threshold))
+        .collect()
+}
+
+/// Accepts the best of those that passed, with the group that the data cannot tell from it; the others were outdone.
+fn choose(
+    null_model: &NullModel<'_>,
+    passing: Vec<Trial>,
+    threshold: &Threshold,
+    result: &mut Round,
+) {
     let mut passing = passing.into_iter();
-    if let Some(best) = passing.next() {
-        let others: Vec<Trial> = passing.collect();
-        let others: Vec<&Trial> = others.iter().collect();
-        let group = group(&best, &others);
-        for other in others {
-            let why = format!(
-                "{} explains the data better, by {:.1} in the log-likelihood",
-                best.effect.name(),
-                0.5 * (best.merit() - other.merit())
-            );
-            result
-                .refused
-                .push(of_trial(other, Refusal::Outdone, why, &threshold));
-        }
-        result.accepted = Some(null_model.accepted(best, group, &threshold));
+    let Some(best) = passing.next() else {
+        return;
+    };
+    let others: Vec<Trial> = passing.collect();
+    let others: Vec<&Trial> = others.iter().collect();
+    let group = group(&best, &others);
+    for other in others {
+        let why = format!(
+            "{} explains the data better, by {:.1} in the log-likelihood",
+            best.effect.name(),
+            0.5 * (best.merit() - other.merit())
+        );
+        let refused = after_trial(other, Refusal::Outdone, why, threshold);
+        result.refused.push(refused);
     }
-    result.refused.extend(untried);
-    result
+    result.accepted = Some(null_model.accepted(best, group, threshold));
 }
 
 fn is_delay(effect: &Effect) -> bool {
     effect.kind == EffectKind::Edit(EditKind::SensorDelay)
-}
-
-fn is_visible(screened: &Result<Screened, String>) -> bool {
-    screened
-        .as_ref()
-        .is_ok_and(|s| s.visible >= INVISIBLE || (s.visible >= ROUNDING && s.promise > MUCH))
 }
 
 /// The screen of a candidate, from the best of its starts.
@@ -250,76 +292,4 @@ fn screened(
     let mut best = best.ok_or(failure)?;
     best.starts = count;
     Ok(best)
-}
-
-fn refused(
-    effect: Effect,
-    reason: Refusal,
-    sentence: String,
-    likelihood_ratio: Option<f64>,
-    seen: Option<(&Screened, f64)>,
-) -> RefusedEffect {
-    RefusedEffect {
-        effect,
-        reason,
-        sentence,
-        likelihood_ratio,
-        visible_fraction: seen.map(|(s, _)| s.visible),
-        smallest_seen: seen.map(|(s, root)| s.one_sigma * (root + POWER)),
-        held_out: None,
-    }
-}
-
-fn of_trial(trial: &Trial, reason: Refusal, why: String, threshold: &Threshold) -> RefusedEffect {
-    let seen = trial
-        .screened
-        .as_ref()
-        .map(|s| (s, threshold.of(1, 1).sqrt()));
-    let held_out = trial.held_out.as_ref().map(|gains| gains.iter().sum());
-    RefusedEffect {
-        held_out,
-        ..refused(
-            trial.effect.clone(),
-            reason,
-            why,
-            Some(trial.likelihood_ratio),
-            seen,
-        )
-    }
-}
-
-fn of_screen(
-    effect: &Effect,
-    screened: &Result<Screened, String>,
-    threshold: &Threshold,
-) -> RefusedEffect {
-    let seen = match screened {
-        Err(why) => return refused(effect.clone(), Refusal::NotFitted, why.clone(), None, None),
-        Ok(seen) => seen,
-    };
-    let root = threshold.of(1, 1).sqrt();
-    if !is_visible(screened) {
-        let why = "the declared parameters imitate it: these data cannot show it, whether it is there or not";
-        return RefusedEffect {
-            smallest_seen: None,
-            ..refused(
-                effect.clone(),
-                Refusal::Invisible,
-                why.into(),
-                None,
-                Some((seen, root)),
-            )
-        };
-    }
-    let why = format!(
-        "one linear step promises a likelihood ratio of {:.1}, no more than noise gives",
-        seen.promise.max(0.0)
-    );
-    refused(
-        effect.clone(),
-        Refusal::NotSignificant,
-        why,
-        Some(seen.promise),
-        Some((seen, root)),
-    )
 }
