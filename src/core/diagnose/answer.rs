@@ -2,8 +2,8 @@
 
 use std::ops::ControlFlow;
 
+use super::accepted::Accepted;
 use super::case::{Case, Unfit};
-use super::colour::Colour;
 use super::difference::difference;
 use super::fitted::Fitted;
 use super::found::Found;
@@ -11,9 +11,7 @@ use super::report::{
     Diagnosis, EffectParameter, FitChange, NamedEffect, ParameterChange, Refusal, Verdict,
 };
 use super::residual::analyse;
-use super::round::Accepted;
 use super::screen::Screen;
-use super::stack::Layout;
 use super::{Conclusion, sentence};
 use crate::estimate::{
     Estimate, OutputFit, ParameterEstimate, Problem, Role, Solution, TimeHistory, estimate,
@@ -154,10 +152,8 @@ fn predictions(
 
 /// Outputs and inputs that the residual still is coherent with.
 fn coherent(case: &Case, last: &Fitted) -> Vec<(String, String)> {
-    let layout = Layout::of(&last.problem);
-    let colour = Colour::of_best_order(&layout, &last.residual);
     let model = &last.problem.model;
-    let Some(screen) = Screen::new(case, last, &colour) else {
+    let Some(screen) = Screen::new(case, last) else {
         return Vec::new();
     };
     let mut found = Vec::new();

@@ -1,8 +1,8 @@
 //! What the rounds found, and what they refused.
 
+use super::accepted::Accepted;
 use super::effect::Effect;
 use super::report::{Refusal, RefusedEffect};
-use super::round::Accepted;
 
 /// Effects that were accepted, in their order, and candidates that were not, with the reason.
 #[derive(Default)]

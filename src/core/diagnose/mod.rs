@@ -7,28 +7,38 @@
 //! group, what they cannot show is reported as invisible. An [`Effect`] is an edit of the model document, so that
 //! what results is a document again.
 
+mod accepted;
 mod answer;
 mod case;
 mod catalogue;
 mod colour;
 mod difference;
+mod disturbed;
 mod effect;
 mod fitted;
 mod flight;
 mod found;
+mod gate;
 mod group;
+mod null_model;
 mod outliers;
 mod polish;
+mod predicted;
 mod projection;
+mod refused;
+mod repeats;
 mod report;
 mod residual;
-mod rival;
+mod review;
 mod round;
 mod screen;
 mod sentence;
 mod stack;
+mod starts;
 mod terms;
+mod threshold;
 mod trial;
+mod watch;
 
 pub use case::{Case, Unfit};
 pub use catalogue::candidates;
@@ -40,12 +50,16 @@ pub use report::{
     OutputGain, ParameterChange, Refusal, RefusedEffect, Step, Verdict,
 };
 pub use residual::{ResidualAnalysis, SpectralLine, analyse};
-pub use round::Watcher;
+pub use watch::Watcher;
 
+use accepted::Accepted;
 use answer::answer;
+use disturbed::disturbed_throughout;
 use fitted::Fitted;
 use found::Found;
-use round::{Accepted, cost_of_removal, round};
+use review::remove_needless;
+use round::round;
+use watch::{Stopped, ask, tell};
 
 use crate::estimate::{Estimate, TimeHistory, estimate};
 
@@ -75,6 +89,12 @@ impl From<Unfit> for Inconclusive {
     }
 }
 
+impl From<Stopped> for Inconclusive {
+    fn from(_: Stopped) -> Self {
+        Self::Stopped
+    }
+}
+
 /// Finds what the declared model of a case lacks.
 ///
 /// # Errors
@@ -83,23 +103,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
     let (declared, fitted) = declared(case, watcher)?;
     let mut found = Found::default();
     let mut base = declared.clone();
-    let mut cleaned = None;
-    if let Some((without, accepted)) = outliers::clean(case, &declared) {
-        for accepted in accepted {
-            let step = Step::Accepted {
-                round: 0,
-                name: accepted.effect.name(),
-                likelihood_ratio: accepted.evidence.likelihood_ratio,
-                sentence: sentence::words(&accepted.effect),
-            };
-            base = accepted.fitted.clone();
-            found.accepted.push(accepted);
-            if watcher(Some(&step)).is_break() {
-                return Err(Inconclusive::Stopped);
-            }
-        }
-        cleaned = Some(without);
-    }
+    let cleaned = clean(case, &declared, &mut base, &mut found, watcher)?;
     let case = cleaned.as_ref().unwrap_or(case);
     let catalogue = catalogue::candidates(case, &declared.problem.model);
     for number in 1..=MOST_ROUNDS {
@@ -107,33 +111,55 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
             .filter(|effect| !found.accepted.iter().any(|a| a.effect == **effect))
             .cloned()
             .collect();
-        let round = round(case, &base, left, number, watcher);
-        if round.stopped {
-            return Err(Inconclusive::Stopped);
-        }
+        let round = round(case, &base, left, number, watcher)?;
         found.refuse(round.refused);
         let Some(accepted) = round.accepted else {
             break;
         };
-        let step = Step::Accepted {
-            round: number,
-            name: accepted.effect.name(),
-            likelihood_ratio: accepted.evidence.likelihood_ratio,
-            sentence: sentence::of(&accepted.effect, &accepted.added, &accepted.fitted.estimate),
-        };
-        let last = accepted.effect.is_noise();
         let calm = std::mem::replace(&mut base, accepted.fitted.clone());
-        found.accepted.push(accepted);
-        if watcher(Some(&step)).is_break() {
-            return Err(Inconclusive::Stopped);
-        }
+        let last = accepted.effect.is_noise();
+        accept(accepted, number, &mut found, watcher)?;
         if last {
-            base = trial::disturbed_throughout(case, &calm, base);
+            base = disturbed_throughout(case, &calm, base);
             break;
         }
     }
     remove_needless(case, &declared, &mut base, &mut found);
     Ok(answer(case, &declared, &fitted, &base, found)?)
+}
+
+/// Leaves out samples that are no measurements; `None` where there are none.
+fn clean(
+    case: &Case,
+    declared: &Fitted,
+    base: &mut Fitted,
+    found: &mut Found,
+    watcher: &mut Watcher<'_>,
+) -> Result<Option<Case>, Stopped> {
+    let Some((without, outliers)) = outliers::clean(case, declared) else {
+        return Ok(None);
+    };
+    for outlying in outliers {
+        *base = outlying.fitted.clone();
+        accept(outlying, 0, found, watcher)?;
+    }
+    Ok(Some(without))
+}
+
+fn accept(
+    accepted: Accepted,
+    round: usize,
+    found: &mut Found,
+    watcher: &mut Watcher<'_>,
+) -> Result<(), Stopped> {
+    let step = Step::Accepted {
+        round,
+        name: accepted.effect.name(),
+        likelihood_ratio: accepted.evidence.likelihood_ratio,
+        sentence: sentence::of(&accepted.effect, &accepted.added, &accepted.fitted.estimate),
+    };
+    found.accepted.push(accepted);
+    tell(watcher, &step)
 }
 
 /// The declared model, fitted as the job's options say, and its time histories.
@@ -142,12 +168,15 @@ fn declared(
     watcher: &mut Watcher<'_>,
 ) -> Result<(Fitted, Vec<TimeHistory>), Inconclusive> {
     let problem = case.problem(&case.document, &case::Values::new())?;
-    let mut stopped = false;
+    let mut stopped = Ok(());
     let solution = estimate(&problem, &mut |_| {
-        let asked = watcher(None);
-        stopped |= asked.is_break();
-        asked
+        stopped = stopped.and(ask(watcher));
+        match stopped {
+            Ok(()) => std::ops::ControlFlow::Continue(()),
+            Err(Stopped) => std::ops::ControlFlow::Break(()),
+        }
     });
+    stopped?;
     let solution = solution.map_err(|_| {
         Unfit("with the start values the simulation of the declared model leaves the range of numbers".into())
     })?;
@@ -156,10 +185,7 @@ fn declared(
         cost: solution.estimate.cost,
         iterations: solution.estimate.iterations,
     };
-    stopped |= watcher(Some(&step)).is_break();
-    if stopped {
-        return Err(Inconclusive::Stopped);
-    }
+    tell(watcher, &step)?;
     let fitted = Fitted::of(
         case.document.clone(),
         problem,
@@ -167,42 +193,4 @@ fn declared(
         &solution.histories,
     );
     Ok((fitted, solution.histories))
-}
-
-/// Takes out again what later effects made needless.
-fn remove_needless(case: &Case, declared: &Fitted, base: &mut Fitted, found: &mut Found) {
-    let mut at = 0;
-    while found.accepted.len() > 1 && at < found.accepted.len() {
-        let without = (found.accepted.iter().enumerate())
-            .filter(|(other, _)| *other != at)
-            .try_fold(declared.document.clone(), |document, (_, a)| {
-                a.effect.apply(&document)
-            });
-        let removal = without.ok().and_then(|without| {
-            Some((
-                cost_of_removal(case, base, without.clone(), &base.values)?,
-                without,
-            ))
-        });
-        let Accepted {
-            evidence, effect, ..
-        } = &found.accepted[at];
-        if effect.edits.is_empty() {
-            at += 1;
-            continue;
-        }
-        match removal {
-            Some((cost, without)) if cost < evidence.threshold => {
-                let Ok(fitted) = Fitted::trial(case, without, &base.values) else {
-                    at += 1;
-                    continue;
-                };
-                *base = fitted;
-                let removed = found.accepted.remove(at);
-                found.needless(removed, cost);
-                at = 0;
-            }
-            _ => at += 1,
-        }
-    }
 }

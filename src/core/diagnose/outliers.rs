@@ -1,11 +1,11 @@
 //! Samples that are no measurements: spikes, dropouts and stuck values, found before anything else, since least squares
 //! follow them.
 
+use super::accepted::Accepted;
 use super::case::Case;
 use super::effect::{Effect, Treatment};
 use super::fitted::Fitted;
 use super::report::Evidence;
-use super::round::Accepted;
 use super::stack::Layout;
 use crate::estimate::Role;
 

@@ -1,0 +1,48 @@
+//! The null model: the model as it is, which a candidate has to beat.
+
+use super::case::{Case, Unfit};
+use super::colour::Colour;
+use super::fitted::Fitted;
+use super::predicted::Predicted;
+use super::projection::norm;
+use super::stack::Layout;
+use crate::estimate::Role;
+
+pub(super) struct NullModel<'c> {
+    pub case: &'c Case,
+    /// Fitted by output error.
+    pub base: &'c Fitted,
+    /// ln L with the noise that suits it, where that is greatest.
+    pub ln_evidence: f64,
+    /// Of flights that were not fitted; `None` where there are none.
+    pub predicted: Option<Predicted>,
+    colour: Colour,
+    layout: Layout,
+}
+
+impl<'c> NullModel<'c> {
+    /// # Errors
+    /// The flights that were not fitted cannot be predicted.
+    pub(super) fn new(case: &'c Case, base: &'c Fitted) -> Result<Self, Unfit> {
+        let layout = Layout::of(&base.problem);
+        Ok(Self {
+            case,
+            base,
+            ln_evidence: base.clone().likeliest().ln_evidence(),
+            predicted: Predicted::of(base, case, Role::Validation)?,
+            colour: Colour::of_best_order(&layout, &base.residual),
+            layout,
+        })
+    }
+
+    /// What a fit takes off the whitened residual, of length 1.
+    pub(super) fn explained_by(&self, fitted: &Fitted) -> Vec<f64> {
+        let before = &self.base.residual;
+        let pairs = before.iter().zip(&fitted.residual);
+        let taken: Vec<f64> = pairs.map(|(before, after)| before - after).collect();
+        let mut taken = self.colour.whiten(&self.layout, before, &taken);
+        let length = norm(&taken).max(f64::MIN_POSITIVE);
+        taken.iter_mut().for_each(|value| *value /= length);
+        taken
+    }
+}
