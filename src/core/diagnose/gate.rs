@@ -18,6 +18,9 @@ use crate::model::{Added, EditKind};
 /// A size within so many standard errors of nothing is nothing that one can tell an engineer of.
 const LEAST_ERRORS: f64 = 2.0;
 
+/// Two sizes of a larger correlation are one.
+const TIED: f64 = 0.97;
+
 /// Flights that were not fitted speak of an effect where it should change their likelihood by at least this.
 const HEARD: f64 = 8.0;
 
@@ -84,6 +87,7 @@ fn judge(
     let settled = settle(null.case, trial)?;
     within_range(null.base, &trial.effect, &settled)?;
     told_from_nothing(&trial.effect, &settled, &added)?;
+    told_from_earlier(null, &settled, &added)?;
     if let Some(size) = added.first().filter(|_| !is_local_in_time(&trial.effect))
         && let Some(why) = disagreement(&settled, size)
     {
@@ -160,6 +164,39 @@ fn told_from_nothing(effect: &Effect, fitted: &Fitted, added: &[String]) -> Resu
         }
         _ => Ok(()),
     }
+}
+
+/// Its size is not tied to that of an effect that is in the model already: two that nearly cancel (all outputs late, and
+/// the input early) are each significant, and together next to nothing.
+fn told_from_earlier(
+    null: &NullModel<'_>,
+    fitted: &Fitted,
+    added: &[String],
+) -> Result<(), Objection> {
+    let names: Vec<&str> = (fitted.estimate.parameters.iter())
+        .filter(|row| !row.fixed)
+        .map(|row| row.name.as_str())
+        .collect();
+    let places = |of: &[String]| -> Vec<usize> {
+        (0..names.len())
+            .filter(|&place| of.iter().any(|name| name == names[place]))
+            .collect()
+    };
+    let (new, earlier) = (places(added), places(null.earlier));
+    let correlation = &fitted.estimate.correlation;
+    for &i in &new {
+        for &j in &earlier {
+            let tied = correlation.get(i).and_then(|row| row.get(j));
+            if tied.is_some_and(|r| r.abs() > TIED) {
+                let why = format!(
+                    "the data cannot tell it from {}, which is in the model already (correlation {:.3})",
+                    names[j], correlation[i][j]
+                );
+                return Err((Refusal::Outdone, why));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Whether flights that were not fitted are predicted better with it; gains by output.

@@ -50,7 +50,7 @@ struct Seen {
     screened: Option<Screened>,
 }
 
-/// One round with `number`, from the fit of the model as it is.
+/// One round with `number`, from the fit of the model as it is; `earlier` are the parameters of the effects in it.
 ///
 /// # Errors
 /// The watcher stopped it.
@@ -58,6 +58,7 @@ pub(super) fn round(
     case: &Case,
     base: &Fitted,
     candidates: Vec<Effect>,
+    earlier: &[String],
     number: usize,
     watcher: &mut Watcher<'_>,
 ) -> Result<Round, Stopped> {
@@ -65,7 +66,8 @@ pub(super) fn round(
         accepted: None,
         refused: Vec::new(),
     };
-    let (Some(screen), Ok(null)) = (Screen::new(case, base), NullModel::new(case, base)) else {
+    let (Some(screen), Ok(null)) = (Screen::new(case, base), NullModel::new(case, base, earlier))
+    else {
         return Ok(result);
     };
     let seen = screen_all(&screen, candidates, &mut result.refused, watcher)?;
