@@ -34,6 +34,7 @@ mod review;
 mod round;
 mod screen;
 mod sentence;
+mod spikes;
 mod stack;
 mod starts;
 mod terms;
