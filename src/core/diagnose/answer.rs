@@ -11,8 +11,8 @@ use super::found::Found;
 use super::report::{Diagnosis, EffectParameter, FitChange, NamedEffect, ParameterChange};
 use super::residual::analyse;
 use super::screen::Screen;
+use super::sentence;
 use super::verdict::{self, Left};
-use super::{Conclusion, sentence};
 use crate::estimate::{
     Estimate, OutputFit, ParameterEstimate, Problem, Role, Solution, TimeHistory, estimate,
     five_digits, predict,
@@ -22,6 +22,14 @@ use crate::model::{Model, ModelDocument, Start};
 
 /// Noise alone makes a residual look coherent with an input once in so many diagnoses.
 const COHERENT: f64 = 1e-3;
+
+/// Everything that a diagnosis comes to.
+pub struct Conclusion {
+    pub diagnosis: Diagnosis,
+    /// Of the model with the effects in it.
+    pub estimate: Estimate,
+    pub histories: Vec<TimeHistory>,
+}
 
 pub(super) fn answer(
     case: &Case,

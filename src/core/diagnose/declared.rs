@@ -2,9 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use super::Inconclusive;
 use super::case::{Case, Unfit, Values};
 use super::fitted::Fitted;
+use super::inconclusive::Inconclusive;
 use super::report::Step;
 use super::watch::{Stopped, Watcher, ask, tell};
 use crate::estimate::{StartMethod, TimeHistory, estimate};

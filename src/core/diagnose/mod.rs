@@ -21,6 +21,7 @@ mod flight;
 mod found;
 mod gate;
 mod group;
+mod inconclusive;
 mod null_model;
 mod outliers;
 mod polish;
@@ -43,11 +44,13 @@ mod trial;
 mod verdict;
 mod watch;
 
+pub use answer::Conclusion;
 pub use case::{Case, Unfit};
 pub use catalogue::candidates;
 pub use difference::difference;
 pub use effect::{Effect, EffectKind, Treatment};
 pub use flight::Flight;
+pub use inconclusive::Inconclusive;
 pub use report::{
     Diagnosis, DocumentChange, EffectParameter, Evidence, FitChange, Member, NamedEffect,
     OutputGain, ParameterChange, Refusal, RefusedEffect, Step, Verdict,
@@ -65,42 +68,11 @@ use review::remove_needless;
 use round::round;
 use watch::{Stopped, tell};
 
-use crate::estimate::{Estimate, TimeHistory};
-
 /// Rounds, and so effects, at most: who lacks more than these has another model.
 const MOST_ROUNDS: usize = 6;
 
 /// How often the declared model's fit may turn out to have ended in a false minimum.
 const MOST_RENEWALS: usize = 2;
-
-/// Everything that a diagnosis comes to.
-pub struct Conclusion {
-    pub diagnosis: Diagnosis,
-    /// Of the model with the effects in it.
-    pub estimate: Estimate,
-    pub histories: Vec<TimeHistory>,
-}
-
-/// Why there is no conclusion.
-#[derive(Debug)]
-pub enum Inconclusive {
-    /// The declared model cannot be fitted.
-    Unfit(Unfit),
-    /// It was asked to stop.
-    Stopped,
-}
-
-impl From<Unfit> for Inconclusive {
-    fn from(why: Unfit) -> Self {
-        Self::Unfit(why)
-    }
-}
-
-impl From<Stopped> for Inconclusive {
-    fn from(_: Stopped) -> Self {
-        Self::Stopped
-    }
-}
 
 /// Finds what the declared model of a case lacks.
 ///

@@ -20,6 +20,7 @@ mod jacobian;
 pub mod limits;
 mod names;
 mod native;
+mod operation;
 mod program;
 mod scalar;
 mod trigonometry;

@@ -1,0 +1,117 @@
+//! What a diagnosis asks for beyond an estimation, and what it is made from.
+
+use super::bounds::JOB_TOO_LARGE;
+use super::checks::{MOST_EDITS, too_many_edits};
+use super::resolve::Stretch;
+use crate::diagnose::{Case, Effect, Flight};
+use crate::estimate::{Derivatives, Estimator, Problem, Role};
+use crate::flight::Fault;
+use crate::job::spec::JobSpec;
+use crate::model::{Model, ModelDocument, Recorded, expression};
+use crate::simulate::Segment;
+
+/// Most values of all outputs: each candidate is simulated along all of them, and kept.
+const MOST_VALUES: usize = 500_000;
+const MOST_CANDIDATES: usize = 100;
+
+/// A stretch with everything that was recorded along it, but for what the job's formulas have used already.
+pub(super) fn flight(
+    spec: &JobSpec,
+    model: &Model,
+    segment: &Segment,
+    stretch: &Stretch<'_>,
+    role: Role,
+) -> Flight {
+    let inputs = model.inputs.iter().zip(&segment.inputs);
+    let of_model = inputs.chain(model.outputs.iter().zip(&segment.measured));
+    let mut channels: indexmap::IndexMap<String, _> = of_model
+        .map(|(quantity, values)| {
+            (
+                quantity.name.clone(),
+                (values.clone(), quantity.unit.dimension),
+            )
+        })
+        .collect();
+    let formulas = spec
+        .channels
+        .values()
+        .filter_map(|text| expression::parse(text).ok());
+    let used: Vec<String> = formulas
+        .flat_map(|tree| {
+            tree.names()
+                .into_iter()
+                .map(|(name, _)| name.to_string())
+                .collect::<Vec<_>>()
+        })
+        .collect();
+    for name in stretch
+        .names()
+        .into_iter()
+        .filter(|name| !used.contains(name))
+    {
+        if let (false, Some((values, dimension))) =
+            (channels.contains_key(&name), stretch.channel(&name))
+        {
+            channels.insert(name, (values.to_vec(), dimension));
+        }
+    }
+    Flight {
+        label: segment.label.clone(),
+        role,
+        time: segment.time.clone(),
+        steps: segment.steps.clone(),
+        channels,
+    }
+}
+
+/// The case of a job, checked.
+pub(super) fn case(
+    spec: &JobSpec,
+    document: &ModelDocument,
+    problem: &Problem,
+    flights: Vec<Flight>,
+) -> Result<Case, Vec<Fault>> {
+    let mut faults = Vec::new();
+    if spec.options.estimator != Estimator::OutputError {
+        let message = "a diagnosis starts from output error (and turns to filter error where it finds turbulence); choose \"output_error\"";
+        faults.push(Fault::new("/options/estimator", "bad_option", message));
+    }
+    if spec.options.derivatives != Derivatives::default() {
+        let message =
+            "a diagnosis uses the technique \"forward_sensitivities\"; leave \"derivatives\" out";
+        faults.push(Fault::new("/options/derivatives", "bad_option", message));
+    }
+    let values = problem.samples() * problem.model.outputs.len();
+    if values > MOST_VALUES {
+        let message = format!(
+            "{values} values of outputs, at most {MOST_VALUES} are allowed for a diagnosis; choose \"rows\", or fewer maneuvers"
+        );
+        faults.push(Fault::new("/maneuvers", JOB_TOO_LARGE, message));
+    }
+    if spec.candidates.len() > MOST_CANDIDATES {
+        let message = format!("at most {MOST_CANDIDATES} candidates are allowed");
+        faults.push(Fault::new("/candidates", JOB_TOO_LARGE, message));
+    }
+    for (i, candidate) in spec.candidates.iter().enumerate().take(MOST_CANDIDATES) {
+        let pointer = format!("/candidates/{i}/edits");
+        if candidate.edits.len() > MOST_EDITS {
+            faults.push(too_many_edits(&pointer, candidate.edits.len()));
+            continue;
+        }
+        let effect = Effect::own(&candidate.name, candidate.edits.clone());
+        if let Err(error) = effect.apply(document) {
+            faults.push(Fault::new(pointer, error.code(), error.to_string()));
+        }
+    }
+    if !faults.is_empty() {
+        return Err(faults);
+    }
+    Ok(Case {
+        document: document.clone(),
+        flights,
+        options: spec.options.clone(),
+        candidates: (spec.candidates.iter())
+            .map(|candidate| Effect::own(&candidate.name, candidate.edits.clone()))
+            .collect(),
+    })
+}
