@@ -22,7 +22,6 @@ mod common {
 mod abuse;
 mod again;
 mod api;
-#[path = "../architecture.rs"]
 mod architecture;
 mod bad_jobs;
 mod chaos;
