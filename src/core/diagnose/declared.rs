@@ -37,7 +37,7 @@ impl Declared {
         let first = &declared.fitted.estimate;
         if !first.outcome.is_minimum() {
             let (cost, reason) = (first.cost, first.reason.clone());
-            let values = declared.fitted.values.clone();
+            let values = declared.fitted.values();
             // what fails from there leaves the first fit, with its remark
             if let Ok(further) = Self::from(case, &values, Some(FURTHER_ITERATIONS), watcher)
                 && further.fitted.estimate.cost <= cost
@@ -74,7 +74,8 @@ impl Declared {
         watcher: &mut Watcher<'_>,
     ) -> Option<Self> {
         let before = self.fitted.estimate.cost;
-        let mut lower = Self::from(case, &richer.values, Some(FURTHER_ITERATIONS), watcher).ok()?;
+        let mut lower =
+            Self::from(case, &richer.values(), Some(FURTHER_ITERATIONS), watcher).ok()?;
         let now = lower.fitted.estimate.cost;
         if now >= before - LOWER {
             return None;
@@ -111,12 +112,7 @@ impl Declared {
             Unfit("with the start values the simulation of the declared model leaves the range of numbers".into())
         })?;
         problem.options = case.options.clone();
-        let fitted = Fitted::of(
-            case.document.clone(),
-            problem,
-            solution.estimate,
-            &solution.histories,
-        );
+        let fitted = Fitted::of(case.document.clone(), problem, &solution);
         Ok(Self {
             fitted,
             histories: solution.histories,

@@ -126,7 +126,7 @@ fn settle(case: &Case, trial: &Trial) -> Result<Fitted, Objection> {
         return Ok(trial.likeliest.clone());
     }
     let document = trial.likeliest.document.clone();
-    let settled = Fitted::settled(case, document, &trial.likeliest.values);
+    let settled = Fitted::settled(case, document, &trial.likeliest.values());
     let settled = settled.map_err(|why| (Refusal::NotFitted, why.to_string()))?;
     if settled.estimate.outcome.is_minimum() {
         Ok(settled)
@@ -147,18 +147,18 @@ fn told_from_nothing(effect: &Effect, fitted: &Fitted, added: &[String]) -> Resu
     let Some(size) = added.first() else {
         return Ok(());
     };
-    let rows = fitted.estimate.parameters.iter();
-    let sizes: Vec<_> = rows.filter(|row| row.name == *size && !row.fixed).collect();
-    let told = sizes.iter().any(|row| {
-        row.standard_error
-            .is_none_or(|error| row.estimate.abs() > LEAST_ERRORS * error)
+    let sizes = fitted.sizes(std::slice::from_ref(size));
+    let told = sizes.iter().any(|size| {
+        size.standard_error
+            .is_none_or(|error| size.own_units().abs() > LEAST_ERRORS * error)
     });
     match sizes.first() {
-        Some(row) if !told => {
-            let error = row.standard_error.unwrap_or(f64::NAN);
+        Some(size) if !told => {
+            let error = size.standard_error.unwrap_or(f64::NAN);
             let why = format!(
                 "its size is within {LEAST_ERRORS} standard errors of nothing: {:.2e} ± {error:.1e} {}",
-                row.estimate, row.unit
+                size.own_units(),
+                size.unit
             );
             Err((Refusal::NotSignificant, why))
         }

@@ -35,6 +35,7 @@ mod review;
 mod round;
 mod screen;
 mod sentence;
+mod size;
 mod spikes;
 mod stack;
 mod starts;
@@ -148,7 +149,7 @@ fn accept(
         round,
         name: accepted.effect.name(),
         likelihood_ratio: accepted.evidence.likelihood_ratio,
-        sentence: sentence::of(&accepted.effect, &accepted.added, &accepted.fitted.estimate),
+        sentence: sentence::of(&accepted.effect, &accepted.fitted.sizes(&accepted.added)),
     };
     found.accepted.push(accepted);
     tell(watcher, &step)

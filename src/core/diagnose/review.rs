@@ -25,7 +25,7 @@ pub(super) fn remove_needless(
         let Some((_, cost, at, document)) = needless else {
             break;
         };
-        let Ok(fitted) = Fitted::settled(case, document, &base.values) else {
+        let Ok(fitted) = Fitted::settled(case, document, &base.values()) else {
             break;
         };
         *base = fitted;
@@ -55,7 +55,7 @@ fn removal(
             accepted.effect.apply(&document)
         });
     let without = without.ok()?;
-    let fitted = Fitted::trial(case, without.clone(), &base.values).ok()?;
+    let fitted = Fitted::trial(case, without.clone(), &base.values()).ok()?;
     Some((2.0 * (evidence - fitted.likeliest().ln_evidence()), without))
 }
 

@@ -103,7 +103,7 @@ impl<'c> Screen<'c> {
         free.dedup();
         free.sort_unstable();
         free.dedup();
-        let declared = sensitivities(&base.problem, &layout, &base.theta(), &free)?;
+        let declared = sensitivities(&base.problem, &layout, &base.theta, &free)?;
         let metric = |colour: Colour, orders: Vec<usize>| {
             let whiten = |column: &Vec<f64>| colour.whiten(&layout, &base.residual, column);
             let declared = Basis::of(declared.iter().map(whiten));

@@ -63,7 +63,7 @@ fn best_possible(aircraft: &Aircraft, case: &Case, effects: &[(&Effect, f64)]) -
     let solution = output_error(&problem, &mut |_| ControlFlow::Continue(())).ok()?;
     let mut rms = Vec::new();
     for validation in case.held_out(Role::Validation, &problem).ok()? {
-        let (prediction, _) = predict(&problem, &solution.estimate, &validation);
+        let (prediction, _) = predict(&problem, &solution.theta, &solution.covariance, &validation);
         rms.extend(prediction.outputs.iter().map(|output| output.rms));
     }
     Some(rms)

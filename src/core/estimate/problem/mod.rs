@@ -5,7 +5,7 @@ pub(super) mod unusable;
 
 use crate::estimate::options::Options;
 use crate::flight::Unit;
-use crate::model::Model;
+use crate::model::{Model, ParameterInfo};
 use crate::simulate::{Columns, Segment, delay_out_of_bounds};
 use unknowns::Unknowns;
 use unusable::Unusable;
@@ -65,9 +65,14 @@ impl Problem {
         (self.name(place), self.unit(place).scale)
     }
 
+    /// The parameter of the model at a place of θ.
+    pub fn parameter(&self, place: usize) -> &ParameterInfo {
+        &self.model.parameters[self.unknowns.at(place).parameter]
+    }
+
     /// The unit of the unknown at a place of θ.
     pub fn unit(&self, place: usize) -> Unit {
-        self.model.parameters[self.unknowns.at(place).parameter].unit
+        self.parameter(place).unit
     }
 
     /// θ in the parameters' own units.

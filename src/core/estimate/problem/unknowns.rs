@@ -93,6 +93,14 @@ impl Unknowns {
         Self::of(self.all.iter().map(hold).collect(), self.places.clone())
     }
 
+    /// Unknowns that `is_meant` picks are no less than `least`, and start no lower.
+    pub fn raise_lower(&mut self, least: f64, is_meant: impl Fn(&Unknown) -> bool) {
+        for unknown in self.all.iter_mut().filter(|unknown| is_meant(unknown)) {
+            unknown.lower = unknown.lower.max(least);
+            unknown.start = unknown.start.max(unknown.lower);
+        }
+    }
+
     /// Start values of the free unknowns.
     pub fn start(&self) -> Vec<f64> {
         self.free.iter().map(|&i| self.all[i].start).collect()

@@ -1,6 +1,5 @@
 //! `POST /v1/jobs`: everything that would keep a job from starting is said here, at once.
 
-use std::collections::HashMap;
 use std::sync::Arc;
 
 use axum::Json;
@@ -23,7 +22,7 @@ use crate::http::request::query::Parameters;
 use crate::http::service::{Server, Service};
 use crate::job::{self, Fault, HIGHEST_PRIORITY, JobSpec, MOST_MANEUVERS, ModelSource, Prepared};
 use crate::model::ModelDocument;
-use crate::store::NewJob;
+use crate::store::{NewJob, NotLoaded};
 
 pub(crate) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(submit_job))
@@ -234,42 +233,29 @@ async fn load(
         )]));
     }
     let limit = service.config.max_job_values;
-    let mut known: HashMap<&str, Arc<Maneuver>> = HashMap::new();
-    let (mut maneuvers, mut faults, mut values) = (Vec::new(), Vec::new(), 0);
-    for (number, used) in spec.maneuvers.iter().enumerate() {
-        if let Some(maneuver) = known.get(used.id.as_str()) {
-            maneuvers.push(maneuver.clone());
-            continue;
-        }
-        let Some(maneuver) = service.store.maneuver_data(&used.id).await? else {
-            let message =
-                "there is no maneuver of this id; upload it first, and use the id in the answer";
-            faults.push(Fault::new(
-                format!("/maneuvers/{number}/id"),
-                "unknown_maneuver",
-                message,
-            ));
-            continue;
-        };
-        values += maneuver.len() * (1 + maneuver.channels().len());
-        if values > limit {
-            let message = format!(
+    let ids: Vec<&str> = spec.maneuvers.iter().map(|used| used.id.as_str()).collect();
+    let loaded = service.store.load(&ids, limit).await?;
+    Ok(loaded.map_err(|missing| {
+        missing
+            .into_iter()
+            .map(|why| not_loaded(why, limit))
+            .collect()
+    }))
+}
+
+fn not_loaded(why: NotLoaded, limit: usize) -> Fault {
+    match why {
+        NotLoaded::Unknown(place) => Fault::new(
+            format!("/maneuvers/{place}/id"),
+            "unknown_maneuver",
+            "there is no maneuver of this id; upload it first, and use the id in the answer",
+        ),
+        NotLoaded::TooMuch(place) => Fault::new(
+            format!("/maneuvers/{place}"),
+            "too_much_data",
+            format!(
                 "the maneuvers hold more than {limit} values (--max-job-values); use fewer or shorter ones"
-            );
-            faults.push(Fault::new(
-                format!("/maneuvers/{number}"),
-                "too_much_data",
-                message,
-            ));
-            break;
-        }
-        let maneuver = Arc::new(maneuver);
-        known.insert(&used.id, maneuver.clone());
-        maneuvers.push(maneuver);
+            ),
+        ),
     }
-    Ok(if faults.is_empty() {
-        Ok(maneuvers)
-    } else {
-        Err(faults)
-    })
 }
