@@ -55,13 +55,13 @@ fn problems() -> [Problem; 5] {
         Problem {
             name: "P1",
             file: "attas_elv1.csv",
-            model: include_str!("../../src/model/catalog/short-period.toml").into(),
+            model: include_str!("../../src/core/model/catalog/short-period.toml").into(),
             spec: json!({}),
         },
         Problem {
             name: "P2",
             file: "attas_ailrud1.csv",
-            model: include_str!("../../src/model/catalog/lateral-directional-2.toml").into(),
+            model: include_str!("../../src/core/model/catalog/lateral-directional-2.toml").into(),
             spec: json!({
                 "channels": {"da": "(da_right - da_left)/2"},
                 "parameters": {

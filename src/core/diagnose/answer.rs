@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use super::candidates::taken_for;
 use super::case::{Case, Unfit};
 use super::colour::Colour;
 use super::difference::difference;
@@ -95,6 +96,7 @@ pub(super) fn answer(
         sentence: conclusion(verdict, &effects, &fits, &incoherent),
         effects,
         refused: found.truly_refused(),
+        quantities: taken_for(case),
         parameters: changes(&declared.estimate, &estimated),
         before: declared.estimate.clone(),
         model: estimated_document(&after.problem.model, &estimated),

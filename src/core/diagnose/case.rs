@@ -2,6 +2,7 @@
 
 use indexmap::IndexMap;
 
+use super::candidates::Knowledge;
 use super::effect::Effect;
 use super::flight::Flight;
 use crate::estimate::{Estimate, Options, Problem, Role, Unknowns, Validation};
@@ -17,6 +18,11 @@ pub struct Case {
     pub options: Options,
     /// Candidates of the user's own, tried beside the catalogue's.
     pub candidates: Vec<Effect>,
+    /// What is known before the data.
+    pub knowledge: Knowledge,
+    /// Recorded channels that formulas have made into inputs and outputs of the model: there for start values, and no
+    /// inputs that the model lacks.
+    pub consumed: Vec<String>,
 }
 
 /// Values of parameters, SI: by name, and by segment where each has its own.

@@ -95,7 +95,12 @@ impl Fitted {
     pub(super) fn at_bound(&self, base: &Self) -> Vec<(String, Bound)> {
         let declared = &base.problem.model.parameters;
         let rows = self.estimate.parameters.iter();
-        rows.filter(|row| !declared.iter().any(|info| info.name == row.name))
+        let was_free = |name: &str| {
+            declared
+                .iter()
+                .any(|info| info.name == name && !info.document.fixed)
+        };
+        rows.filter(|row| !was_free(&row.name))
             .filter_map(|row| Some((row.name.clone(), row.at_bound?)))
             .collect()
     }

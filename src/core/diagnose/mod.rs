@@ -8,8 +8,8 @@
 //! what results is a document again.
 
 mod answer;
+mod candidates;
 mod case;
-mod catalogue;
 mod colour;
 mod difference;
 mod effect;
@@ -27,11 +27,10 @@ mod round;
 mod screen;
 mod sentence;
 mod stack;
-mod terms;
 mod trial;
 
+pub use candidates::{Knowledge, KnownSize, Plausible, TakenFor, candidates};
 pub use case::{Case, Unfit};
-pub use catalogue::candidates;
 pub use difference::difference;
 pub use effect::{Effect, EffectKind, Treatment};
 pub use flight::Flight;
@@ -101,7 +100,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
         cleaned = Some(without);
     }
     let case = cleaned.as_ref().unwrap_or(case);
-    let catalogue = catalogue::candidates(case, &declared.problem.model);
+    let catalogue = candidates::candidates(case, &declared.problem.model);
     for number in 1..=MOST_ROUNDS {
         let left: Vec<Effect> = (catalogue.iter())
             .filter(|effect| !found.accepted.iter().any(|a| a.effect == **effect))

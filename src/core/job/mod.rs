@@ -6,6 +6,7 @@ mod checks;
 mod diagnosis;
 mod event;
 mod filter;
+mod knowledge;
 mod missing;
 mod plausible;
 mod prepare;

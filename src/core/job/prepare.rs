@@ -68,7 +68,7 @@ pub fn prepare(
             let segment = resolve::segment(spec, &model, stretch, index, &mut faults);
             if spec.kind == JobKind::Diagnose {
                 let role = spec.maneuvers[index].role;
-                flights.push(diagnosis::flight(spec, &model, &segment, stretch, role));
+                flights.push(diagnosis::flight(&model, &segment, stretch, role));
             }
             match spec.maneuvers[index].role {
                 Role::Estimation => fitted.push((segment, stretch)),

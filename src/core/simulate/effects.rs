@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::input_design::InputDesign;
 use super::scenario::{Scenario, ScenarioError, unit_like};
 use crate::flight::{Channel, Dimension, Maneuver};
-use crate::model::{Added, Edit, EditKind, Model, ModelDocument, Recorded};
+use crate::model::{Added, Edit, EditKind, Input, Model, ModelDocument, Recorded, Reference};
 
 /// One effect, by the words of the catalogue. Either an edit of the model, or of the data:
 ///
@@ -47,6 +47,10 @@ pub struct ScenarioEffect {
     /// As of an [`Edit`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub channels: IndexMap<String, Input>,
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub about: IndexMap<String, Reference>,
     /// Of the first parameter that is added; the share of spikes, or the intensity of process noise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
@@ -66,6 +70,8 @@ impl From<&Edit> for ScenarioEffect {
             term: edit.term.clone(),
             parameter: edit.parameter.clone(),
             unit: edit.unit.clone(),
+            channels: edit.channels.clone(),
+            about: edit.about.clone(),
             value: None,
             values: IndexMap::new(),
         }
@@ -88,6 +94,8 @@ impl ScenarioEffect {
             term: parts.next(),
             parameter: None,
             unit: None,
+            channels: IndexMap::new(),
+            about: IndexMap::new(),
             value: Some(value),
             values: IndexMap::new(),
         })
@@ -101,6 +109,8 @@ impl ScenarioEffect {
             term: self.term.clone(),
             parameter: self.parameter.clone(),
             unit: self.unit.clone(),
+            channels: self.channels.clone(),
+            about: self.about.clone(),
         })
     }
 }

@@ -182,6 +182,8 @@ impl Aircraft {
             flights,
             options: Options::default(),
             candidates: Vec::new(),
+            knowledge: Default::default(),
+            consumed: Vec::new(),
         };
         Some(Flown { case, truth })
     }
@@ -194,6 +196,8 @@ impl Aircraft {
             term: None,
             parameter: None,
             unit: None,
+            channels: IndexMap::new(),
+            about: IndexMap::new(),
             value,
             values,
         };
