@@ -16,6 +16,7 @@ mod model;
 mod plots;
 mod process;
 mod progress;
+mod recording;
 mod request;
 mod retain;
 mod serve;

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use indexmap::{IndexMap, IndexSet};
 
 use super::Failure;
-use super::mapping::{MappingOption, format_of};
+use super::mapping::MappingOption;
+use super::recording::{format_of, read_bytes, read_text};
 use super::stretch::Stretch;
 use crate::estimate::{Derivatives, Estimator, Method, Options, Role};
 use crate::flight::Maneuver;
@@ -213,15 +214,6 @@ impl Request {
             },
         })
     }
-}
-
-pub(super) fn read_bytes(file: &Path) -> Result<Vec<u8>, Failure> {
-    std::fs::read(file).map_err(|error| Failure::new(format!("{}: {error}", file.display())))
-}
-
-pub(super) fn read_text(file: &Path) -> Result<String, Failure> {
-    std::fs::read_to_string(file)
-        .map_err(|error| Failure::new(format!("{}: {error}", file.display())))
 }
 
 fn pair<'a>(text: &'a str, option: &str) -> Result<(&'a str, &'a str), Failure> {

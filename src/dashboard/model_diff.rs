@@ -4,13 +4,23 @@ use maud::{Markup, html};
 use serde_json::Value;
 
 use super::mathml::{Left, equation};
-use super::model_page::Comparison;
 use super::model_tables::number;
 use super::notation::Notation;
 use crate::diagnose::DocumentChange;
 use crate::flight::escape;
 use crate::flight::{Shown, shown_in};
 use crate::model::ModelDocument;
+
+/// Another model, and what it has that this one has not.
+pub struct Comparison {
+    /// As in the address.
+    pub reference: String,
+    pub name: String,
+    /// Its own page.
+    pub address: String,
+    pub document: ModelDocument,
+    pub changes: Vec<DocumentChange>,
+}
 
 /// What the other model has that `document` has not, equations first.
 pub(super) fn comparison(document: &ModelDocument, against: &Comparison) -> Markup {

@@ -4,9 +4,9 @@ use maud::{Markup, html};
 
 use super::layout::{Frame, page};
 use super::mathml::{Left, equation};
+use super::model_diff::{Comparison, comparison};
+use super::model_tables as tables;
 use super::notation::Notation;
-use super::{model_diff, model_tables as tables};
-use crate::diagnose::DocumentChange;
 use crate::model::ModelDocument;
 
 /// What the page shows.
@@ -27,17 +27,6 @@ pub struct OtherModel {
     pub created: Option<String>,
 }
 
-/// Another model, and what it has that this one has not.
-pub struct Comparison {
-    /// As in the address.
-    pub reference: String,
-    pub name: String,
-    /// Its own page.
-    pub address: String,
-    pub document: ModelDocument,
-    pub changes: Vec<DocumentChange>,
-}
-
 /// The whole page as HTML.
 pub fn model_page(view: &ModelView) -> String {
     let document = &view.document;
@@ -47,7 +36,7 @@ pub fn model_page(view: &ModelView) -> String {
         @if !document.title.is_empty() { p { strong { (document.title) } } }
         @if !document.source.is_empty() { p.soft { "Source: " (document.source) } }
         (actions(&view.id))
-        @if let Some(against) = &view.against { (model_diff::comparison(document, against)) }
+        @if let Some(against) = &view.against { (comparison(document, against)) }
         @for paragraph in document.description.split("\n\n").filter(|text| !text.trim().is_empty()) { p { (paragraph) } }
         (equations(document, &notation))
         (quantities(document, &notation))

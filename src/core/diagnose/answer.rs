@@ -7,21 +7,28 @@ use super::case::{Case, Unfit};
 use super::colour::Colour;
 use super::difference::difference;
 use super::fitted::Fitted;
-use super::found::Found;
+use super::found::{Accepted, Found};
 use super::report::{
     Diagnosis, EffectParameter, FitChange, NamedEffect, ParameterChange, Refusal, Verdict,
 };
 use super::residual::analyse;
-use super::round::Accepted;
 use super::screen::Screen;
+use super::sentence;
 use super::stack::Layout;
-use super::{Conclusion, sentence};
 use crate::estimate::{
     Estimate, OutputFit, ParameterEstimate, Problem, Role, Solution, TimeHistory, estimate,
     five_digits, predict,
 };
 use crate::flight::{Shown, Unit, shown_in};
 use crate::model::{Model, ModelDocument, Start};
+
+/// Everything that a diagnosis comes to.
+pub struct Conclusion {
+    pub diagnosis: Diagnosis,
+    /// Of the model with the effects in it.
+    pub estimate: Estimate,
+    pub histories: Vec<TimeHistory>,
+}
 
 /// Noise alone makes a residual look coherent with an input once in so many diagnoses.
 const COHERENT: f64 = 1e-3;

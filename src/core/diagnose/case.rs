@@ -2,9 +2,9 @@
 
 use indexmap::IndexMap;
 
-use super::candidates::Knowledge;
 use super::effect::Effect;
 use super::flight::Flight;
+use super::knowledge::Knowledge;
 use crate::estimate::{Estimate, Options, Problem, Role, Unknowns, Validation};
 use crate::flight::Dimension;
 use crate::model::{ChannelFormula, Model, ModelDocument, Start};

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::candidates::Plausible;
+use super::plausible::Plausible;
 use crate::model::{Added, Edit, EditError, EditKind, ModelDocument, Start};
 
 /// What kind of effect. Most are edits of the model document; the others change how it is fitted.

@@ -1,8 +1,18 @@
 //! What the rounds found, and what they refused.
 
 use super::effect::Effect;
-use super::report::{Refusal, RefusedEffect};
-use super::round::Accepted;
+use super::fitted::Fitted;
+use super::report::{Evidence, Member, Refusal, RefusedEffect};
+
+/// An effect that was accepted, and the fit with it.
+pub(super) struct Accepted {
+    pub effect: Effect,
+    /// Names of the parameters that it added.
+    pub added: Vec<String>,
+    pub fitted: Fitted,
+    pub group: Vec<Member>,
+    pub evidence: Evidence,
+}
 
 /// Effects that were accepted, in their order, and candidates that were not, with the reason.
 #[derive(Default)]

@@ -17,7 +17,9 @@ mod fitted;
 mod flight;
 mod found;
 mod group;
+mod knowledge;
 mod outliers;
+mod plausible;
 mod polish;
 mod projection;
 mod report;
@@ -29,11 +31,14 @@ mod sentence;
 mod stack;
 mod trial;
 
-pub use candidates::{Knowledge, KnownSize, Plausible, TakenFor, candidates};
+pub use answer::Conclusion;
+pub use candidates::{TakenFor, candidates};
 pub use case::{Case, Unfit};
 pub use difference::difference;
 pub use effect::{Effect, EffectKind, Treatment};
 pub use flight::Flight;
+pub use knowledge::{Knowledge, KnownSize};
+pub use plausible::Plausible;
 pub use report::{
     Diagnosis, DocumentChange, EffectParameter, Evidence, FitChange, Member, NamedEffect,
     OutputGain, ParameterChange, Refusal, RefusedEffect, Step, Verdict,
@@ -43,21 +48,13 @@ pub use round::Watcher;
 
 use answer::answer;
 use fitted::Fitted;
-use found::Found;
-use round::{Accepted, cost_of_removal, round};
+use found::{Accepted, Found};
+use round::{cost_of_removal, round};
 
-use crate::estimate::{Estimate, TimeHistory, estimate};
+use crate::estimate::{TimeHistory, estimate};
 
 /// Rounds, and so effects, at most: who lacks more than these has another model.
 const MOST_ROUNDS: usize = 4;
-
-/// Everything that a diagnosis comes to.
-pub struct Conclusion {
-    pub diagnosis: Diagnosis,
-    /// Of the model with the effects in it.
-    pub estimate: Estimate,
-    pub histories: Vec<TimeHistory>,
-}
 
 /// Why there is no conclusion.
 #[derive(Debug)]

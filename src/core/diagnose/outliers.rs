@@ -4,8 +4,8 @@
 use super::case::Case;
 use super::effect::{Effect, Treatment};
 use super::fitted::Fitted;
+use super::found::Accepted;
 use super::report::Evidence;
-use super::round::Accepted;
 use super::stack::Layout;
 use crate::estimate::Role;
 

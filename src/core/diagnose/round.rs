@@ -8,8 +8,9 @@ use super::case::{Case, Values};
 use super::colour::Colour;
 use super::effect::{Effect, EffectKind, Treatment};
 use super::fitted::Fitted;
+use super::found::Accepted;
 use super::group::group;
-use super::report::{Evidence, Member, Refusal, RefusedEffect, Step};
+use super::report::{Refusal, RefusedEffect, Step};
 use super::rival::{POWER, Rival, Threshold};
 use super::screen::{Screen, Screened, independent_questions};
 use super::stack::Layout;
@@ -38,15 +39,6 @@ pub(super) struct Round {
     pub accepted: Option<Accepted>,
     pub refused: Vec<RefusedEffect>,
     pub stopped: bool,
-}
-
-pub(super) struct Accepted {
-    pub effect: Effect,
-    /// Names of the parameters that it added.
-    pub added: Vec<String>,
-    pub fitted: Fitted,
-    pub group: Vec<Member>,
-    pub evidence: Evidence,
 }
 
 /// Told of all progress, and asked every now and then with nothing to tell; may stop the diagnosis.

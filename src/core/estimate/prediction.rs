@@ -2,16 +2,16 @@
 
 use std::ops::ControlFlow;
 
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
-
-use super::evaluation::Unusable;
-use super::options::Noise;
-use super::output_error::output_error;
-use super::problem::Problem;
-use super::report::{Estimate, Outcome, OutputFit, ParameterEstimate, TimeHistory};
-use super::role::Role;
-use super::unknowns::Unknowns;
+use crate::estimate::options::Noise;
+use crate::estimate::options::role::Role;
+use crate::estimate::output_error::output_error;
+use crate::estimate::problem::Problem;
+use crate::estimate::problem::unknowns::Unknowns;
+use crate::estimate::problem::unusable::Unusable;
+use crate::estimate::report::estimate::Estimate;
+use crate::estimate::report::history::TimeHistory;
+use crate::estimate::report::iteration::Outcome;
+use crate::estimate::report::prediction::Prediction;
 use crate::model::{Model, Per};
 use crate::simulate::Segment;
 
@@ -21,25 +21,6 @@ pub struct Validation {
     pub segment: Segment,
     /// Of this segment alone.
     pub unknowns: Unknowns,
-}
-
-/// How well the estimated model predicts one segment that it was not fitted to.
-///
-/// What all maneuvers share is held at the estimate. What belongs to a maneuver (`per = "maneuver"`: its initial
-/// state, its biases) is no property of the aircraft, and is estimated on the segment itself unless it is fixed,
-/// with the noise covariance held at its estimate.
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
-pub struct Prediction {
-    #[schema(example = "doublet")]
-    pub segment: String,
-    /// Of the estimation of the segment's own parameters; `converged` where it has none.
-    pub outcome: Outcome,
-    pub reason: String,
-    /// The segment's own parameters.
-    pub parameters: Vec<ParameterEstimate>,
-    /// Empty where the simulation left the range of numbers.
-    pub outputs: Vec<OutputFit>,
-    pub samples: usize,
 }
 
 /// Predicts a segment with the result of the estimation of `problem`.

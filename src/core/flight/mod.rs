@@ -25,5 +25,5 @@ pub use finding::{Finding, Severity};
 pub use maneuver::{Channel, Maneuver, ManeuverError};
 pub use physical::{Family, Motion, PhysicalQuantity};
 pub use sampling::{GAP_FACTOR, Gap, Sampling};
-pub use shown::{Shown, shown_in};
+pub use shown::{Shown, five_digits, shown_in};
 pub use unit::{Unit, UnitError};

@@ -20,6 +20,7 @@ mod jacobian;
 pub mod limits;
 mod names;
 mod native;
+mod operation;
 mod program;
 mod quantities;
 mod scalar;
@@ -36,7 +37,7 @@ pub use formula::{ChannelFormula, FormulaError, Recorded};
 pub use jacobian::Jacobian;
 pub use native::{Native, NativeSteps, Stretch};
 pub use program::{Program, Workspace};
-pub use quantities::{Quantities, Source, Taken, Term, names_of, terms};
+pub use quantities::{Quantities, Source, Taken};
 pub use scalar::{BLOCK, LANES, Lanes, Scalar};
 pub use unique::unique;
 

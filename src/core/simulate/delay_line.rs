@@ -2,13 +2,12 @@
 //!
 //! The window slides along with the blocks; it holds no more samples than the longest delay and a few blocks.
 
+use super::block::Block;
 use super::columns::Columns;
 use super::interpolation::{At, Axis};
-use super::linearised::BLOCK;
 use super::pack::{Pack, multiply_add, packs};
 use super::segment::Segment;
-use super::sensitivity::Block;
-use crate::model::Model;
+use crate::model::{BLOCK, Model};
 
 /// Samples behind the window are dropped when there are as many as this: now and then, not block by block.
 const DROPPED_AT_ONCE: usize = 8 * BLOCK;

@@ -7,17 +7,15 @@
 
 mod adjoint;
 mod aligned;
+mod block;
 mod columns;
 mod course;
 mod delay_line;
 mod delayed_inputs;
-mod effects;
-mod input_design;
 mod interpolation;
 mod linearised;
 mod march;
 mod method;
-mod noise;
 mod one_step;
 mod one_step_recursion;
 mod output_rows;
@@ -36,17 +34,18 @@ mod transition_recursion;
 
 pub use adjoint::{Adjoint, Checkpoints};
 pub use aligned::Aligned;
+pub use block::Block;
 pub use columns::Columns;
 pub use delayed_inputs::{MOST_DELAY, delay_out_of_bounds, driven};
-pub use effects::ScenarioEffect;
-pub use input_design::InputDesign;
 pub use march::{March, Standing};
 pub use method::{InputInterpolation, Integrator, Stage};
-pub use noise::NoiseColour;
 pub use outputs::Outputs;
 pub use pack::{PACK, Pack, multiply_add, packs};
-pub use scenario::{Scenario, ScenarioChannel, ScenarioError, ScenarioInput, ScenarioOutput};
+pub use scenario::{
+    InputDesign, NoiseColour, Scenario, ScenarioChannel, ScenarioEffect, ScenarioError,
+    ScenarioInput, ScenarioOutput,
+};
 pub use segment::{Segment, Steps};
-pub use sensitivity::{Block, Sensitivities};
+pub use sensitivity::Sensitivities;
 pub use stepper::{Stepper, between};
 pub use trajectory::{Diverged, initial_state, simulate};

@@ -1,11 +1,11 @@
 //! Outputs alone, along the same course as [`super::Sensitivities`]: the same numbers, for less work.
 
 use super::course::Course;
-use super::linearised::{BLOCK, Linearised};
+use super::linearised::Linearised;
 use super::method::{InputInterpolation, Integrator};
 use super::segment::Segment;
 use super::trajectory::{Diverged, simulate};
-use crate::model::Model;
+use crate::model::{BLOCK, Model};
 
 /// The machinery for one model, reusable for any segment and θ.
 pub struct Outputs<'m> {

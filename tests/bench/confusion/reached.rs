@@ -4,8 +4,8 @@
 use std::ops::ControlFlow;
 
 use indexmap::IndexMap;
-use trimtab::diagnose::{Case, Diagnosis, Effect};
-use trimtab::estimate::{Role, output_error, predict};
+use trimtab_core::diagnose::{Case, Diagnosis, Effect};
+use trimtab_core::estimate::{Role, output_error, predict};
 
 use crate::aircraft::{Aircraft, Flown};
 
@@ -13,7 +13,7 @@ use crate::aircraft::{Aircraft, Flown};
 const UNBIASED: f64 = 3.0;
 
 #[derive(Clone, Debug, Default)]
-pub struct Reached {
+pub(crate) struct Reached {
     /// Error of the prediction, over that of the true model fitted to the same flights.
     pub error_ratio: Option<f64>,
     /// Declared parameters that are further from the truth than three standard errors, and how far.
@@ -21,7 +21,7 @@ pub struct Reached {
 }
 
 impl Reached {
-    pub fn of(
+    pub(crate) fn of(
         aircraft: &Aircraft,
         flown: &Flown,
         effects: &[(&Effect, f64)],
@@ -70,7 +70,7 @@ fn best_possible(aircraft: &Aircraft, case: &Case, effects: &[(&Effect, f64)]) -
 }
 
 fn biased(flown: &Flown, diagnosis: &Diagnosis) -> Vec<(String, f64)> {
-    let of = |change: &trimtab::diagnose::ParameterChange| {
+    let of = |change: &trimtab_core::diagnose::ParameterChange| {
         let truth = match &change.segment {
             Some(label) => flown.truth.get(label)?,
             None => flown.truth.first()?.1,

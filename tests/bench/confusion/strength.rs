@@ -2,17 +2,17 @@
 
 use std::ops::ControlFlow;
 
-use trimtab::diagnose::{Effect, EffectKind, Treatment};
-use trimtab::estimate::{
+use trimtab_core::diagnose::{Effect, EffectKind, Treatment};
+use trimtab_core::estimate::{
     ErrorBoundsKind, Estimator, Noise, OutputFit, ProcessNoise, filter_error, output_error,
 };
-use trimtab::model::{EditKind, ModelDocument};
-use trimtab::simulate::NoiseColour;
+use trimtab_core::model::{EditKind, ModelDocument};
+use trimtab_core::simulate::NoiseColour;
 
 use crate::aircraft::Aircraft;
 
 /// Sizes that are worth these likelihood ratios; none where the physical range ends before.
-pub fn sizes(
+pub(crate) fn sizes(
     aircraft: &Aircraft,
     effect: &Effect,
     colour: &NoiseColour,

@@ -1,7 +1,7 @@
 //! Equations that carry aerodynamics, and how the flow may follow the motion late.
 
-use super::Subject;
 use super::monomials::Monomial;
+use super::subject::Subject;
 use crate::diagnose::effect::Effect;
 use crate::flight::{Dimension, Family, Motion, PhysicalQuantity, Unit};
 use crate::model::expression::{self, Expression};
@@ -98,27 +98,6 @@ impl Subject<'_> {
         };
         let direct = Monomial::all_of(equation, &|_| None);
         direct.iter().any(multiplies)
-    }
-
-    /// Whether a name depends on another, through definitions.
-    pub(super) fn depends(&self, name: &str, on: &str) -> bool {
-        let mut pending = vec![name.to_string()];
-        let mut seen: Vec<String> = Vec::new();
-        while let Some(found) = pending.pop() {
-            if found == on {
-                return true;
-            }
-            if seen.contains(&found) {
-                continue;
-            }
-            if let Some(definition) = self.document.definitions.get(&found)
-                && let Ok(parsed) = expression::parse(&definition.equation)
-            {
-                pending.extend(parsed.names().into_iter().map(|(name, _)| name.to_string()));
-            }
-            seen.push(found);
-        }
-        false
     }
 }
 

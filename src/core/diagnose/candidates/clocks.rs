@@ -1,6 +1,6 @@
 //! Delays of what shares a clock: one acquisition chain, all outputs, and groups that the job names.
 
-use super::Subject;
+use super::subject::Subject;
 use crate::diagnose::effect::Effect;
 use crate::flight::{Family, PhysicalQuantity};
 use crate::model::EditKind;

@@ -1,6 +1,6 @@
 //! What comes from outside or was there at the start: wind, gusts, turbulence, initial states, the structure.
 
-use super::Subject;
+use super::subject::Subject;
 use crate::diagnose::effect::{Effect, Treatment};
 use crate::flight::{Family, PhysicalQuantity};
 use crate::model::{Edit, EditKind, Per};

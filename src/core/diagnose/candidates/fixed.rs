@@ -1,7 +1,7 @@
 //! Parameters that the document holds fixed: whoever wrote it thought of them, so they come first.
 
-use super::Subject;
 use super::monomials::Monomial;
+use super::subject::Subject;
 use crate::diagnose::effect::Effect;
 use crate::flight::{Dimension, Unit};
 use crate::model::expression;

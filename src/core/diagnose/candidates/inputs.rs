@@ -1,6 +1,6 @@
 //! Inputs that are commanded: what stands between the recorder and the surface.
 
-use super::Subject;
+use super::subject::Subject;
 use crate::diagnose::effect::Effect;
 use crate::flight::PhysicalQuantity;
 use crate::model::EditKind;

@@ -7,45 +7,28 @@ mod clocks;
 mod disturbances;
 mod fixed;
 mod inputs;
-mod knowledge;
 mod monomials;
-mod plausible;
+mod ranges;
 mod recorded;
 mod sensors;
+mod subject;
+mod taken;
 mod terms;
 #[cfg(test)]
 mod tests;
 mod variables;
 
-pub use knowledge::{Knowledge, KnownSize};
-pub use plausible::Plausible;
-pub use recorded::TakenFor;
-pub(super) use recorded::taken_for;
+pub use taken::TakenFor;
+pub(super) use taken::taken_for;
 
 use super::case::Case;
 use super::effect::Effect;
-use crate::model::{Model, ModelDocument, Quantities};
-use recorded::Channel;
-
-/// What candidates are made from.
-struct Subject<'c> {
-    case: &'c Case,
-    document: &'c ModelDocument,
-    quantities: Quantities,
-    /// Recorded channels that the model does not use.
-    channels: Vec<Channel>,
-}
+use crate::model::Model;
+use subject::Subject;
 
 /// Candidates for a model, in the order of the catalogue: what the model holds fixed, instruments, then aerodynamics.
 pub fn candidates(case: &Case, model: &Model) -> Vec<Effect> {
-    let document = &model.document;
-    let quantities = Quantities::of(document);
-    let subject = Subject {
-        case,
-        document,
-        channels: recorded::channels(case, document, &quantities),
-        quantities,
-    };
+    let subject = Subject::new(case, &model.document);
     let mut effects = fixed::candidates(&subject);
     effects.extend(sensors::candidates(&subject));
     effects.extend(clocks::candidates(&subject));
@@ -53,7 +36,7 @@ pub fn candidates(case: &Case, model: &Model) -> Vec<Effect> {
     effects.extend(terms::candidates(&subject));
     effects.extend(aerodynamics::candidates(&subject));
     effects.extend(disturbances::candidates(&subject));
-    plausible::bound(&subject, &mut effects);
+    ranges::bound(&subject, &mut effects);
     case.knowledge.apply(&mut effects);
     effects.extend(case.candidates.iter().cloned());
     effects

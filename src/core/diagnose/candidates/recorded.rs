@@ -1,13 +1,9 @@
 //! What was recorded: what each channel is, how far it moves, and which ones the model does not use.
 
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
-
-use super::Subject;
 use crate::diagnose::case::Case;
 use crate::estimate::Role;
 use crate::flight::{Dimension, Family, PhysicalQuantity, by_name};
-use crate::model::{Input, ModelDocument, Quantities, Source};
+use crate::model::{Input, ModelDocument, Quantities};
 
 /// A recorded channel that the model does not use.
 pub(super) struct Channel {
@@ -93,7 +89,7 @@ pub(super) fn channels(
         })
     };
     let of = |(name, (_, dimension)): (&String, &(Vec<f64>, Dimension))| {
-        let quantity = case.quantity(name, *dimension)?;
+        let quantity = quantity(case, name, *dimension)?;
         let movement = movement(case, name)?;
         let offered = !is_used(name)
             && is_everywhere(name, *dimension)
@@ -127,81 +123,14 @@ fn unit(dimension: Dimension, quantity: PhysicalQuantity) -> String {
     }
 }
 
-fn movement(case: &Case, channel: &str) -> Option<Movement> {
+pub(super) fn movement(case: &Case, channel: &str) -> Option<Movement> {
     let flights = case.of_role(Role::Estimation);
     let values = flights.filter_map(|flight| flight.channels.get(channel));
     Movement::of(values.flat_map(|(values, _)| values))
 }
 
-impl Subject<'_> {
-    /// How a name in the model's equations moves, as far as it is recorded: as an input, by an output, or beside the model.
-    pub(super) fn movement(&self, name: &str) -> Option<Movement> {
-        if self.document.inputs.contains_key(name) {
-            return movement(self.case, name);
-        }
-        let quantity = self.quantities.get(name)?;
-        let output = self.quantities.outputs_of(quantity).next();
-        let channel = || {
-            let mut channels = self.channels.iter();
-            channels.find(|channel| channel.quantity == quantity)
-        };
-        match output {
-            Some(output) => movement(self.case, output),
-            None => movement(self.case, name).or_else(|| channel().map(|c| c.movement)),
-        }
-    }
-}
-
-impl Case {
-    /// What a recorded channel is.
-    pub(super) fn quantity(&self, channel: &str, dimension: Dimension) -> Option<PhysicalQuantity> {
-        let told = self.knowledge.quantities.get(channel).copied();
-        told.or_else(|| by_name(channel, dimension))
-    }
-}
-
-/// What a quantity of the model, or a recorded channel, was taken for.
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
-pub struct TakenFor {
-    #[schema(example = "AoA")]
-    pub name: String,
-    pub quantity: PhysicalQuantity,
-    pub from: Source,
-    #[schema(example = "by its name and unit")]
-    pub reason: String,
-}
-
-/// What everything in the model and beside it was taken for.
-pub(in crate::diagnose) fn taken_for(case: &Case) -> Vec<TakenFor> {
-    let quantities = Quantities::of(&case.document);
-    let mut all: Vec<TakenFor> = Vec::new();
-    for (name, taken) in quantities.taken() {
-        let said = TakenFor {
-            name: name.to_string(),
-            quantity: taken.quantity,
-            from: taken.from,
-            reason: taken.reason.clone(),
-        };
-        // a state and the output that measures it are often called alike
-        if !all
-            .iter()
-            .any(|a| a.name == said.name && a.quantity == said.quantity)
-        {
-            all.push(said);
-        }
-    }
-    for channel in channels(case, &case.document, &quantities) {
-        let told = case.knowledge.quantities.contains_key(&channel.name);
-        let (from, reason) = match told {
-            true => (Source::Declared, "the job says so"),
-            false => (Source::Guessed, "by its name and unit"),
-        };
-        all.push(TakenFor {
-            name: channel.name,
-            quantity: channel.quantity,
-            from,
-            reason: reason.to_string(),
-        });
-    }
-    all
+/// What a recorded channel is.
+fn quantity(case: &Case, channel: &str, dimension: Dimension) -> Option<PhysicalQuantity> {
+    let told = case.knowledge.quantities.get(channel).copied();
+    told.or_else(|| by_name(channel, dimension))
 }

@@ -1,6 +1,6 @@
 //! Sensors: outputs, and inputs that are measured motion, as the accelerometers and gyros of a reconstruction.
 
-use super::Subject;
+use super::subject::Subject;
 use crate::diagnose::effect::Effect;
 use crate::model::{Edit, EditKind};
 
@@ -19,44 +19,17 @@ pub(super) fn candidates(subject: &Subject<'_>) -> Vec<Effect> {
         effects.extend(
             ["x", "y", "z"]
                 .into_iter()
-                .filter_map(|arm| subject.position(sensor, arm)),
+                .filter_map(|arm| position(subject, sensor, arm)),
         );
     }
     effects
 }
 
-impl<'c> Subject<'c> {
-    /// Inputs that a sensor records of the motion: they come through no actuator.
-    pub(super) fn measured_inputs(&self) -> Vec<&'c String> {
-        let inputs = self.document.inputs.keys();
-        inputs.filter(|name| self.is_measured(name)).collect()
-    }
-
-    pub(super) fn is_measured(&self, input: &str) -> bool {
-        (self.quantities.get(input)).is_some_and(|quantity| quantity.is_motion())
-    }
-
-    /// Only sensors that a lever arm changes take it; what it needs and the model has not may be recorded.
-    fn position(&self, sensor: &str, arm: &str) -> Option<Effect> {
-        let edit = Edit {
-            channels: self.channel_inputs(),
-            ..Edit::new(EditKind::SensorPosition, sensor).with_term(arm)
-        };
-        self.fit(edit)
-    }
-
-    /// All recorded channels as inputs of the model.
-    pub(super) fn channel_inputs(&self) -> indexmap::IndexMap<String, crate::model::Input> {
-        let all = self.channels.iter();
-        all.map(|channel| (channel.name.clone(), channel.input.clone()))
-            .collect()
-    }
-
-    /// The effect of an edit that the document takes, with the channels that it uses and no others.
-    pub(super) fn fit(&self, mut edit: Edit) -> Option<Effect> {
-        let edited = edit.apply(self.document).ok()?;
-        edit.channels
-            .retain(|name, _| edited.inputs.contains_key(name));
-        Some(Effect::of(edit))
-    }
+/// Only sensors that a lever arm changes take it; what it needs and the model has not may be recorded.
+fn position(subject: &Subject<'_>, sensor: &str, arm: &str) -> Option<Effect> {
+    let edit = Edit {
+        channels: subject.channel_inputs(),
+        ..Edit::new(EditKind::SensorPosition, sensor).with_term(arm)
+    };
+    subject.fit(edit)
 }

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use indexmap::IndexMap;
 
-use super::Subject;
 use super::aerodynamics::Law;
 use super::monomials::Monomial;
+use super::subject::Subject;
 use super::variables::Variable;
 use crate::diagnose::effect::Effect;
 use crate::flight::{Motion, PhysicalQuantity};

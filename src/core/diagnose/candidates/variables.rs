@@ -1,8 +1,8 @@
 //! Quantities that aerodynamic terms are made of: of each, one name, from where terms take it, and from what it differs.
 
-use super::Subject;
 use super::monomials::Monomial;
 use super::recorded::Movement;
+use super::subject::Subject;
 use crate::flight::{Family, Motion, PhysicalQuantity};
 use crate::model::expression::{self, BinaryOperator, Expression, Kind};
 use crate::model::{Input, Reference};
@@ -166,21 +166,6 @@ impl Subject<'_> {
             Kind::Call(_, arguments) => arguments.iter().find_map(|a| self.taken_off(a, name)),
             Kind::Number(_) | Kind::Name(_) => None,
         }
-    }
-
-    /// Whether an expression keeps its value along a maneuver.
-    pub(super) fn is_held(&self, expression: &Expression) -> bool {
-        !expression
-            .names()
-            .iter()
-            .any(|(name, _)| self.varies(name) || *name == "t")
-    }
-
-    pub(super) fn varies(&self, name: &str) -> bool {
-        let document = self.document;
-        document.inputs.contains_key(name)
-            || document.states.contains_key(name)
-            || document.definitions.contains_key(name)
     }
 
     /// The products of what varies that an equation holds with a derivative. Definitions that are no quantity of their own

@@ -2,19 +2,19 @@
 
 use nalgebra::{DMatrix, Schur};
 
-use super::super::answer::{Solution, rows, table};
-use super::super::coloured_residuals::Colour;
-use super::super::error_bounds::ErrorBounds;
-use super::super::fit::{fits, histories_of};
-use super::super::modes::modes;
-use super::super::problem::Problem;
-use super::super::report::Estimate;
-use super::super::stopped::Stopped;
 use super::evaluation::FilterEvaluator;
 use super::gain::Gain;
 use super::iterate::Iterate;
 use super::layout::Layout;
-use super::report::{FilterEstimate, Pole, ProcessNoiseEstimate, SegmentGain};
+use crate::estimate::accuracy::coloured_residuals::Colour;
+use crate::estimate::accuracy::error_bounds::ErrorBounds;
+use crate::estimate::accuracy::fit::{fits, histories_of};
+use crate::estimate::accuracy::modes::modes;
+use crate::estimate::answer::{Solution, rows, table};
+use crate::estimate::descent::stopped::Stopped;
+use crate::estimate::problem::Problem;
+use crate::estimate::report::estimate::Estimate;
+use crate::estimate::report::filter::{FilterEstimate, Pole, ProcessNoiseEstimate, SegmentGain};
 
 pub(super) fn answer(
     evaluator: &mut FilterEvaluator<'_>,

@@ -2,16 +2,16 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::super::evaluation::Unusable;
-use super::super::likelihood::Weighting;
-use super::super::options::{Noise, NoiseStructure};
-use super::super::priors;
-use super::super::problem::Problem;
-use super::super::sums::{Product, ResidualSums, Sums, mirror, pair, pairs};
 use super::gain::{Gain, Setting};
 use super::layout::Layout;
 use super::predictor::{Prediction, Predictor};
 use super::start::{automatic_intensities, gain_noise};
+use crate::estimate::likelihood::priors;
+use crate::estimate::likelihood::sums::{Product, ResidualSums, Sums, mirror, pair, pairs};
+use crate::estimate::likelihood::weighting::Weighting;
+use crate::estimate::options::{Noise, NoiseStructure};
+use crate::estimate::problem::Problem;
+use crate::estimate::problem::unusable::Unusable;
 
 /// The likelihood of the innovations and its gradient, for a fixed covariance R in the gain.
 pub struct FilterEquations {

@@ -5,9 +5,9 @@
 
 use nalgebra::DMatrix;
 
-use super::super::problem::Problem;
 use super::gain::{Change, Gain};
 use super::layout::Column;
+use crate::estimate::problem::Problem;
 use crate::model::{Jacobian, Model, Program, Workspace};
 use crate::simulate::{Segment, Stepper, between, initial_state};
 

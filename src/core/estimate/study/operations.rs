@@ -1,7 +1,8 @@
 //! What a gradient costs in operations and memory: by formula, and counted on the compiled model.
 
 use super::report::{FormulaOperations, ProblemSize};
-use crate::estimate::derivatives::{Derivatives, STRETCH};
+use crate::estimate::evaluation::derivatives::perturbation::STRETCH;
+use crate::estimate::options::technique::Derivatives;
 use crate::estimate::problem::Problem;
 
 /// Operations on real numbers that one on complex numbers takes: two for a sum, six for a product.
@@ -62,7 +63,8 @@ impl Counts {
         let states = count(model.states.len());
         let (f, g) = (&model.dynamics_jacobian, &model.observation_jacobian);
         let is_free = |p: usize| {
-            let own = |u: &&crate::estimate::Unknown| u.parameter == p && !u.fixed;
+            let own =
+                |u: &&crate::estimate::problem::unknowns::Unknown| u.parameter == p && !u.fixed;
             problem.unknowns.all.iter().any(|u| own(&u))
         };
         let moves_states = |p: &usize| {

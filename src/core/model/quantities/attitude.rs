@@ -1,8 +1,9 @@
 //! Rates and attitude angles are told by the kinematics that tie them.
 
+use super::equations::Equations;
 use super::identity::carried;
+use super::known::Quantities;
 use super::sums::{Term, name_of};
-use super::{Equations, Quantities};
 use crate::flight::{Dimension, PhysicalQuantity};
 use crate::model::expression::{Expression, Function, Kind};
 

@@ -1,7 +1,8 @@
 //! Controls are told by the derivatives that multiply them.
 
-use super::sums::{Term, names_of};
-use super::{Equations, Quantities};
+use super::equations::{Equations, dimension};
+use super::known::Quantities;
+use super::sums::{Term, names_of, terms};
 use crate::flight::PhysicalQuantity;
 
 /// An input without a dimension that a parameter multiplies in the equation of a state or a definition is a control,
@@ -14,10 +15,10 @@ pub(super) fn find(equations: &Equations, found: &mut Quantities) {
         .chain(equations.definitions.values());
     let outputs = equations.outputs.values();
     for equation in laws.chain(outputs) {
-        for term in super::terms(equation) {
+        for term in terms(equation) {
             for name in multiplied(equations, &term) {
                 let input = document.inputs.get(name);
-                if input.is_some_and(|input| super::dimension(&input.unit).is_none()) {
+                if input.is_some_and(|input| dimension(&input.unit).is_none()) {
                     found.note(name, PhysicalQuantity::Control, || {
                         "an input that a derivative multiplies".to_string()
                     });

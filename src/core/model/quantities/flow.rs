@@ -1,7 +1,8 @@
 //! Flow angles and airspeed are told by their formulas in the velocities of the body.
 
-use super::sums::name_of;
-use super::{Equations, Quantities};
+use super::equations::Equations;
+use super::known::Quantities;
+use super::sums::{name_of, terms};
 use crate::flight::{Dimension, PhysicalQuantity};
 use crate::model::expression::{BinaryOperator, Expression, Function, Kind};
 
@@ -119,7 +120,7 @@ fn is_length(equations: &Equations, expression: &Expression) -> bool {
     let Some(sum) = arguments.first() else {
         return false;
     };
-    let terms = super::terms(sum);
+    let terms = terms(sum);
     terms.len() >= 2
         && terms.iter().all(|term| match term.factors.as_slice() {
             [one] => square(one) && term.divisors.is_empty(),

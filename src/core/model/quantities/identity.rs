@@ -1,7 +1,8 @@
 //! What is another quantity but for a bias and a scale factor is what that is.
 
+use super::equations::{Equations, dimension};
+use super::known::Quantities;
 use super::sums::name_of;
-use super::{Equations, Quantities};
 use crate::flight::PhysicalQuantity;
 use crate::model::expression::{BinaryOperator, Expression, Kind};
 
@@ -54,7 +55,7 @@ pub(super) fn find(equations: &Equations, found: &mut Quantities) {
         };
         let output = equations.document.outputs.get(*name);
         let unit = output.map_or("", |output| output.unit.as_str());
-        let measured = [super::dimension(unit), equations.dimension(carried)];
+        let measured = [dimension(unit), equations.dimension(carried)];
         let fits = |quantity: &PhysicalQuantity| measured.iter().all(|d| quantity.measures(*d));
         if let Some(quantity) = found.get(carried).filter(fits) {
             found.note_output(name, quantity, || format!("it measures {carried}"));

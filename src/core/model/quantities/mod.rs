@@ -2,49 +2,19 @@
 
 mod attitude;
 mod control;
+mod equations;
 mod flow;
 mod identity;
+mod known;
+mod names;
 mod sums;
 mod velocity;
 
-use indexmap::IndexMap;
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
+pub use known::{Quantities, Source, Taken};
+
+use equations::Equations;
 
 use super::document::ModelDocument;
-use super::expression::{self, Expression};
-use crate::flight::{
-    Dimension, Family, PhysicalQuantity, Unit, by_name, coefficient, steady_speed, wind,
-};
-
-pub use sums::{Term, names_of, terms};
-
-/// How it is known what a quantity is.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Source {
-    /// The model document or the job says so.
-    Declared,
-    /// By its name and unit, or by the equations.
-    Guessed,
-}
-
-/// What something was taken for.
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
-pub struct Taken {
-    pub quantity: PhysicalQuantity,
-    pub from: Source,
-    #[schema(example = "alpha is recorded as it")]
-    pub reason: String,
-}
-
-/// What each name of a document is, as far as it is known.
-#[derive(Clone, PartialEq, Debug, Default)]
-pub struct Quantities {
-    /// Inputs, states, definitions, and of parameters and constants the winds and steady values.
-    named: IndexMap<String, Taken>,
-    outputs: IndexMap<String, Taken>,
-}
 
 /// Facts are found from facts: so often, no more.
 const PASSES: usize = 4;
@@ -69,179 +39,12 @@ impl Quantities {
         attitude::only_rate(&equations, &mut found);
         found
     }
-
-    /// What a name in equations is.
-    pub fn get(&self, name: &str) -> Option<PhysicalQuantity> {
-        self.named.get(name).map(|taken| taken.quantity)
-    }
-
-    /// What an output measures.
-    pub fn output(&self, name: &str) -> Option<PhysicalQuantity> {
-        self.outputs.get(name).map(|taken| taken.quantity)
-    }
-
-    /// Names in equations that are a quantity, in the order of the document: inputs, states, definitions, then what is held.
-    pub fn all_of(&self, quantity: PhysicalQuantity) -> impl Iterator<Item = &str> {
-        let is = move |(_, taken): &(&String, &Taken)| taken.quantity == quantity;
-        self.named.iter().filter(is).map(|(name, _)| name.as_str())
-    }
-
-    pub fn outputs_of(&self, quantity: PhysicalQuantity) -> impl Iterator<Item = &str> {
-        let is = move |(_, taken): &(&String, &Taken)| taken.quantity == quantity;
-        (self.outputs.iter().filter(is)).map(|(name, _)| name.as_str())
-    }
-
-    /// Everything that was taken for something, names in equations before outputs.
-    pub fn taken(&self) -> impl Iterator<Item = (&str, &Taken)> {
-        let all = self.named.iter().chain(&self.outputs);
-        all.map(|(name, taken)| (name.as_str(), taken))
-    }
-
-    fn declared(&mut self, document: &ModelDocument) {
-        let taken = |quantity: &PhysicalQuantity| Taken {
-            quantity: *quantity,
-            from: Source::Declared,
-            reason: "the model says so".to_string(),
-        };
-        let inputs = (document.inputs.iter()).map(|(name, x)| (name, x.quantity));
-        let states = (document.states.iter()).map(|(name, x)| (name, x.quantity));
-        let definitions = (document.definitions.iter()).map(|(name, x)| (name, x.quantity));
-        let parameters = (document.parameters.iter()).map(|(name, x)| (name, x.quantity));
-        let constants = (document.constants.iter()).map(|(name, x)| (name, x.quantity));
-        let varying = inputs.chain(states).chain(definitions);
-        for (name, quantity) in varying.chain(parameters).chain(constants) {
-            if let Some(quantity) = &quantity {
-                self.named.insert(name.clone(), taken(quantity));
-            }
-        }
-        for (name, output) in &document.outputs {
-            if let Some(quantity) = &output.quantity {
-                self.outputs.insert(name.clone(), taken(quantity));
-            }
-        }
-    }
-
-    fn by_names(&mut self, document: &ModelDocument) {
-        let inputs = (document.inputs.iter()).map(|(name, x)| (name, &x.unit));
-        let states = (document.states.iter()).map(|(name, x)| (name, &x.unit));
-        let definitions = (document.definitions.iter()).map(|(name, x)| (name, &x.unit));
-        let varying = |name: &str, unit: &str, is_input: bool| {
-            let dimension = dimension(unit);
-            let found = by_name(name, dimension).or_else(|| match is_input {
-                true => None,
-                false => coefficient(name, dimension),
-            });
-            // a force is no throttle, an elastic coordinate no elevator
-            found.filter(|quantity| is_input || quantity.family() != Family::Control)
-        };
-        let reason = || "by its name and unit".to_string();
-        let drives = |name: &str| document.inputs.contains_key(name);
-        for (name, unit) in inputs.chain(states).chain(definitions) {
-            if let Some(quantity) = varying(name, unit, drives(name)) {
-                self.note(name, quantity, reason);
-            }
-        }
-        for (name, output) in &document.outputs {
-            if let Some(quantity) = varying(name, &output.unit, false) {
-                self.note_output(name, quantity, reason);
-            }
-        }
-        let parameters = (document.parameters.iter()).map(|(name, x)| (name, &x.unit));
-        let constants = (document.constants.iter()).map(|(name, x)| (name, &x.unit));
-        for (name, unit) in parameters.chain(constants) {
-            let dimension = dimension(unit);
-            if let Some(quantity) = wind(name, dimension) {
-                self.note(name, quantity, reason);
-            } else if steady_speed(name, dimension) {
-                self.note(name, PhysicalQuantity::Airspeed, reason);
-            }
-        }
-    }
-
-    /// What is known already stays.
-    fn note(&mut self, name: &str, quantity: PhysicalQuantity, reason: impl FnOnce() -> String) {
-        if !self.named.contains_key(name) {
-            self.named
-                .insert(name.to_string(), guess(quantity, reason()));
-        }
-    }
-
-    fn note_output(
-        &mut self,
-        name: &str,
-        quantity: PhysicalQuantity,
-        reason: impl FnOnce() -> String,
-    ) {
-        if !self.outputs.contains_key(name) {
-            self.outputs
-                .insert(name.to_string(), guess(quantity, reason()));
-        }
-    }
-}
-
-fn guess(quantity: PhysicalQuantity, reason: String) -> Taken {
-    Taken {
-        quantity,
-        from: Source::Guessed,
-        reason,
-    }
-}
-
-fn dimension(unit: &str) -> Dimension {
-    Unit::parse(unit).map_or(Dimension::NONE, |unit| unit.dimension)
-}
-
-/// The equations of a document as trees. What cannot be read is left out.
-struct Equations<'d> {
-    document: &'d ModelDocument,
-    states: IndexMap<&'d str, Expression>,
-    definitions: IndexMap<&'d str, Expression>,
-    outputs: IndexMap<&'d str, Expression>,
-}
-
-impl<'d> Equations<'d> {
-    fn of(document: &'d ModelDocument) -> Self {
-        fn read<'d>(
-            texts: impl Iterator<Item = (&'d String, &'d String)>,
-        ) -> IndexMap<&'d str, Expression> {
-            texts
-                .filter_map(|(name, text)| Some((name.as_str(), expression::parse(text).ok()?)))
-                .collect()
-        }
-        Self {
-            document,
-            states: read((document.states.iter()).map(|(name, x)| (name, &x.derivative))),
-            definitions: read((document.definitions.iter()).map(|(name, x)| (name, &x.equation))),
-            outputs: read((document.outputs.iter()).map(|(name, x)| (name, &x.equation))),
-        }
-    }
-
-    /// Whether a name varies along a maneuver.
-    fn varies(&self, name: &str) -> bool {
-        let document = self.document;
-        document.inputs.contains_key(name)
-            || document.states.contains_key(name)
-            || document.definitions.contains_key(name)
-    }
-
-    fn dimension(&self, name: &str) -> Dimension {
-        let document = self.document;
-        let unit = (document.inputs.get(name).map(|x| &x.unit))
-            .or_else(|| document.states.get(name).map(|x| &x.unit))
-            .or_else(|| document.definitions.get(name).map(|x| &x.unit));
-        unit.map_or(Dimension::NONE, |unit| dimension(unit))
-    }
-
-    /// The terms of a sum, definitions that are sums themselves written out.
-    fn terms<'e>(&'e self, expression: &'e Expression) -> Vec<Term<'e>> {
-        let definition = |name: &str| self.definitions.get(name);
-        sums::expanded(expression, &definition)
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::flight::PhysicalQuantity;
     use crate::model::catalog;
 
     fn quantities(text: &str) -> Quantities {

@@ -4,7 +4,7 @@ use crate::model::expression::{BinaryOperator, Expression, Kind};
 
 /// One term of a sum.
 #[derive(Clone, Debug)]
-pub struct Term<'e> {
+pub(super) struct Term<'e> {
     /// Whether it is taken off.
     pub negative: bool,
     /// What is multiplied, and what divides.
@@ -22,7 +22,7 @@ impl<'e> Term<'e> {
     }
 
     /// The names among its factors.
-    pub fn names(&self) -> impl Iterator<Item = &'e str> {
+    pub(super) fn names(&self) -> impl Iterator<Item = &'e str> {
         self.factors.iter().filter_map(|factor| name_of(factor))
     }
 
@@ -78,7 +78,7 @@ fn parts<'e>(expression: &'e Expression, negative: bool, to: &mut Vec<(bool, &'e
 }
 
 /// The terms of a sum as it is written.
-pub fn terms(expression: &Expression) -> Vec<Term<'_>> {
+pub(super) fn terms(expression: &Expression) -> Vec<Term<'_>> {
     expanded(expression, &|_| None)
 }
 
@@ -113,7 +113,7 @@ fn expand<'e>(
 }
 
 /// The names that stand in an expression, each once.
-pub fn names_of(expression: &Expression) -> Vec<&str> {
+pub(super) fn names_of(expression: &Expression) -> Vec<&str> {
     let mut names: Vec<&str> = expression
         .names()
         .into_iter()

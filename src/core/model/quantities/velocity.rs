@@ -1,7 +1,8 @@
 //! Velocities in body axes are told by the gravity in their derivatives, elastic states by their stiffness.
 
+use super::equations::Equations;
+use super::known::Quantities;
 use super::sums::{Term, name_of};
-use super::{Equations, Quantities};
 use crate::flight::PhysicalQuantity;
 use crate::model::expression::{BinaryOperator, Expression, Function, Kind};
 
@@ -83,19 +84,7 @@ fn elastic(equations: &Equations, name: &str, derivative: &Expression, found: &m
     };
     if equations.terms(acceleration).iter().any(stiff) {
         for name in [name, rate] {
-            found.elastic(name);
+            found.note_elastic(name);
         }
-    }
-}
-
-impl Quantities {
-    /// A guess by the name does not stand against the equation of a mode.
-    fn elastic(&mut self, name: &str) {
-        if (self.named.get(name)).is_some_and(|taken| taken.from == super::Source::Guessed) {
-            self.named.shift_remove(name);
-        }
-        self.note(name, PhysicalQuantity::Structural, || {
-            "its equation is that of a mode of the structure".to_string()
-        });
     }
 }
