@@ -210,6 +210,7 @@ impl Request {
             channels: channels.collect::<Result<_, Failure>>()?,
             parameters,
             candidates: Vec::new(),
+            knowledge: Default::default(),
             constants: constants.collect::<Result<_, Failure>>()?,
             options: Options {
                 method: if self.gauss_newton {

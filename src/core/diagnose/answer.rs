@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use nalgebra::DMatrix;
 
 use super::accepted::Accepted;
+use super::candidates::taken_for;
 use super::case::{Case, Unfit};
 use super::declared::Declared;
 use super::difference::difference;
@@ -114,6 +115,7 @@ pub(super) fn answer(
         sentence: verdict::sentence(verdict, &effects, &fits, &left),
         effects,
         refused: found.truly_refused(),
+        quantities: taken_for(case),
         parameters: changes(&declared.estimate, &estimated),
         before: declared.estimate.clone(),
         model: estimated_document(&after.problem, &after.solution.theta),

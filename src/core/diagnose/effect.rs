@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::model::{Edit, EditError, EditKind, ModelDocument};
+use super::plausible::Plausible;
+use crate::model::{Added, Edit, EditError, EditKind, ModelDocument, Start};
 
 /// What kind of effect. Most are edits of the model document; the others change how it is fitted.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
@@ -38,23 +39,27 @@ pub struct Effect {
     /// The edits that make it; none of a treatment.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub edits: Vec<Edit>,
+    /// The range in which its size, the first parameter that it frees or adds, is looked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plausible: Option<Plausible>,
 }
 
 impl Effect {
     pub fn edit(kind: EditKind, target: impl Into<String>, term: Option<&str>) -> Self {
-        let target = target.into();
-        let edit = Edit {
-            kind,
-            target: target.clone(),
+        Self::of(Edit {
             term: term.map(ToString::to_string),
-            parameter: None,
-            unit: None,
-        };
+            ..Edit::new(kind, target)
+        })
+    }
+
+    /// The effect that is one edit.
+    pub fn of(edit: Edit) -> Self {
         Self {
-            kind: EffectKind::Edit(kind),
-            target,
+            kind: EffectKind::Edit(edit.kind),
+            target: edit.target.clone(),
             term: edit.term.clone(),
             edits: vec![edit],
+            plausible: None,
         }
     }
 
@@ -64,6 +69,7 @@ impl Effect {
             target: target.into(),
             term: None,
             edits: Vec::new(),
+            plausible: None,
         }
     }
 
@@ -81,7 +87,22 @@ impl Effect {
     /// An edit does not fit the document.
     pub fn apply(&self, document: &ModelDocument) -> Result<ModelDocument, EditError> {
         let apply = |document: ModelDocument, edit: &Edit| edit.apply(&document);
-        self.edits.iter().try_fold(document.clone(), apply)
+        let mut edited = self.edits.iter().try_fold(document.clone(), apply)?;
+        if let Some(plausible) = &self.plausible {
+            let added = Added::between(document, &edited).parameters;
+            let size = added
+                .first()
+                .and_then(|name| edited.parameters.get_mut(name));
+            if let Some(size) = size {
+                let held = self.kind == EffectKind::Edit(EditKind::FixedParameter);
+                let none = match size.start {
+                    Start::Value(value) if held => value,
+                    _ => 0.0,
+                };
+                plausible.bound(size, none);
+            }
+        }
+        Ok(edited)
     }
 
     /// Process noise: what no model document expresses, and what ends a diagnosis.

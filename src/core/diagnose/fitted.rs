@@ -122,9 +122,13 @@ impl Fitted {
     /// Names of the parameters added that stand at a bound of their range.
     pub(super) fn at_bound(&self, base: &Self) -> Vec<(String, Bound)> {
         let declared = &base.problem.model.parameters;
+        let was_free = |name: &str| {
+            let mut declared = declared.iter();
+            declared.any(|info| info.name == name && !info.document.fixed)
+        };
         let names = (0..self.theta.len()).map(|place| &self.problem.parameter(place).name);
         (names.zip(&self.at_bound))
-            .filter(|(name, _)| !declared.iter().any(|info| info.name == **name))
+            .filter(|(name, _)| !was_free(name))
             .filter_map(|(name, bound)| Some((name.clone(), (*bound)?)))
             .collect()
     }

@@ -9,8 +9,8 @@
 
 mod accepted;
 mod answer;
+mod candidates;
 mod case;
-mod catalogue;
 mod colour;
 mod declared;
 mod difference;
@@ -22,8 +22,10 @@ mod found;
 mod gate;
 mod group;
 mod inconclusive;
+mod knowledge;
 mod null_model;
 mod outliers;
+mod plausible;
 mod polish;
 mod predicted;
 mod projection;
@@ -39,19 +41,20 @@ mod size;
 mod spikes;
 mod stack;
 mod starts;
-mod terms;
 mod threshold;
 mod trial;
 mod verdict;
 mod watch;
 
 pub use answer::Conclusion;
+pub use candidates::{TakenFor, candidates};
 pub use case::{Case, Unfit};
-pub use catalogue::candidates;
 pub use difference::difference;
 pub use effect::{Effect, EffectKind, Treatment};
 pub use flight::Flight;
 pub use inconclusive::Inconclusive;
+pub use knowledge::{Knowledge, KnownSize};
+pub use plausible::Plausible;
 pub use report::{
     Diagnosis, DocumentChange, EffectParameter, Evidence, FitChange, Member, NamedEffect,
     OutputGain, ParameterChange, Refusal, RefusedEffect, Step, Verdict,
@@ -85,7 +88,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
     let mut base = declared.fitted.clone();
     let cleaned = clean(case, &declared.fitted, &mut base, &mut found, watcher)?;
     let case = cleaned.as_ref().unwrap_or(case);
-    let catalogue = catalogue::candidates(case, &declared.fitted.problem.model);
+    let catalogue = candidates::candidates(case, &declared.fitted.problem.model);
     let mut number = 1;
     while number <= MOST_ROUNDS {
         let left: Vec<Effect> = (catalogue.iter())

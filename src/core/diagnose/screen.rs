@@ -148,7 +148,10 @@ impl<'c> Screen<'c> {
         let model = &problem.model;
         let is_added = |index: &usize| {
             let info = &model.parameters[*index];
-            !info.document.fixed && !declared.iter().any(|p| p.name == info.name)
+            let was_free = declared
+                .iter()
+                .any(|p| p.name == info.name && !p.document.fixed);
+            !info.document.fixed && !was_free
         };
         let added: Vec<usize> = (0..model.parameters.len()).filter(is_added).collect();
         let names: Vec<String> = added

@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::flight::Unit;
+use crate::flight::{PhysicalQuantity, Unit};
 
 /// States, inputs, outputs and parameters with their units, and equations as text:
 /// dx/dt = f(x, u, θ), x(0) = x0(θ), y = g(x, u, θ).
@@ -81,6 +81,10 @@ pub struct Constant {
     #[serde(default, skip_serializing_if = "String::is_empty")]
     #[schema(example = "m/s^2")]
     pub unit: String,
+    /// What it is, where its name does not say so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "wind_x")]
+    pub quantity: Option<PhysicalQuantity>,
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
 }
@@ -96,6 +100,10 @@ pub struct Input {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "tau_de")]
     pub delay: Option<String>,
+    /// What it is, where its name does not say so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "elevator")]
+    pub quantity: Option<PhysicalQuantity>,
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
 }
@@ -112,6 +120,10 @@ pub struct State {
     /// dx/dt.
     #[schema(example = "Za*(alpha - alpha_eq) + Zq*q + Zde*(de - de_eq)")]
     pub derivative: String,
+    /// What it is, where its name does not say so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "angle_of_attack")]
+    pub quantity: Option<PhysicalQuantity>,
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
 }
@@ -124,6 +136,10 @@ pub struct Definition {
     pub unit: String,
     #[schema(example = "CL0 + CLalpha*alpha")]
     pub equation: String,
+    /// What it is, where its name does not say so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "lift_coefficient")]
+    pub quantity: Option<PhysicalQuantity>,
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
 }
@@ -141,6 +157,10 @@ pub struct Output {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "tau_alpha")]
     pub delay: Option<String>,
+    /// What it is, where its name does not say so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "pitch_rate")]
+    pub quantity: Option<PhysicalQuantity>,
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
 }
@@ -167,6 +187,10 @@ pub struct Parameter {
     /// and in its error bounds. Of a parameter `per = "maneuver"` it holds for each of its values.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prior: Option<Prior>,
+    /// What it is, where its name does not say so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "airspeed")]
+    pub quantity: Option<PhysicalQuantity>,
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
 }

@@ -22,6 +22,7 @@ mod names;
 mod native;
 mod operation;
 mod program;
+mod quantities;
 mod scalar;
 mod trigonometry;
 mod unique;
@@ -31,11 +32,12 @@ pub use delays::Delays;
 pub use document::{
     Constant, Definition, Input, ModelDocument, Output, Parameter, Per, Prior, Start, State,
 };
-pub use edit::{Added, Edit, EditError, EditKind};
+pub use edit::{Added, Edit, EditError, EditKind, Reference};
 pub use formula::{ChannelFormula, FormulaError, Recorded};
 pub use jacobian::Jacobian;
 pub use native::{Native, NativeSteps, Stretch};
 pub use program::{Program, Workspace};
+pub use quantities::{Quantities, Source, Taken};
 pub use scalar::{BLOCK, LANES, Lanes, Scalar};
 pub use unique::unique;
 

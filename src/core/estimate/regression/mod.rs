@@ -121,12 +121,14 @@ fn edited(model: &Model, measured: &[MeasuredState]) -> ModelDocument {
             unit: unit.over(Dimension::SECOND).to_string(),
             equation: state.derivative,
             delay: None,
+            quantity: None,
             description: format!("derivative of the measured {name}"),
         };
         document.outputs.insert(format!("d_{name}_dt"), output);
         let input = Input {
             unit: state.unit,
             delay: None,
+            quantity: state.quantity,
             description: state.description,
         };
         document.inputs.insert(name.clone(), input);

@@ -5,6 +5,7 @@ mod checks;
 mod diagnosis;
 mod document;
 mod filter;
+mod knowledge;
 mod missing;
 mod plausible;
 mod resolve;
@@ -120,7 +121,7 @@ impl<'s, 'm> Resolved<'s, 'm> {
             for stretch in stretches {
                 let segment = resolve::segment(spec, model, stretch, index, faults);
                 if spec.kind == JobKind::Diagnose {
-                    let flight = diagnosis::flight(spec, model, &segment, stretch, role);
+                    let flight = diagnosis::flight(model, &segment, stretch, role);
                     resolved.flights.push(flight);
                 }
                 match role {

@@ -10,6 +10,7 @@
 mod dynamics;
 mod error;
 mod inputs;
+mod lookup;
 mod position;
 mod pressure;
 mod sensors;
@@ -20,10 +21,11 @@ mod wind;
 
 pub use error::EditError;
 
+use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::document::ModelDocument;
+use super::document::{Input, ModelDocument};
 use super::expression::{LONGEST, LONGEST_NAME};
 use sheet::Sheet;
 
@@ -35,7 +37,7 @@ const LONGEST_TARGET: usize = 1024;
 #[serde(deny_unknown_fields)]
 pub struct Edit {
     pub kind: EditKind,
-    /// An output for `sensor_*` (or an input that is measured, as the accelerometers of a reconstruction), an input
+    /// A fixed parameter for `fixed_parameter`, an output for `sensor_*` (or an input that is measured, as the accelerometers of a reconstruction), an input
     /// for `input_*`, `actuator_*` and `backlash`, a state or definition (its equation) for the others. Several
     /// joined by `+` for `sensor_delay` and `stall_hysteresis`; `all` for the `missing_term` `qbar`.
     #[schema(example = "q")]
@@ -55,11 +57,31 @@ pub struct Edit {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "rad")]
     pub unit: Option<String>,
+    /// Recorded channels that a `missing_term` may name though the model does not use them, and from which other effects
+    /// take a speed or a rotational acceleration that the model does not have: as the model's inputs would be written.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schema(example = json!({"TAS": {"unit": "m/s", "quantity": "airspeed"}}))]
+    pub channels: IndexMap<String, Input>,
+    /// Names in a `missing_term` that are taken as differences, and from what: a number in the unit of the name, or an
+    /// expression in parameters and constants.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schema(example = json!({"alpha": "alpha_eq"}))]
+    pub about: IndexMap<String, Reference>,
+}
+
+/// From what a difference is taken.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(untagged)]
+pub enum Reference {
+    Value(f64),
+    Expression(String),
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum EditKind {
+    /// A parameter that the document holds fixed becomes free
+    FixedParameter,
     /// y + b
     SensorBias,
     /// (1 + k) y
@@ -103,7 +125,8 @@ pub enum EditKind {
 }
 
 impl EditKind {
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
+        Self::FixedParameter,
         Self::SensorBias,
         Self::SensorScale,
         Self::SensorDrift,
@@ -129,6 +152,7 @@ impl EditKind {
     /// The word of the catalogue.
     pub fn name(self) -> &'static str {
         match self {
+            Self::FixedParameter => "fixed_parameter",
             Self::SensorBias => "sensor_bias",
             Self::SensorScale => "sensor_scale",
             Self::SensorDrift => "sensor_drift",
@@ -157,10 +181,25 @@ impl EditKind {
     }
 }
 
+/// A parameter that was fixed, at what would be no effect, is to be estimated.
+fn freed(sheet: &mut Sheet) -> Result<(), EditError> {
+    let target = sheet.target();
+    let is_fixed = |(_, parameter): &(&String, &super::document::Parameter)| parameter.fixed;
+    let known = sheet.document.parameters.iter().filter(is_fixed);
+    let missing = sheet.no_target("fixed parameter", target, known.map(|(name, _)| name));
+    match sheet.document.parameters.get_mut(target) {
+        Some(parameter) if parameter.fixed => {
+            parameter.fixed = false;
+            Ok(())
+        }
+        _ => Err(missing),
+    }
+}
+
 /// What an edited document has that the one before had not, by name.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Added {
-    /// The effect's size comes first. Fixed ones among them are held or read off the data.
+    /// Those that are new, or no longer fixed. The effect's size comes first. Fixed ones among them are held or read off the data.
     pub parameters: Vec<String>,
     /// Channels that a recording must have besides.
     pub inputs: Vec<String>,
@@ -177,7 +216,9 @@ impl Added {
         }
         Self {
             parameters: new(after.parameters.keys(), |name| {
-                before.parameters.contains_key(name)
+                let old = before.parameters.get(name);
+                let is_freed = old.is_some_and(|p| p.fixed) && !after.parameters[name].fixed;
+                old.is_some() && !is_freed
             }),
             inputs: new(after.inputs.keys(), |name| before.inputs.contains_key(name)),
             states: new(after.states.keys(), |name| before.states.contains_key(name)),
@@ -194,6 +235,8 @@ impl Edit {
             term: None,
             parameter: None,
             unit: None,
+            channels: IndexMap::new(),
+            about: IndexMap::new(),
         }
     }
 
@@ -214,6 +257,7 @@ impl Edit {
         self.check_lengths()?;
         let mut sheet = Sheet::new(self, document);
         match self.kind {
+            EditKind::FixedParameter => freed(&mut sheet),
             EditKind::SensorBias => sensors::bias(&mut sheet),
             EditKind::SensorScale => sensors::scale(&mut sheet),
             EditKind::SensorDrift => sensors::drift(&mut sheet),

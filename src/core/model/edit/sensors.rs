@@ -4,7 +4,7 @@
 
 use super::EditError;
 use super::sheet::{Sheet, dimension, of_a_difference, per_second, unknown};
-use crate::flight::Dimension;
+use crate::flight::{Dimension, PhysicalQuantity};
 use crate::model::document::Parameter;
 
 /// Usual bounds of a scale factor, less one, and of a delay, s.
@@ -38,6 +38,14 @@ impl Sensor {
     pub(super) fn unit(&self) -> &str {
         match self {
             Self::Output { unit } | Self::Input { unit } => unit,
+        }
+    }
+
+    pub(super) fn quantity(&self, sheet: &Sheet, target: &str) -> Option<PhysicalQuantity> {
+        let quantities = sheet.quantities();
+        match self {
+            Self::Output { .. } => quantities.output(target),
+            Self::Input { .. } => quantities.get(target),
         }
     }
 

@@ -319,6 +319,7 @@ fn edited(document: &ModelDocument) -> ModelDocument {
         fixed: false,
         per: Per::Job,
         prior: None,
+        quantity: None,
         description: String::new(),
     };
     for (index, (name, state)) in document.states.iter().enumerate() {
@@ -331,6 +332,7 @@ fn edited(document: &ModelDocument) -> ModelDocument {
             unit: state.unit.clone(),
             equation: name.clone(),
             delay: None,
+            quantity: None,
             description: String::new(),
         };
         edited
