@@ -8,7 +8,7 @@ use super::case::{Case, Unfit, Values, values};
 use super::colour::Colour;
 use super::stack::Layout;
 use crate::estimate::{Bound, ErrorBoundsKind, Estimate, Outcome, Problem, Solution, output_error};
-use crate::model::ModelDocument;
+use crate::model::{Added, ModelDocument};
 
 /// A model and its fit to the estimation flights.
 #[derive(Clone, Debug)]
@@ -18,7 +18,7 @@ pub(super) struct Fitted {
     /// SI.
     pub theta: Vec<f64>,
     /// By place of θ: the bound at which it stands.
-    pub at_bound: Vec<Option<Bound>>,
+    pub bounds: Vec<Option<Bound>>,
     /// R.
     pub covariance: DMatrix<f64>,
     /// What the estimation answered; θ may have moved since, see [`Self::polished`].
@@ -97,7 +97,7 @@ impl Fitted {
         let unknowns = &problem.unknowns;
         let at_bound = |place: usize| solution.row(unknowns, place).at_bound;
         Self {
-            at_bound: (0..unknowns.len()).map(at_bound).collect(),
+            bounds: (0..unknowns.len()).map(at_bound).collect(),
             residual: Layout::of(&problem).residual(&solution.histories),
             theta: solution.theta.clone(),
             covariance: solution.covariance.clone(),
@@ -119,18 +119,13 @@ impl Fitted {
         values
     }
 
-    /// Names of the parameters added that stand at a bound of their range.
-    pub(super) fn at_bound(&self, base: &Self) -> Vec<(String, Bound)> {
-        let declared = &base.problem.model.parameters;
-        let was_free = |name: &str| {
-            let mut declared = declared.iter();
-            declared.any(|info| info.name == name && !info.document.fixed)
+    /// Those of the parameters added that stand at a bound of their range.
+    pub(super) fn at_bound<'a>(&self, added: &'a [Added]) -> Vec<&'a Added> {
+        let is_at_bound = |added: &&Added| {
+            let names = (0..self.theta.len()).map(|place| &self.problem.parameter(place).name);
+            (names.zip(&self.bounds)).any(|(name, bound)| *name == added.name && bound.is_some())
         };
-        let names = (0..self.theta.len()).map(|place| &self.problem.parameter(place).name);
-        (names.zip(&self.at_bound))
-            .filter(|(name, _)| !was_free(name))
-            .filter_map(|(name, bound)| Some((name.clone(), (*bound)?)))
-            .collect()
+        added.iter().filter(is_at_bound).collect()
     }
 
     /// ln L of its residuals with the noise that suits them, its orders paid for.

@@ -3,6 +3,7 @@
 use super::accepted::Accepted;
 use super::effect::Effect;
 use super::report::{Refusal, RefusedEffect};
+use crate::model::Added;
 
 /// A likelihood ratio that no chance makes, however many candidates there are.
 const CLEARLY: f64 = 40.0;
@@ -15,8 +16,8 @@ pub(super) struct Found {
 }
 
 impl Found {
-    /// Names of the parameters that the accepted effects added.
-    pub(super) fn added(&self) -> Vec<String> {
+    /// The parameters that the accepted effects added.
+    pub(super) fn added(&self) -> Vec<Added> {
         let accepted = self.accepted.iter();
         accepted.flat_map(|a| a.added.iter().cloned()).collect()
     }

@@ -13,7 +13,7 @@ use super::report::{OutputGain, Refusal};
 use super::threshold::Threshold;
 use super::trial::Trial;
 use crate::estimate::Role;
-use crate::model::{Added, EditKind};
+use crate::model::{Added, AddedRole, EditKind};
 
 /// A size within so many standard errors of nothing is nothing that one can tell an engineer of.
 const LEAST_ERRORS: f64 = 2.0;
@@ -37,8 +37,6 @@ pub(super) struct Passed {
     pub trial: Trial,
     /// What is reported of it: converged, by output error.
     pub settled: Fitted,
-    /// Names of the parameters that it adds, its size first.
-    pub added: Vec<String>,
     /// By output, N ln(σ0²/σ1²) on flights that were not fitted; empty where there are none.
     pub gains: Vec<OutputGain>,
 }
@@ -65,10 +63,9 @@ pub(super) fn pass(
     threshold: Threshold,
 ) -> Result<Passed, Box<(Trial, Objection)>> {
     match judge(null, &trial, threshold) {
-        Ok((settled, added, gains)) => Ok(Passed {
+        Ok((settled, gains)) => Ok(Passed {
             trial,
             settled,
-            added,
             gains,
         }),
         Err(objection) => Err(Box::new((trial, objection))),
@@ -79,22 +76,21 @@ fn judge(
     null: &NullModel<'_>,
     trial: &Trial,
     threshold: Threshold,
-) -> Result<(Fitted, Vec<String>, Vec<OutputGain>), Objection> {
+) -> Result<(Fitted, Vec<OutputGain>), Objection> {
     let least = threshold.of(trial.freedom, trial.starts);
     significant(trial, least)?;
-    let added = Added::between(&null.base.document, &trial.likeliest.document).parameters;
-    within_range(null.base, &trial.effect, &trial.likeliest)?;
+    within_range(trial, &trial.likeliest)?;
     let settled = settle(null.case, trial)?;
-    within_range(null.base, &trial.effect, &settled)?;
-    told_from_nothing(&trial.effect, &settled, &added)?;
-    told_from_earlier(null, &settled, &added)?;
-    if let Some(size) = added.first().filter(|_| !is_local_in_time(&trial.effect))
-        && let Some(why) = disagreement(&settled, size)
+    within_range(trial, &settled)?;
+    told_from_nothing(&trial.effect, &settled, &trial.added)?;
+    told_from_earlier(null, &settled, &trial.added)?;
+    if let Some(size) = (trial.added.first()).filter(|_| !is_local_in_time(&trial.effect))
+        && let Some(why) = disagreement(&settled, &size.name)
     {
         return Err((Refusal::NotRepeatable, why));
     }
     let gains = predictive(null, trial, &settled, least)?;
-    Ok((settled, added, gains))
+    Ok((settled, gains))
 }
 
 fn significant(trial: &Trial, least: f64) -> Result<(), Objection> {
@@ -108,14 +104,17 @@ fn significant(trial: &Trial, least: f64) -> Result<(), Objection> {
     Err((Refusal::NotSignificant, why))
 }
 
-fn within_range(base: &Fitted, effect: &Effect, fitted: &Fitted) -> Result<(), Objection> {
-    let mut at_bound = fitted.at_bound(base);
-    at_bound.retain(|(name, _)| decides(effect, name));
+fn within_range(trial: &Trial, fitted: &Fitted) -> Result<(), Objection> {
+    let mut at_bound = fitted.at_bound(&trial.added);
+    at_bound.retain(|added| decides(&trial.effect, added.role));
     match at_bound.first() {
         None => Ok(()),
-        Some((name, _)) => Err((
+        Some(added) => Err((
             Refusal::OutOfRange,
-            format!("its estimate ends at a bound of its physical range ({name})"),
+            format!(
+                "its estimate ends at a bound of its physical range ({})",
+                added.name
+            ),
         )),
     }
 }
@@ -140,7 +139,7 @@ fn settle(case: &Case, trial: &Trial) -> Result<Fitted, Objection> {
 }
 
 /// Some size that it adds is clearly not nothing.
-fn told_from_nothing(effect: &Effect, fitted: &Fitted, added: &[String]) -> Result<(), Objection> {
+fn told_from_nothing(effect: &Effect, fitted: &Fitted, added: &[Added]) -> Result<(), Objection> {
     if !vanishes_at_zero(effect) {
         return Ok(());
     }
@@ -171,15 +170,15 @@ fn told_from_nothing(effect: &Effect, fitted: &Fitted, added: &[String]) -> Resu
 fn told_from_earlier(
     null: &NullModel<'_>,
     fitted: &Fitted,
-    added: &[String],
+    added: &[Added],
 ) -> Result<(), Objection> {
     let names: Vec<&str> = (fitted.estimate.parameters.iter())
         .filter(|row| !row.fixed)
         .map(|row| row.name.as_str())
         .collect();
-    let places = |of: &[String]| -> Vec<usize> {
+    let places = |of: &[Added]| -> Vec<usize> {
         (0..names.len())
-            .filter(|&place| of.iter().any(|name| name == names[place]))
+            .filter(|&place| of.iter().any(|added| added.name == names[place]))
             .collect()
     };
     let (new, earlier) = (places(added), places(null.earlier));
@@ -241,12 +240,10 @@ fn predictive(
 
 /// Whether a parameter at its bound speaks against the effect: how steeply and how late the flow separates is hardly seen
 /// in many a stall, at which angle it does is.
-fn decides(effect: &Effect, parameter: &str) -> bool {
+fn decides(effect: &Effect, role: AddedRole) -> bool {
+    use AddedRole::{Delay, Steepness, TimeConstant};
     let is_stall = effect.kind == EffectKind::Edit(EditKind::StallHysteresis);
-    !is_stall
-        || !["_steepness", "_time", "_delay"]
-            .iter()
-            .any(|shape| parameter.contains(shape))
+    !(is_stall && matches!(role, Steepness | TimeConstant | Delay))
 }
 
 /// Whether a size of zero is no effect; a rate limit or a stall is absent at the other end of its range.

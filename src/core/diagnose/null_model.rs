@@ -7,13 +7,14 @@ use super::predicted::Predicted;
 use super::projection::norm;
 use super::stack::Layout;
 use crate::estimate::Role;
+use crate::model::Added;
 
 pub(super) struct NullModel<'c> {
     pub case: &'c Case,
     /// Fitted by output error.
     pub base: &'c Fitted,
     /// Parameters of the effects that are in it already.
-    pub earlier: &'c [String],
+    pub earlier: &'c [Added],
     /// ln L with the noise that suits it, where that is greatest.
     pub ln_evidence: f64,
     /// Of flights that were not fitted; `None` where there are none.
@@ -28,7 +29,7 @@ impl<'c> NullModel<'c> {
     pub(super) fn new(
         case: &'c Case,
         base: &'c Fitted,
-        earlier: &'c [String],
+        earlier: &'c [Added],
     ) -> Result<Self, Unfit> {
         let layout = Layout::of(&base.problem);
         Ok(Self {

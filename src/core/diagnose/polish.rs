@@ -142,7 +142,7 @@ impl Fitted {
                 None
             }
         };
-        self.at_bound = theta.iter().enumerate().map(bound).collect();
+        self.bounds = theta.iter().enumerate().map(bound).collect();
         self.theta = theta;
     }
 }

@@ -3,6 +3,7 @@
 use super::fitted::Fitted;
 use crate::estimate::{Estimate, Problem};
 use crate::flight::Unit;
+use crate::model::Added;
 
 /// One parameter of an effect.
 pub(super) struct Size {
@@ -28,14 +29,17 @@ impl Size {
     }
 }
 
-/// Of the free ones among the parameters with these names; `estimate` has the standard errors.
+/// Of the free ones among the parameters added; `estimate` has the standard errors.
 pub(super) fn sizes(
     problem: &Problem,
     theta: &[f64],
     estimate: &Estimate,
-    added: &[String],
+    added: &[Added],
 ) -> Vec<Size> {
-    let is_added = |place: &usize| added.contains(&problem.parameter(*place).name);
+    let is_added = |place: &usize| {
+        let name = &problem.parameter(*place).name;
+        added.iter().any(|added| added.name == *name)
+    };
     let size = |place: usize| {
         let info = problem.parameter(place);
         let segment = problem.unknowns.at(place).segment;
@@ -52,7 +56,7 @@ pub(super) fn sizes(
 }
 
 impl Fitted {
-    pub(super) fn sizes(&self, added: &[String]) -> Vec<Size> {
+    pub(super) fn sizes(&self, added: &[Added]) -> Vec<Size> {
         sizes(&self.problem, &self.theta, &self.estimate, added)
     }
 }

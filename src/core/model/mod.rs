@@ -32,7 +32,7 @@ pub use delays::Delays;
 pub use document::{
     Constant, Definition, Input, ModelDocument, Output, Parameter, Per, Prior, Start, State,
 };
-pub use edit::{Added, Edit, EditError, EditKind, Reference};
+pub use edit::{Added, AddedRole, Edit, EditError, EditKind, Edited, Reference};
 pub use formula::{ChannelFormula, FormulaError, Recorded};
 pub use jacobian::Jacobian;
 pub use native::{Native, NativeSteps, Stretch};

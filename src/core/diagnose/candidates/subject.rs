@@ -48,7 +48,7 @@ impl<'c> Subject<'c> {
     pub(super) fn fit(&self, mut edit: Edit) -> Option<Effect> {
         let edited = edit.apply(self.document).ok()?;
         edit.channels
-            .retain(|name, _| edited.inputs.contains_key(name));
+            .retain(|name, _| edited.document.inputs.contains_key(name));
         Some(Effect::of(edit))
     }
 

@@ -104,6 +104,7 @@ impl Sheet<'_> {
             description: description.to_string(),
         };
         self.document.inputs.insert(name.to_string(), input);
+        self.inputs.push(name.to_string());
         Ok(name.to_string())
     }
 

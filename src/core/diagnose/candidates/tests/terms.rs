@@ -76,7 +76,7 @@ fn what_the_document_fixes_comes_first() {
     ];
     assert_eq!(first, all);
     let document = catalog::find("six-degrees-of-freedom").unwrap();
-    let freed = effects[9].apply(&document).unwrap();
+    let freed = effects[9].apply(&document).unwrap().document;
     assert!(!freed.parameters["Cmad"].fixed);
     // the steady flight, starts of maneuvers and what is read off the data are no candidates
     for (model, wanted) in [
@@ -127,7 +127,8 @@ fn products_with_recorded_channels_are_offered_about_a_reference() {
     let edited = square
         .unwrap()
         .apply(&catalog::find("short-period").unwrap())
-        .unwrap();
+        .unwrap()
+        .document;
     let equation = &edited.states["q"].derivative;
     assert!(
         equation.contains("q_term*((alpha - alpha_eq)^2)"),
@@ -140,7 +141,8 @@ fn products_with_recorded_channels_are_offered_about_a_reference() {
     let edited = square
         .unwrap()
         .apply(&catalog::find("longitudinal-nonlinear").unwrap())
-        .unwrap();
+        .unwrap()
+        .document;
     assert!(edited.parameters["alpha_about"].fixed);
     assert!(
         edited.definitions["Cm"]
@@ -185,7 +187,10 @@ fn damping_scales_otherwise_than_stiffness() {
         .iter()
         .find(|effect| effect.name() == "missing_term qbar in all")
         .unwrap();
-    let edited = all.apply(&catalog::find("short-period").unwrap()).unwrap();
+    let edited = all
+        .apply(&catalog::find("short-period").unwrap())
+        .unwrap()
+        .document;
     let pitching = &edited.states["q"].derivative;
     assert!(pitching.contains("(Ma*qbar_ratio)") && pitching.contains("(Mq*speed_ratio_1)"));
     assert!(edited.definitions["qbar_ratio"].equation.contains("^2"));
