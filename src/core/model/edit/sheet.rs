@@ -211,8 +211,8 @@ impl<'a> Sheet<'a> {
         }
         let input = Input {
             unit: unit.to_string(),
-            delay: None,
             description: description.to_string(),
+            ..Default::default()
         };
         self.document.inputs.insert(name.to_string(), input);
         Ok(name.to_string())
