@@ -28,7 +28,7 @@ pub struct Case {
 /// Values of parameters, SI: by name, and by segment where each has its own.
 pub(super) type Values = IndexMap<(String, Option<String>), f64>;
 
-/// What is faster than this many samples an explicit integrator cannot follow.
+/// A state that is faster than this many samples an explicit integrator cannot follow.
 const SHORTEST_LAG: f64 = 0.45;
 
 /// Why a model cannot be fitted to the case.

@@ -35,6 +35,10 @@ pub(super) fn disturbed_throughout(case: &Case, calm: &Fitted, one: Fitted) -> F
 /// The declared model fitted by filter error, without process noise on the states that are `held`.
 fn filtered(case: &Case, base: &Fitted, held: &dyn Fn(&str) -> bool) -> Result<Fitted, Unfit> {
     let mut problem = case.problem(&base.document, &base.values())?;
+    if !problem.model.paths.of_outputs().is_empty() {
+        let why = "the filter-error method knows no lag or delay of an output";
+        return Err(Unfit(why.into()));
+    }
     problem.options.estimator = Estimator::FilterError;
     problem.options.tolerance = problem.options.tolerance.max(1e-3);
     problem.options.process_noise = (problem.model.states.iter())

@@ -11,9 +11,9 @@ pub enum Unusable {
     NotFinite,
     /// The Riccati equation of the Kalman filter has no solution with which the filter is stable.
     NoSteadyGain { segment: usize },
-    /// An input or output is delayed by more than [`crate::simulate::MOST_DELAY`] samples, or by no number; by its
-    /// place in [`crate::model::Delays::at`].
-    Delayed { segment: usize, delay: usize },
+    /// An element of a path has a size that it cannot have (see [`crate::simulate::path_out_of_bounds`]); by its place
+    /// in [`crate::model::Paths::at`].
+    Path { segment: usize, place: usize },
     /// The covariance of the residuals is singular: some outputs' residuals are not independent.
     SingularNoise,
     /// Equation error was asked for, and no output measures a state.

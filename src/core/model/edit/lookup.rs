@@ -102,6 +102,7 @@ impl Sheet<'_> {
             delay: told.and_then(|told| told.delay.clone()),
             quantity: told.and_then(|told| told.quantity),
             description: description.to_string(),
+            ..Input::default()
         };
         self.document.inputs.insert(name.to_string(), input);
         self.inputs.push(name.to_string());

@@ -1,12 +1,12 @@
 //! Edits: an effect is a function from a model document to a model document with a few parameters more,
 //! which at their values of no effect is the model before.
 //!
-//! The added parameters carry units, start values and their physical range. At its start a bias, scale, drift, delay,
-//! missing term, gust, wind, initial state or structural mode is without effect; a lag, a rate limit, a backlash
-//! or a stall starts at a usual value and tends to the model before with its time to 0, its limit or its angle to
-//! the largest. A time constant must stay above about 0.4 of the time between samples: what is faster than that
-//! an explicit integrator cannot follow.
+//! The added parameters carry units, start values and their physical range. Every effect contains its own absence:
+//! [`Edit::absence`] says at which values the edited model is the model before. Lags, rate limits, play and delays are
+//! elements in the path of a signal (see [`super::Element`]). The time constants of the effects that are states must
+//! stay above about 0.4 of the time between samples: what is faster than that an explicit integrator cannot follow.
 
+mod absence;
 mod dynamics;
 mod edited;
 mod error;
@@ -92,7 +92,7 @@ pub enum EditKind {
     SensorDrift,
     /// y(t - τ)
     SensorDelay,
-    /// T ẏ_m = y - y_m
+    /// T ẏ_m = y - y_m, y_m what is recorded
     SensorLag,
     /// The lever arm of a vane or an accelerometer: α - x q/V + y p/V, β + x r/V - z p/V, a + ω̇ × r + ω × (ω × r)
     SensorPosition,
@@ -104,9 +104,9 @@ pub enum EditKind {
     InputDelay,
     /// T δ̇ = u - δ
     ActuatorLag,
-    /// δ̇ = r tanh((u - δ)/(r T))
+    /// δ goes to u, but abs(δ̇) ≤ r
     ActuatorRateLimit,
-    /// T δ̇ = max(0, u - b - δ) + min(0, u + b - δ)
+    /// δ stays where it is, but u - b ≤ δ ≤ u + b
     Backlash,
     /// ψ u2, a recorded channel that the model does not use
     UnrecordedInput,
