@@ -1,0 +1,79 @@
+//! Who knows the truth: whether another name explains the flights as well as the right one.
+
+use serde_json::json;
+use trimtab_core::diagnose::{Effect, EffectParameter};
+use trimtab_core::model::{ModelDocument, Start};
+
+use crate::case::Setting;
+use crate::job::estimate;
+use crate::likelihood::{Residuals, ln_likelihood, residuals};
+use crate::record::Recording;
+
+/// Units of ln L within which two names are one and the same to these data.
+const ALIKE: f64 = 3.0;
+
+/// ln L that the true model reaches on the flights of the fit: with its own noise, and what its parameters absorb.
+pub(crate) fn of_truth(setting: &Setting, recordings: &[Recording], faults: usize) -> f64 {
+    let outputs = setting.noises.len();
+    let noise: Residuals = (0..outputs)
+        .map(|i| {
+            recordings
+                .iter()
+                .filter(|r| r.fitted)
+                .map(|r| r.noise[i].clone())
+                .collect()
+        })
+        .collect();
+    let flights = recordings.iter().filter(|r| r.fitted).count();
+    let free = |per_flight: bool| {
+        let each = setting.document.parameters.values().filter(|p| !p.fixed);
+        each.filter(|p| (p.per == trimtab_core::model::Per::Maneuver) == per_flight)
+            .count()
+    };
+    let unknowns = free(false) + flights * free(true) + faults;
+    ln_likelihood(&noise, &setting.noises) + 0.5 * unknowns as f64
+}
+
+/// ln L of the declared model with an effect in it, from the values that the diagnosis has for it.
+pub(crate) fn of_effect(
+    setting: &Setting,
+    recordings: &[Recording],
+    effect: &Effect,
+    parameters: &[EffectParameter],
+) -> Option<f64> {
+    if effect.edits.is_empty() {
+        return None;
+    }
+    let mut document = effect.apply(&setting.document).ok()?;
+    for value in parameters.iter().filter(|p| p.segment.is_none()) {
+        start_at(&mut document, &value.name, value.estimate);
+    }
+    fitted(setting, recordings, &document)
+}
+
+fn fitted(setting: &Setting, recordings: &[Recording], document: &ModelDocument) -> Option<f64> {
+    let options = json!({"error_bounds": "conventional"});
+    let result = estimate(document, recordings, &options).ok()?;
+    Some(ln_likelihood(&residuals(&result), &setting.noises))
+}
+
+/// A value in SI as a parameter's start.
+fn start_at(document: &mut ModelDocument, name: &str, value: f64) {
+    if let Some(parameter) = document.parameters.get_mut(name)
+        && let Ok(unit) = trimtab_core::flight::Unit::parse(&parameter.unit)
+    {
+        parameter.start = Start::Value(unit.from_si(value));
+    }
+}
+
+/// Whether a named effect is an alias of the truth.
+pub(crate) fn is_alias(
+    setting: &Setting,
+    recordings: &[Recording],
+    faults: usize,
+    effect: &Effect,
+    parameters: &[EffectParameter],
+) -> bool {
+    of_effect(setting, recordings, effect, parameters)
+        .is_some_and(|found| found > of_truth(setting, recordings, faults) - ALIKE)
+}
