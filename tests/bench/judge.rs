@@ -111,7 +111,8 @@ fn set_of(seed: u64, options: &Options) -> Set {
     options.set.unwrap_or(match seed % 10 {
         0..3 => Set::Nulls,
         3..8 => Set::Effects,
-        _ => Set::Pairs,
+        8 => Set::Pairs,
+        _ => Set::Unknown,
     })
 }
 
@@ -122,6 +123,8 @@ fn judged(cases: &[(Design, u64)], options: &Options) -> Vec<Line> {
         usual_names: options.usual_names,
         replay: replay.as_ref(),
         steps: options.steps,
+        oracle: options.oracle,
+        dry: options.dry,
     };
     let file = options
         .json

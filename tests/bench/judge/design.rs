@@ -12,16 +12,19 @@ pub(crate) enum Set {
     Effects,
     /// Two of them at once.
     Pairs,
+    /// Something that is in no catalogue.
+    Unknown,
 }
 
 impl Set {
-    pub(crate) const ALL: [Self; 3] = [Self::Nulls, Self::Effects, Self::Pairs];
+    pub(crate) const ALL: [Self; 4] = [Self::Nulls, Self::Effects, Self::Pairs, Self::Unknown];
 
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Nulls => "nulls",
             Self::Effects => "effects",
             Self::Pairs => "pairs",
+            Self::Unknown => "unknown",
         }
     }
 }
@@ -59,11 +62,11 @@ pub(crate) fn designs(set: Set, only: &str) -> Vec<Design> {
             key: format!("{}/{what}", kind.name),
         };
         let name = |fault: usize| made.faults[fault].name.clone();
-        let count = made.faults.len();
+        let known = made.faults.iter().filter(|fault| fault.known).count();
         match set {
             Set::Nulls => all.push(design(Vec::new(), Strength::Clear, "null".to_string())),
             Set::Effects => {
-                for (fault, strength) in (0..count).flat_map(|f| Strength::ALL.map(|s| (f, s))) {
+                for (fault, strength) in (0..known).flat_map(|f| Strength::ALL.map(|s| (f, s))) {
                     all.push(design(
                         vec![fault],
                         strength,
@@ -71,11 +74,22 @@ pub(crate) fn designs(set: Set, only: &str) -> Vec<Design> {
                     ));
                 }
             }
+            Set::Unknown => {
+                for fault in known..made.faults.len() {
+                    for strength in [Strength::Clear, Strength::Moderate] {
+                        all.push(design(
+                            vec![fault],
+                            strength,
+                            format!("{}/{}", name(fault), strength.name()),
+                        ));
+                    }
+                }
+            }
             Set::Pairs => {
                 let mut random = Random::new(0, kind.name);
                 for _ in 0..PAIRS {
-                    let first = random.index(count);
-                    let second = (first + 1 + random.index(count - 1)) % count;
+                    let first = random.index(known);
+                    let second = (first + 1 + random.index(known - 1)) % known;
                     let what = format!("{} and {}", name(first), name(second));
                     all.push(design(vec![first, second], Strength::Moderate, what));
                 }

@@ -7,7 +7,9 @@ use crate::random::Random;
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) struct Answer {
     pub kind: &'static str,
+    /// `*` is any.
     pub target: String,
+    /// Absent: any.
     pub term: Option<String>,
 }
 
@@ -37,7 +39,8 @@ impl Answer {
             (None, _) => true,
             (Some(_), None) => false,
         };
-        self.kind == kind && targets(&self.target) == targets(target) && same_term
+        let same_target = self.target == "*" || targets(&self.target) == targets(target);
+        self.kind == kind && same_target && same_term
     }
 }
 
@@ -56,6 +59,8 @@ pub(crate) enum Sizing {
 }
 
 pub(crate) struct Fault {
+    /// In the catalogue of effects.
+    pub known: bool,
     /// The word of the catalogue, or the judge's own for what is in no catalogue.
     pub kind: &'static str,
     /// The kind and where it is, for people and `--only`.
@@ -81,6 +86,7 @@ impl Fault {
             None => format!("{} {}", answer.kind, answer.target),
         };
         Self {
+            known: true,
             kind: answer.kind,
             name: of,
             answers: vec![answer],

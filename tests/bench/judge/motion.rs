@@ -15,6 +15,8 @@ pub(crate) const THRUST: usize = 4;
 pub(crate) struct Motion {
     pub time: f64,
     pub speed: f64,
+    /// The speed that the flight began with.
+    pub steady_speed: f64,
     pub alpha: f64,
     pub beta: f64,
     pub alphadot: f64,
@@ -51,9 +53,6 @@ pub(crate) enum Quantity {
     P,
     Q,
     R,
-    Pdot,
-    Qdot,
-    Rdot,
     Phi,
     Theta,
     Psi,
@@ -63,7 +62,6 @@ pub(crate) enum Quantity {
     Ax,
     Ay,
     Az,
-    Own,
     Command(usize),
 }
 
@@ -76,9 +74,6 @@ impl Motion {
             Quantity::P => self.p,
             Quantity::Q => self.q,
             Quantity::R => self.r,
-            Quantity::Pdot => self.pdot,
-            Quantity::Qdot => self.qdot,
-            Quantity::Rdot => self.rdot,
             Quantity::Phi => self.phi,
             Quantity::Theta => self.theta,
             Quantity::Psi => self.psi,
@@ -88,7 +83,6 @@ impl Motion {
             Quantity::Ax => self.ax,
             Quantity::Ay => self.ay,
             Quantity::Az => self.az,
-            Quantity::Own => self.own,
             Quantity::Command(surface) => self.command[surface],
         }
     }
@@ -154,6 +148,7 @@ impl Scene {
         Motion {
             time,
             speed: (self.speed)(time),
+            steady_speed: (self.speed)(0.0),
             alpha: (self.alpha)(time),
             beta: (self.beta)(time),
             p: (self.p)(time),

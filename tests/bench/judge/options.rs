@@ -7,13 +7,15 @@ pub(crate) struct Options {
     pub seeds: (u64, u64),
     /// Part of a case's key.
     pub only: String,
-    /// Sets; none: all, three nulls, five effects and two pairs of ten seeds.
+    /// Sets; none: all, three nulls, five effects, a pair and an unknown of ten seeds.
     pub set: Option<Set>,
     pub threads: usize,
     pub json: Option<String>,
     pub list: bool,
     pub usual_names: bool,
     pub steps: bool,
+    pub oracle: bool,
+    pub dry: bool,
 }
 
 pub(crate) const HELP: &str = "\
@@ -22,12 +24,14 @@ cargo bench -p trimtab-core --bench judge -- [options]
   --seeds A..B     seeds of the cases, B excluded; one case each (1..101). 1 to 999 may be used while tuning,
                    those from 1000 on are for judging alone
   --cases N        the first N of them
-  --set NAME       nulls, effects or pairs; without it each ten seeds are 3 nulls, 5 effects and 2 pairs
+  --set NAME       nulls, effects, pairs or unknown; without it each ten seeds are 3 nulls, 5 effects, a pair and an unknown
   --only TEXT      cases whose key contains the text, such as `lateral/`, `/sensor_delay`, `/clear`
   --names usual    channels, states and inputs called as in the catalog's models (own)
   --threads N      cases at a time (1)
   --json FILE      a line of JSON for each case
   --steps          each step of each diagnosis, to stderr
+  --oracle         how far the catalogue's own edit of each effect falls short of the truth, in ln L
+  --dry            make the cases, but diagnose none
   --list           all cases that there are";
 
 /// # Errors
@@ -42,6 +46,8 @@ pub(crate) fn parse(arguments: impl Iterator<Item = String>) -> Result<Options, 
         list: false,
         usual_names: false,
         steps: false,
+        oracle: false,
+        dry: false,
     };
     let mut cases = None;
     let mut arguments = arguments.filter(|argument| argument != "--bench");
@@ -60,6 +66,8 @@ pub(crate) fn parse(arguments: impl Iterator<Item = String>) -> Result<Options, 
             "--threads" => options.threads = number(&value()?)? as usize,
             "--json" => options.json = Some(value()?),
             "--steps" => options.steps = true,
+            "--oracle" => options.oracle = true,
+            "--dry" => options.dry = true,
             "--list" => options.list = true,
             other => return Err(format!("no option '{other}'")),
         }

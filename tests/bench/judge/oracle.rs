@@ -2,9 +2,10 @@
 
 use serde_json::json;
 use trimtab_core::diagnose::{Effect, EffectParameter};
-use trimtab_core::model::{ModelDocument, Start};
+use trimtab_core::model::{EditKind, ModelDocument, Start};
 
 use crate::case::Setting;
+use crate::fault::Fault;
 use crate::job::estimate;
 use crate::likelihood::{Residuals, ln_likelihood, residuals};
 use crate::record::Recording;
@@ -64,6 +65,45 @@ fn start_at(document: &mut ModelDocument, name: &str, value: f64) {
     {
         parameter.start = Start::Value(unit.from_si(value));
     }
+}
+
+/// How far the catalogue's own edit of a truth falls short of it, from the best of the names that it has; `None` where
+/// none of them can be written into the document.
+pub(crate) fn shortfall(
+    setting: &Setting,
+    recordings: &[Recording],
+    fault: &Fault,
+    size: f64,
+) -> Option<f64> {
+    let truth = of_truth(setting, recordings, 1);
+    let of = |answer: &crate::fault::Answer| {
+        let kind = EditKind::find(answer.kind)?;
+        let term = answer.term.as_deref().map(|term| setting.renamed(term));
+        let effect = Effect::edit(kind, setting.renamed(&answer.target), term.as_deref());
+        let edited = effect.apply(&setting.document).ok()?;
+        let added = edited
+            .parameters
+            .keys()
+            .find(|name| !setting.document.parameters.contains_key(*name));
+        let start = |size: f64| {
+            let mut edited = edited.clone();
+            if let Some(added) = added {
+                start_at(&mut edited, added, size);
+            }
+            fitted(setting, recordings, &edited)
+        };
+        let size = if kind == EditKind::ActuatorRateLimit {
+            1.0 / size
+        } else {
+            size
+        };
+        start(size)
+            .into_iter()
+            .chain(fitted(setting, recordings, &edited))
+            .reduce(f64::max)
+    };
+    let best = fault.answers.iter().filter_map(of).reduce(f64::max)?;
+    Some(truth - best)
 }
 
 /// Whether a named effect is an alias of the truth.

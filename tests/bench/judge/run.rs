@@ -8,10 +8,11 @@ use crate::case::{Setting, Sized};
 use crate::design::{Design, Set};
 use crate::job;
 use crate::noise::Colour;
+use crate::oracle;
 use crate::random::Random;
 use crate::replay::Replay;
 use crate::strength::{size, worth};
-use crate::verdict::{Outcome, judge, refusal};
+use crate::verdict::{Outcome, judge, points, refusal};
 
 /// One case and its answer.
 #[derive(Clone, Debug, Serialize)]
@@ -35,6 +36,10 @@ pub(crate) struct Line {
     pub named: Vec<String>,
     /// Members of the first's group.
     pub group: Vec<String>,
+    /// Of what is in no catalogue: whether the answer points to where it is.
+    pub points: Option<bool>,
+    /// ln L that the catalogue's own edit of the truth falls short of the truth by.
+    pub shortfall: Option<f64>,
     /// Why the truth was refused.
     pub refused: Option<String>,
     pub sentence: String,
@@ -49,6 +54,10 @@ pub(crate) struct Manner<'r> {
     pub replay: Option<&'r Replay>,
     /// Tell each step of each diagnosis.
     pub steps: bool,
+    /// Fit the catalogue's own edit of each truth, too.
+    pub oracle: bool,
+    /// No diagnosis: the flights and the oracle alone.
+    pub dry: bool,
 }
 
 /// A third of all cases have coloured noise.
@@ -83,6 +92,8 @@ pub(crate) fn run(design: &Design, seed: u64, manner: &Manner<'_>) -> Line {
         verdict: "",
         named: Vec::new(),
         group: Vec::new(),
+        points: None,
+        shortfall: None,
         refused: None,
         sentence: String::new(),
         cpu: 0.0,
@@ -96,11 +107,19 @@ pub(crate) fn run(design: &Design, seed: u64, manner: &Manner<'_>) -> Line {
         return line;
     };
     line.sizes = sized.iter().map(|(_, size)| *size).collect();
+    line.outcome = Outcome::NotTestable;
     line.worth = worth(&setting, &sized);
     let Some(recordings) = setting.flown(&sized, true) else {
         return line;
     };
+    if manner.oracle && design.set == Set::Effects {
+        let fault = &setting.aircraft.faults[design.faults[0]];
+        line.shortfall = oracle::shortfall(&setting, &recordings, fault, line.sizes[0]);
+    }
     line.samples = recordings.iter().map(|r| r.maneuver.len()).sum();
+    if manner.dry {
+        return line;
+    }
     let before = ThreadTime::now();
     let answer = job::diagnose(&setting.document, &recordings, &mut |step| {
         if manner.steps {
@@ -115,6 +134,10 @@ pub(crate) fn run(design: &Design, seed: u64, manner: &Manner<'_>) -> Line {
         }
         Ok(diagnosis) => {
             line.outcome = judge(&setting, &recordings, design, &diagnosis);
+            if design.set == Set::Unknown {
+                let fault = &setting.aircraft.faults[design.faults[0]];
+                line.points = Some(points(&setting, fault, &diagnosis));
+            }
             line.refused = refusal(&setting, design, &diagnosis);
             tell(&mut line, &setting, &diagnosis);
         }

@@ -6,7 +6,8 @@ use crate::fault::{Answer, Fault, Sizing};
 use crate::motion::{Motion, Quantity};
 use crate::random::Random;
 
-fn sensor(
+/// A fault whose reading depends on what the sensor would read, the motion and the time between values.
+pub(crate) fn with_motion(
     kind: &'static str,
     channel: &str,
     sizing: Sizing,
@@ -35,7 +36,7 @@ pub(crate) fn bias(channel: &str, guess: f64) -> Fault {
         guess,
         most: 50.0 * guess,
     };
-    sensor("sensor_bias", channel, sizing, |b, y, _, _| {
+    with_motion("sensor_bias", channel, sizing, |b, y, _, _| {
         each(y, |y| y + b)
     })
 }
@@ -45,7 +46,7 @@ pub(crate) fn scale(channel: &str) -> Fault {
         guess: 0.08,
         most: 0.5,
     };
-    sensor("sensor_scale", channel, sizing, |k, y, _, _| {
+    with_motion("sensor_scale", channel, sizing, |k, y, _, _| {
         each(y, |y| (1.0 + k) * y)
     })
 }
@@ -56,18 +57,19 @@ pub(crate) fn drift(channel: &str, guess: f64) -> Fault {
         guess,
         most: 50.0 * guess,
     };
-    sensor("sensor_drift", channel, sizing, |d, y, m, _| {
+    with_motion("sensor_drift", channel, sizing, |d, y, m, _| {
         y.iter().zip(m).map(|(y, m)| y + d * m.time).collect()
     })
 }
 
-/// Values of a series `by` seconds later than they are; its first value before that.
-pub(crate) fn later(y: &[f64], by: f64, step: f64) -> Vec<f64> {
+/// Values of a series later than they are, by what is said for each; its first value before that.
+pub(crate) fn later(y: &[f64], by: impl Fn(usize) -> f64, step: f64) -> Vec<f64> {
+    let last = y.len() - 1;
     (0..y.len())
         .map(|k| {
-            let at = (k as f64 - by / step).clamp(0.0, (y.len() - 1) as f64);
+            let at = (k as f64 - by(k) / step).clamp(0.0, last as f64);
             let (i, s) = (at as usize, at.fract());
-            y[i] + s * (y[(i + 1).min(y.len() - 1)] - y[i])
+            y[i] + s * (y[(i + 1).min(last)] - y[i])
         })
         .collect()
 }
@@ -82,7 +84,8 @@ pub(crate) fn delay(channels: &str) -> Fault {
     let names: Vec<String> = channels.split('+').map(ToString::to_string).collect();
     let install = move |size: f64, _: usize, plant: &mut crate::plant::Plant, _: &mut Random| {
         for name in &names {
-            let reading = Box::new(move |y: &[f64], _: &[Motion], step: f64| later(y, size, step));
+            let reading =
+                Box::new(move |y: &[f64], _: &[Motion], step: f64| later(y, |_| size, step));
             plant.sensors.push((name.clone(), reading));
         }
     };
@@ -109,7 +112,7 @@ pub(crate) fn lag(channel: &str) -> Fault {
         guess: 0.08,
         most: 1.5,
     };
-    sensor("sensor_lag", channel, sizing, |time, y, _, step| {
+    with_motion("sensor_lag", channel, sizing, |time, y, _, step| {
         lagged(y, time, step)
     })
     .positive()

@@ -47,7 +47,7 @@ pub(crate) fn delay(input: &str, of: usize) -> Fault {
         most: 0.4,
     };
     surface("input_delay", input, of, sizing, |by, u, step| {
-        later(u, by, step)
+        later(u, |_| by, step)
     })
     .positive()
 }

@@ -82,10 +82,42 @@ pub(crate) fn print(lines: &[Line]) {
     table("pairs by aircraft", &of("pairs"), |l| {
         l.aircraft.to_string()
     });
+    let unknown = of("unknown");
+    table("in no catalogue, by kind", &unknown, |l| l.kind.clone());
+    table("in no catalogue, by aircraft", &unknown, |l| {
+        l.aircraft.to_string()
+    });
+    shortfalls(&effects);
     confusion(&effects);
+    confusion(&unknown);
     wrong(lines);
     time(lines);
     summary(lines);
+}
+
+/// How far the catalogue's edits fall short of the truth, where that was asked for.
+fn shortfalls(effects: &[&Line]) {
+    let mut groups: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+    for line in effects {
+        if let Some(shortfall) = line.shortfall {
+            groups.entry(&line.kind).or_default().push(shortfall);
+        }
+    }
+    if groups.is_empty() {
+        return;
+    }
+    println!(
+        "\n{:34}{:>10}{:>10}",
+        "ln L short of the truth", "median", "most"
+    );
+    for (kind, mut all) in groups {
+        all.sort_by(f64::total_cmp);
+        println!(
+            "{kind:34}{:10.1}{:10.1}",
+            all[all.len() / 2],
+            all[all.len() - 1]
+        );
+    }
 }
 
 /// What kinds were called, by their kind.
@@ -225,6 +257,21 @@ fn summary(lines: &[Line]) {
         println!(
             "wrong first names: {}",
             share(count(&effects, Outcome::Wrong), effects.len())
+        );
+    }
+    let unknown = of("unknown");
+    if !unknown.is_empty() {
+        println!(
+            "in no catalogue, wrong name: {}",
+            share(count(&unknown, Outcome::Wrong), unknown.len())
+        );
+        let points = unknown
+            .iter()
+            .filter(|line| line.points == Some(true))
+            .count();
+        println!(
+            "in no catalogue, points to the right place: {}",
+            share(points, unknown.len())
         );
     }
     if !pairs.is_empty() {

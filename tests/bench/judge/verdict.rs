@@ -100,6 +100,7 @@ pub(crate) fn judge(
         .collect();
     match design.set {
         Set::Nulls => Outcome::Wrong,
+        Set::Unknown => of_unknown(setting, recordings, faults[0], diagnosis),
         Set::Effects => single(setting, recordings, 1, faults[0], first),
         Set::Pairs => {
             let of = |fault: &Fault, named: &NamedEffect| {
@@ -115,6 +116,40 @@ pub(crate) fn judge(
             }
         }
     }
+}
+
+/// What is in no catalogue has no right name: one that is tolerated, or fits as well as the truth, or a group, or any
+/// name behind which the diagnosis says that something is still unexplained.
+fn of_unknown(
+    setting: &Setting,
+    recordings: &[Recording],
+    fault: &Fault,
+    diagnosis: &Diagnosis,
+) -> Outcome {
+    let outcomes = diagnosis
+        .effects
+        .iter()
+        .map(|named| single(setting, recordings, 1, fault, named));
+    let outcomes: Vec<Outcome> = outcomes.collect();
+    match outcomes[0] {
+        Outcome::Wrong if diagnosis.verdict == Verdict::Unexplained => Outcome::Unexplained,
+        Outcome::Wrong if members(&diagnosis.effects[0]).count() > 1 => Outcome::Group,
+        first => first,
+    }
+}
+
+/// Whether an answer to what is in no catalogue points to where it is: by name, in what it says is left.
+pub(crate) fn points(setting: &Setting, fault: &Fault, diagnosis: &Diagnosis) -> bool {
+    let said = diagnosis.remarks.iter().chain([&diagnosis.sentence]);
+    let said: Vec<String> = said.map(|text| setting.own(text)).collect();
+    let words = said
+        .iter()
+        .flat_map(|text| text.split(|c: char| !c.is_alphanumeric() && c != '_'));
+    let words: Vec<&str> = words.collect();
+    fault
+        .shows_in
+        .iter()
+        .any(|place| words.contains(&place.as_str()))
 }
 
 /// Why the truth itself was refused, if it was.

@@ -1,11 +1,11 @@
 //! Lateral-directional motion: sideslip, roll rate, yaw rate and bank, declared whole or driven by recorded sideslip.
 
-use super::Aircraft;
 use super::maneuvers::{Control, sample, scene, sorties};
+use super::{Aircraft, both, unknown};
 use crate::air_faults::{Angle, gust, initial_state, turbulence};
 use crate::fault::Fault;
 use crate::force_faults::{pressure, term, unrecorded, unsteady};
-use crate::motion::{AILERON, Added, Airframe, Around, FLAP, Motion, Quantity, RUDDER, Slot};
+use crate::motion::{AILERON, Added, Airframe, Around, FLAP, Motion, Quantity, RUDDER, Slot, Trim};
 use crate::random::Random;
 use crate::record::Channel;
 use crate::replay::Replay;
@@ -64,6 +64,10 @@ impl Airframe for Lateral {
         (motion.beta, motion.p, motion.r, motion.phi) = (b, p, r, phi);
         (motion.pdot, motion.rdot) = (dx[1], dx[2]);
         motion.ay = self.speed * speed * side;
+    }
+
+    fn trim(&self) -> Vec<(Trim, usize)> {
+        vec![(Trim::Surface(AILERON), 1), (Trim::Surface(RUDDER), 2)]
     }
 }
 
@@ -235,7 +239,7 @@ fn aircraft(
         sorties,
         sample: sample(random),
         quantum: 0.0,
-        faults,
+        faults: both(faults, unknown_faults()),
     }
 }
 
@@ -261,6 +265,7 @@ pub(crate) fn four_states(random: &mut Random, replay: Option<&Replay>) -> Aircr
     channels.extend(others());
     let mut faults = terms();
     faults.extend([
+        surface::bias("ail", AILERON),
         sensor::bias("sideslip", 0.002),
         sensor::bias("yawrate", 0.002),
         sensor::bias("lat_acc", 0.02),
@@ -357,7 +362,27 @@ fn terms() -> Vec<Fault> {
         term(Slot::Roll, "rollrate", "rollrate*abs(rollrate)", 1.0, |m| {
             m.p * m.p.abs()
         }),
-        term(Slot::Yaw, "yawrate", "TAS", 0.01, |m| m.speed),
+        term(Slot::Yaw, "yawrate", "TAS", 0.01, |m| {
+            m.speed - m.steady_speed
+        }),
         pressure("qbar"),
+    ]
+}
+
+fn unknown_faults() -> Vec<Fault> {
+    let beta = |m: &Motion| m.beta;
+    vec![
+        unknown::saturation("rud", RUDDER, &["yawrate"]),
+        unknown::saturation("ail", AILERON, &["rollrate"]),
+        unknown::hinge_moment(Slot::Yaw, "yawrate", 1.0, beta),
+        unknown::wandering(Slot::Yaw, "yawrate", 0.005),
+        unknown::slosh(Slot::Roll, "rollrate", 1.0, beta),
+        unknown::hysteresis(Slot::Roll, "rollrate", 0.5, |m| m.r, |m| m.rdot),
+        unknown::clock_drift("yawrate"),
+        unknown::cross_axis("yawrate", "rollrate", Quantity::P),
+        unknown::swapped("rollrate", "yawrate"),
+        unknown::vibration("lat_acc", 0.05),
+        unknown::in_one_flight(sensor::delay("lat_acc")),
+        unknown::in_one_flight(surface::lag("ail", AILERON)),
     ]
 }

@@ -1,8 +1,15 @@
 //! The aircraft: equations of motion, a declared model in words of its own, flights, and what may be wrong with them.
 
+mod body_axes;
+mod canard;
 mod lateral;
+mod longitudinal;
 mod maneuvers;
+mod reconstruction;
+mod rotorcraft;
 mod short_period;
+mod six;
+mod unknown;
 
 use crate::fault::Fault;
 use crate::fly::Sortie;
@@ -22,7 +29,6 @@ pub(crate) struct Aircraft {
     pub sample: f64,
     /// Digits of recorded controls, in their unit; 0 is none.
     pub quantum: f64,
-    /// In the catalogue of effects.
     pub faults: Vec<Fault>,
 }
 
@@ -36,7 +42,7 @@ pub(crate) struct Kind {
     pub usual: &'static [(&'static str, &'static str)],
 }
 
-pub(crate) const ALL: [Kind; 3] = [
+pub(crate) const ALL: [Kind; 8] = [
     Kind {
         name: "short-period",
         make: short_period::make,
@@ -52,4 +58,38 @@ pub(crate) const ALL: [Kind; 3] = [
         make: lateral::four_states,
         usual: lateral::USUAL,
     },
+    Kind {
+        name: "longitudinal",
+        make: longitudinal::make,
+        usual: longitudinal::USUAL,
+    },
+    Kind {
+        name: "reconstruction",
+        make: reconstruction::make,
+        usual: reconstruction::USUAL,
+    },
+    Kind {
+        name: "body-axes",
+        make: body_axes::make,
+        usual: body_axes::USUAL,
+    },
+    Kind {
+        name: "canard",
+        make: canard::make,
+        usual: canard::USUAL,
+    },
+    Kind {
+        name: "rotorcraft",
+        make: rotorcraft::make,
+        usual: rotorcraft::USUAL,
+    },
 ];
+
+/// Those of the catalogue of effects, then those of none.
+fn both(known: Vec<Fault>, unknown: Vec<Fault>) -> Vec<Fault> {
+    let unknown = unknown.into_iter().map(|fault| Fault {
+        known: false,
+        ..fault
+    });
+    known.into_iter().chain(unknown).collect()
+}

@@ -1,8 +1,9 @@
 //! Short period at constant speed: angle of attack and pitch rate.
 
-use super::Aircraft;
 use super::maneuvers::{Control, sample, scene, sorties};
+use super::{Aircraft, both, unknown};
 use crate::air_faults::{Angle, gust, turbulence};
+use crate::fault::Fault;
 use crate::force_faults::{pressure, stall, term, unrecorded, unsteady};
 use crate::motion::{Added, Airframe, Around, ELEVATOR, FLAP, Motion, Quantity, Slot, Trim};
 use crate::random::Random;
@@ -19,6 +20,7 @@ pub(crate) const USUAL: &[(&str, &str)] = &[
     ("sideslip", "beta"),
     ("rollrate", "p"),
     ("yawrate", "r"),
+    ("altitude", "h"),
 ];
 
 /// Reference of angle of attack and elevator, rad.
@@ -144,6 +146,7 @@ pub(crate) fn make(random: &mut Random, replay: Option<&Replay>) -> Aircraft {
         Channel::new("sideslip", "deg", Quantity::Beta, 0.02).given(),
         Channel::new("rollrate", "deg/s", Quantity::P, 0.03).given(),
         Channel::new("yawrate", "deg/s", Quantity::R, 0.03).given(),
+        Channel::new("altitude", "m", Quantity::Height, 0.2).given(),
     ];
     Aircraft {
         frame: Box::new(frame),
@@ -152,11 +155,11 @@ pub(crate) fn make(random: &mut Random, replay: Option<&Replay>) -> Aircraft {
         sorties,
         sample: sample(random),
         quantum: if random.chance(0.3) { 0.01 } else { 0.0 },
-        faults: faults(),
+        faults: both(faults(), unknown_faults()),
     }
 }
 
-fn faults() -> Vec<crate::fault::Fault> {
+fn faults() -> Vec<Fault> {
     let a = |m: &Motion| m.alpha - ALPHA;
     let de = |m: &Motion| m.elevator() - ELEV;
     vec![
@@ -197,7 +200,9 @@ fn faults() -> Vec<crate::fault::Fault> {
         term(Slot::Pitch, "pitchrate", "sideslip^2", 10.0, |m| {
             m.beta * m.beta
         }),
-        term(Slot::Pitch, "pitchrate", "TAS", 0.02, |m| m.speed),
+        term(Slot::Pitch, "pitchrate", "TAS", 0.02, |m| {
+            m.speed - m.steady_speed
+        }),
         pressure("qbar"),
         unsteady(Slot::Pitch, "pitchrate", "AoA", -1.0, |m| m.alpha),
         stall("AoA+pitchrate", "AoA", ALPHA + 0.07, |lost, _, added| {
@@ -207,5 +212,25 @@ fn faults() -> Vec<crate::fault::Fault> {
         turbulence("AoA", Angle::Alpha),
         gust("AoA", Angle::Alpha),
         sensor::structural_mode("pitchrate", "elev", ELEVATOR, 0.05),
+    ]
+}
+
+fn unknown_faults() -> Vec<Fault> {
+    let alpha = |m: &Motion| m.alpha;
+    vec![
+        unknown::saturation("elev", ELEVATOR, &["pitchrate"]),
+        unknown::hinge_moment(Slot::Pitch, "pitchrate", 2.0, alpha),
+        unknown::hysteresis(Slot::Pitch, "pitchrate", 4.0, alpha, |m| m.alphadot),
+        unknown::wandering(Slot::Pitch, "pitchrate", 0.01),
+        unknown::slosh(Slot::Pitch, "pitchrate", 2.0, alpha),
+        unknown::ground_effect(Slot::Pitch, "pitchrate", "altitude", 0.02, 2000.0, 4.0),
+        unknown::clock_drift("AoA"),
+        unknown::cross_axis("pitchrate", "rollrate", Quantity::P),
+        unknown::swapped("AoA", "pitchrate"),
+        unknown::vibration("pitchrate", 0.002),
+        unknown::in_one_flight(sensor::delay("AoA")),
+        unknown::in_one_flight(term(Slot::Pitch, "pitchrate", "AoA^2", 10.0, |m| {
+            (m.alpha - ALPHA).powi(2)
+        })),
     ]
 }
