@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use super::progress::Progress;
+use super::progress::ProgressLine;
 use super::request::Request;
 use super::table::{self, bordered};
 use super::{Failure, figures};
@@ -31,7 +31,7 @@ pub(super) struct Diagnose {
 impl Diagnose {
     pub(super) fn run(&self) -> Result<(), Failure> {
         let plan = self.request.plan(JobKind::Diagnose)?;
-        let progress = Progress::new(self.request.tolerance);
+        let progress = ProgressLine::new(self.request.tolerance);
         let result = job::run_diagnosis(&plan, &mut |step| {
             if let Some(step) = step {
                 progress.diagnosis(step);

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::progress::Progress;
+use super::progress::ProgressLine;
 use super::request::Request;
 use super::{Failure, table};
 use crate::job::{self, JobKind};
@@ -20,7 +20,7 @@ pub(super) struct Fit {
 impl Fit {
     pub(super) fn run(&self) -> Result<(), Failure> {
         let plan = self.request.plan(JobKind::Estimate)?;
-        let progress = Progress::new(self.request.tolerance);
+        let progress = ProgressLine::new(self.request.tolerance);
         let result = job::run(&plan, &mut |told| {
             progress.told(told);
             ControlFlow::Continue(())

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use super::progress::Progress;
+use super::progress::ProgressLine;
 use super::request::Request;
 use super::study_tables::tables;
 use super::{Failure, figures};
@@ -27,12 +27,12 @@ pub(super) struct Study {
 impl Study {
     pub(super) fn run(&self) -> Result<(), Failure> {
         let plan = self.request.plan(JobKind::DerivativeStudy)?;
-        let progress = Progress::new(self.request.tolerance);
+        let progress = ProgressLine::new(self.request.tolerance);
         let result = job::run_study(&plan, &ThreadClock::start(), &mut |told| {
             match told {
-                job::Progress::Estimation(told) => progress.told(told),
-                job::Progress::Finding(step) => progress.say(&step.finding),
-                job::Progress::Underway => {}
+                job::StudyProgress::Estimation(told) => progress.told(told),
+                job::StudyProgress::Finding(step) => progress.say(&step.finding),
+                job::StudyProgress::Underway => {}
             }
             ControlFlow::Continue(())
         })

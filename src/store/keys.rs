@@ -111,7 +111,7 @@ pub struct KeyRecord {
 
 /// What there is to say to somebody who shows a key.
 #[derive(Clone, PartialEq, Debug)]
-pub enum Shown {
+pub enum KeyCheck {
     Good(Box<KeyRecord>),
     Unknown,
     Revoked,
@@ -203,31 +203,31 @@ impl Store {
     ///
     /// # Errors
     /// The database does not answer.
-    pub async fn look_up_key(&self, key: &str) -> Result<Shown, StoreError> {
+    pub async fn look_up_key(&self, key: &str) -> Result<KeyCheck, StoreError> {
         let row = sqlx::query(AssertSqlSafe(format!("SELECT {COLUMNS} WHERE digest = $1")))
             .bind(digest(key))
             .fetch_optional(&self.readers)
             .await?;
         let Some(row) = row else {
-            return Ok(Shown::Unknown);
+            return Ok(KeyCheck::Unknown);
         };
         let record = read_key(&row)?;
         let now = self.clock.now_text();
         if record.revoked.is_some() {
-            return Ok(Shown::Revoked);
+            return Ok(KeyCheck::Revoked);
         }
         if record
             .expires
             .as_ref()
             .is_some_and(|expires| *expires <= now)
         {
-            return Ok(Shown::Expired);
+            return Ok(KeyCheck::Expired);
         }
         // whoever has a good key comes in, even where that cannot be written down
         if let Err(error) = self.note_use(&record).await {
             tracing::warn!(%error, key = %record.id, "its use was not noted");
         }
-        Ok(Shown::Good(Box::new(record)))
+        Ok(KeyCheck::Good(Box::new(record)))
     }
 
     async fn note_use(&self, key: &KeyRecord) -> Result<(), StoreError> {

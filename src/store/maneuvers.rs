@@ -76,7 +76,7 @@ fn decode(id: &str, bytes: &[u8]) -> Result<Maneuver, StoreError> {
         columns::decode(bytes).map_err(|error| corrupt(error.to_string()))?;
     if columns.len() != 1 + header.channels.len() {
         return Err(corrupt(
-            "it has another number of columns than its header says".into(),
+            "it does not have as many columns as its header says".into(),
         ));
     }
     let mut columns = columns.into_iter();

@@ -46,7 +46,7 @@ pub use clock::Clock;
 pub use database::Store;
 pub use error::StoreError;
 pub use jobs::{CancelReply, JobFilter, JobRecord, NewJob};
-pub use keys::{Key, KeyRecord, NewKey, Scope, Shown};
+pub use keys::{Key, KeyCheck, KeyRecord, NewKey, Scope};
 pub use lease::{Claim, LEASE, MOST_LOST_WORKERS};
 pub use log::StoredEvent;
 pub use maneuvers::{ManeuverRecord, NotLoaded, Uploaded};

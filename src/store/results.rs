@@ -163,7 +163,7 @@ fn decode_history(bytes: &[u8]) -> Result<TimeHistory, StoreError> {
     let of_outputs: usize = header.outputs.iter().map(SeriesHeader::columns).sum();
     if columns.len() != 1 + header.inputs.len() + of_outputs {
         return Err(corrupt(
-            "it has another number of columns than its header says".into(),
+            "it does not have as many columns as its header says".into(),
         ));
     }
     let mut columns = columns.into_iter();

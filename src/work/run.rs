@@ -46,19 +46,19 @@ pub(super) async fn run_job(store: &Store, claim: Claim, shutdown: &Cancellation
 }
 
 enum Settled {
-    Ended(Ending),
+    Ended(JobEnd),
     Released,
     Abandoned,
 }
 
-struct Ending {
+struct JobEnd {
     /// What was told last and is not written yet: it is, together with the end.
     told: Told,
     event: EventBody,
     result: Option<ResultParts>,
 }
 
-impl Ending {
+impl JobEnd {
     fn without_result(event: EventBody) -> Self {
         Self {
             told: Told::default(),
@@ -79,7 +79,7 @@ struct Told {
 async fn work_on(store: &Store, claim: &Arc<Claim>, shutdown: &CancellationToken) -> Settled {
     if claim.cancelling {
         let event = EventBody::Cancelled { has_result: false };
-        return Settled::Ended(Ending::without_result(event));
+        return Settled::Ended(JobEnd::without_result(event));
     }
     let stop = Stop::default();
     let run = async {
@@ -117,7 +117,7 @@ fn not_there(why: NotLoaded) -> Fault {
     Fault::new(
         format!("/maneuvers/{place}/id"),
         "unknown_maneuver",
-        "there is no maneuver of this id any more; upload it again",
+        "there is no longer a maneuver of this id; upload it again",
     )
 }
 
@@ -199,7 +199,7 @@ fn settle(answered: Result<Answer, Unanswered>, told: Told, asked: Option<Reason
         Ok(answer) if stopped(&answer) && asked == Some(Reason::Shutdown) => {
             return Settled::Released;
         }
-        Ok(answer) if stopped(&answer) => Ending {
+        Ok(answer) if stopped(&answer) => JobEnd {
             told,
             event: EventBody::Cancelled { has_result: true },
             result: Some(answer.parts),
@@ -209,17 +209,17 @@ fn settle(answered: Result<Answer, Unanswered>, told: Told, asked: Option<Reason
             outcome,
             reason,
             parts,
-        }) => Ending {
+        }) => JobEnd {
             told,
             event: EventBody::Succeeded { outcome, reason },
             result: Some(parts),
         },
-        Err(Unanswered::Refused(faults)) => Ending {
+        Err(Unanswered::Refused(faults)) => JobEnd {
             told,
-            ..Ending::without_result(EventBody::Failed { faults })
+            ..JobEnd::without_result(EventBody::Failed { faults })
         },
         Err(Unanswered::Store(error)) => failed("store", &error),
-        Err(Unanswered::Panicked(text)) => Ending {
+        Err(Unanswered::Panicked(text)) => JobEnd {
             told,
             ..failed("solver", &text)
         },
@@ -228,19 +228,19 @@ fn settle(answered: Result<Answer, Unanswered>, told: Told, asked: Option<Reason
     Settled::Ended(ending)
 }
 
-fn failed(where_: &str, error: &dyn std::fmt::Display) -> Ending {
+fn failed(where_: &str, error: &dyn std::fmt::Display) -> JobEnd {
     tracing::error!(%error, "the {where_} failed");
     let message = format!(
         "the {where_} failed, which is a defect of the service and not of the job: {error}"
     );
     let faults = vec![Fault::new("", "internal", message)];
-    Ending::without_result(EventBody::Failed { faults })
+    JobEnd::without_result(EventBody::Failed { faults })
 }
 
 /// Writes the end of a job. A result that cannot be kept fails the job rather than being computed
 /// again and again.
-async fn end(store: &Store, claim: &Claim, ending: Ending) -> Result<(), StoreError> {
-    let Ending {
+async fn end(store: &Store, claim: &Claim, ending: JobEnd) -> Result<(), StoreError> {
+    let JobEnd {
         told: Told { before, events },
         event,
         result,

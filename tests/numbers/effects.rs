@@ -514,7 +514,7 @@ fn a_scenario_names_what_is_wrong_with_an_effect() {
     };
     assert!(
         refused("sensor_noise:q=1")
-            .contains("there is no effect 'sensor_noise'; known are sensor_bias")
+            .contains("there is no effect 'sensor_noise'; choose one of sensor_bias")
     );
     assert!(refused("sensor_bias:beta=1").contains("it has alpha, q"));
     assert!(refused("sensor_outliers:beta=0.1").contains("recorded are de, alpha, q, V"));

@@ -243,8 +243,8 @@ fn very_large_linear_models_are_integrated_without_their_matrices() {
         document["outputs"]["y"] = json!({"equation": "x0"});
         compile(document).expect("a model")
     };
-    assert!(large(2).affine_dynamics.is_some());
-    assert!(large(500).affine_dynamics.is_none());
+    assert!(large(2).is_affine());
+    assert!(!large(500).is_affine());
 }
 
 #[test]

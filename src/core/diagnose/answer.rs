@@ -152,8 +152,11 @@ fn full(case: &Case, declared: &Fitted, last: &Fitted) -> Result<Full, Unfit> {
     problem.options.max_iterations = asked.max_iterations;
     problem.options.error_bounds = asked.error_bounds;
     problem.options.start = crate::estimate::StartMethod::Document {};
-    let solution = estimate(&problem, &mut |_| ControlFlow::Continue(()))
-        .map_err(|_| Unfit("the model with its effects cannot be fitted again".into()))?;
+    let solution = estimate(&problem, &mut |_| ControlFlow::Continue(())).map_err(|why| {
+        Unfit(format!(
+            "the model with its effects cannot be fitted again: {why}"
+        ))
+    })?;
     Ok(Full { problem, solution })
 }
 

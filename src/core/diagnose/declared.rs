@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::case::{Case, Unfit, Values};
+use super::case::{Case, Values};
 use super::fitted::Fitted;
 use super::inconclusive::Inconclusive;
 use super::report::Step;
@@ -108,9 +108,7 @@ impl Declared {
             }
         });
         stopped?;
-        let solution = solution.map_err(|_| {
-            Unfit("with the start values the simulation of the declared model leaves the range of numbers".into())
-        })?;
+        let solution = solution?;
         problem.options = case.options.clone();
         let fitted = Fitted::of(case.document.clone(), problem, &solution);
         Ok(Self {

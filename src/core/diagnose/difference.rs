@@ -1,4 +1,4 @@
-//! What one model document has that another has not.
+//! The difference of two model documents.
 
 use serde_json::Value;
 

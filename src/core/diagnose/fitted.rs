@@ -21,7 +21,7 @@ pub(super) struct Fitted {
     pub bounds: Vec<Option<Bound>>,
     /// R.
     pub covariance: DMatrix<f64>,
-    /// What the estimation answered; θ may have moved since, see [`Self::polished`].
+    /// The report of the estimation; θ may have moved since, see [`Self::polished`].
     pub estimate: Estimate,
     /// Over [`Layout::of`] the problem, at θ.
     pub residual: Vec<f64>,
@@ -86,7 +86,7 @@ impl Fitted {
         problem.options.tolerance = problem.options.tolerance.max(TRIAL_TOLERANCE);
         problem.options.max_iterations = iterations;
         let solution = output_error(&problem, &mut |_| ControlFlow::Continue(()))
-            .map_err(|_| Unfit("the simulation leaves the range of numbers".into()))?;
+            .map_err(|why| Unfit(why.to_string()))?;
         if solution.estimate.outcome == Outcome::Diverged {
             return Err(Unfit(solution.estimate.reason));
         }

@@ -1,4 +1,4 @@
-//! What the rounds found, and what they refused.
+//! Effects that the rounds found, and those that they refused.
 
 use super::accepted::Accepted;
 use super::effect::Effect;

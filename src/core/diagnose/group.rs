@@ -10,7 +10,7 @@ const ALIKE: f64 = 6.0;
 /// Difference of the gains on flights that were not fitted that chance makes between two such models.
 const CHANCE: f64 = 12.0;
 
-/// What is explained in directions of a larger cosine is one and the same, but for how it is modelled.
+/// Two effects whose directions have a larger cosine are one and the same, but for how they are modelled.
 const PARALLEL: f64 = 0.95;
 
 /// Beyond this the likelihood is clear even so.

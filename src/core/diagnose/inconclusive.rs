@@ -2,20 +2,20 @@
 
 use super::case::Unfit;
 use super::watch::Stopped;
+use crate::estimate::Unusable;
 
 /// Why there is no conclusion.
-#[derive(Debug)]
+#[derive(Clone, PartialEq, Debug, thiserror::Error)]
 pub enum Inconclusive {
-    /// The declared model cannot be fitted.
-    Unfit(Unfit),
+    /// A model does not meet the recordings, or comes to nothing.
+    #[error(transparent)]
+    Unfit(#[from] Unfit),
+    /// The start values of the declared model lead nowhere.
+    #[error("the declared model cannot be fitted from its start values: {0}")]
+    NoStart(#[from] Unusable),
     /// It was asked to stop.
+    #[error("stopped on request")]
     Stopped,
-}
-
-impl From<Unfit> for Inconclusive {
-    fn from(why: Unfit) -> Self {
-        Self::Unfit(why)
-    }
 }
 
 impl From<Stopped> for Inconclusive {

@@ -13,7 +13,7 @@ use crate::estimate::Bound;
 /// The colour is that of the residual, so that each step has another: some are needed.
 const STEPS: usize = 8;
 
-/// What is left of ln L to be gained is not worth a step.
+/// A gain of ln L that is not worth a step.
 const SETTLED: f64 = 0.01;
 
 /// Shares of a step that are tried.
@@ -37,7 +37,7 @@ impl Fitted {
         free.dedup();
         let at = |theta: &[f64]| {
             // columns stand as the unknowns do: parameter by parameter, each followed by its segments
-            let model = linearised(&self.problem, &layout, theta, &free);
+            let model = linearised(&self.problem, &layout, theta, &free).ok();
             model.filter(|model| model.sensitivities.len() == theta.len())
         };
         let ln_likelihood = |model: &Linearised| {

@@ -68,9 +68,9 @@ fn pulls(fitted: &Fitted, index: usize) -> Option<Vec<Pull>> {
     free.sort_unstable();
     free.dedup();
     let theta = &fitted.theta;
-    let others = sensitivities(problem, &layout, theta, &free)?;
+    let others = sensitivities(problem, &layout, theta, &free).ok()?;
     let others = Basis::of(others.iter().map(whiten));
-    let own = sensitivities(problem, &layout, theta, &[index])?;
+    let own = sensitivities(problem, &layout, theta, &[index]).ok()?;
     let [own] = own.as_slice() else { return None };
     let mut clear = whiten(own);
     others.remove_from(&mut clear);

@@ -39,7 +39,7 @@ pub(super) struct Screen<'c> {
     metrics: Vec<Metric>,
 }
 
-/// What the screen says of a candidate.
+/// A candidate, as the screen sees it.
 #[derive(Clone, Debug)]
 pub(super) struct Screened {
     /// Where a fit of it begins: the one step.
@@ -101,7 +101,7 @@ impl<'c> Screen<'c> {
         free.dedup();
         free.sort_unstable();
         free.dedup();
-        let declared = sensitivities(&base.problem, &layout, &base.theta, &free)?;
+        let declared = sensitivities(&base.problem, &layout, &base.theta, &free).ok()?;
         let metric = |colour: Colour, orders: Vec<usize>| {
             let whiten = |column: &Vec<f64>| colour.whiten(&layout, &base.residual, column);
             let declared = Basis::of(declared.iter().map(whiten));
@@ -149,8 +149,8 @@ impl<'c> Screen<'c> {
         };
         let added: Vec<usize> = (0..model.parameters.len()).filter(is_added).collect();
         let theta = problem.unknowns.start();
-        let columns = sensitivities(&problem, &self.layout, &theta, &added)
-            .ok_or("the simulation leaves the range of numbers")?;
+        let columns =
+            sensitivities(&problem, &self.layout, &theta, &added).map_err(|why| why.to_string())?;
         // a parameter without influence at no effect (a time constant) waits for the trial
         let counts = |index: &usize| match model.parameters[*index].document.per {
             Per::Job => 1,

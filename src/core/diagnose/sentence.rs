@@ -5,7 +5,7 @@ use super::size::Size;
 use crate::flight::{Shown, five_digits, shown_in};
 use crate::model::EditKind;
 
-/// What an effect is, with its size; angles in degrees.
+/// An effect in words, with its size; angles in degrees.
 pub(super) fn of(effect: &Effect, sizes: &[Size]) -> String {
     let size = |size: &Size| {
         let Shown { scale, unit } = shown_in(&size.unit);
@@ -32,7 +32,7 @@ pub(super) fn of(effect: &Effect, sizes: &[Size]) -> String {
     format!("{}{sizes}", words(effect))
 }
 
-/// What an effect is, without its size.
+/// An effect in words, without its size.
 pub(super) fn words(effect: &Effect) -> String {
     let target = effect.target.as_str();
     let term = effect.term.as_deref().unwrap_or_default();

@@ -19,7 +19,7 @@ use crate::estimate::report::iteration::Outcome;
 use crate::estimate::report::progress::Observer;
 
 /// Whether an equation-error estimation of the problem can be made.
-pub fn has_equation_error(problem: &Problem) -> bool {
+pub(crate) fn has_equation_error(problem: &Problem) -> bool {
     Regression::new(problem).is_some()
 }
 
@@ -49,7 +49,7 @@ pub fn equation_error(
     Ok(solution)
 }
 
-/// What the regression's reason leaves unsaid.
+/// The regression's reason, with a reader of the original problem in mind.
 fn reason(found: &Estimate, left: &[String], integrated: &[String]) -> String {
     let mut reason = format!("equation error: {}", found.reason);
     if found.outcome == Outcome::Converged {

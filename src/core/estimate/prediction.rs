@@ -20,6 +20,7 @@ use crate::simulate::Segment;
 /// A segment to be predicted.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Validation {
+    /// Its inputs and measured outputs.
     pub segment: Segment,
     /// Of this segment alone.
     pub unknowns: Unknowns,

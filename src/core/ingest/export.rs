@@ -12,17 +12,17 @@ use crate::flight::{Channel, Maneuver, Unit};
 
 #[derive(Serialize)]
 struct Document<'a> {
-    time: Series<'a>,
-    channels: IndexMap<&'a str, Series<'a>>,
+    time: Samples<'a>,
+    channels: IndexMap<&'a str, Samples<'a>>,
 }
 
 #[derive(Serialize)]
-struct Series<'a> {
+struct Samples<'a> {
     unit: String,
     values: &'a [f64],
 }
 
-impl<'a> Series<'a> {
+impl<'a> Samples<'a> {
     fn of(channel: &'a Channel) -> Self {
         Self {
             unit: Unit::si_name(&channel.recorded_unit),
@@ -38,12 +38,12 @@ impl<'a> Series<'a> {
 pub fn to_json(maneuver: &Maneuver) -> serde_json::Result<String> {
     let channels = maneuver.channels().iter();
     serde_json::to_string(&Document {
-        time: Series {
+        time: Samples {
             unit: "s".to_string(),
             values: maneuver.time(),
         },
         channels: channels
-            .map(|(name, channel)| (name.as_str(), Series::of(channel)))
+            .map(|(name, channel)| (name.as_str(), Samples::of(channel)))
             .collect(),
     })
 }

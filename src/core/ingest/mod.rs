@@ -50,7 +50,9 @@ use crate::flight::Maneuver;
 /// What a recording is written in.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Format {
+    /// Text with a header of `name[unit]`, a row for each sample.
     Csv,
+    /// One time axis and a list of values for each channel.
     Json,
     /// A MAT file of version 5.
     Mat,

@@ -21,13 +21,13 @@ use super::method::{InputInterpolation, Integrator, Stage};
 use super::output_path;
 use super::segment::Segment;
 use super::side_by_side::{SPAN, SideBySide};
+use super::simulation::{Diverged, initial_state};
 use super::stepper::{Stepper, between};
-use super::trajectory::{Diverged, initial_state};
 use crate::model::{LANES, Lanes, Model, Program, Workspace};
 
 /// States on the way forward, one for each block, from which the way back starts anew.
 #[derive(Clone, Debug, Default)]
-pub struct Checkpoints {
+pub(crate) struct Checkpoints {
     elapsed: Vec<f64>,
     /// By block, then state.
     states: Vec<f64>,
@@ -37,7 +37,7 @@ pub struct Checkpoints {
 
 impl Checkpoints {
     /// Bytes held.
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         let series = std::iter::once(&self.elapsed).chain([&self.states]);
         let series = series.chain(&self.outputs);
         series.map(|series| size_of_val(series.as_slice())).sum()
@@ -45,7 +45,7 @@ impl Checkpoints {
 }
 
 /// The machinery for one model, reusable for any segment, θ and ȳ.
-pub struct Adjoint<'m> {
+pub(crate) struct Adjoint<'m> {
     model: &'m Model,
     interpolation: InputInterpolation,
     stages: &'static [Stage],
@@ -72,7 +72,8 @@ pub struct Adjoint<'m> {
 }
 
 impl<'m> Adjoint<'m> {
-    pub fn new(
+    /// Machinery with room for one block.
+    pub(crate) fn new(
         model: &'m Model,
         integrator: Integrator,
         interpolation: InputInterpolation,
@@ -103,7 +104,7 @@ impl<'m> Adjoint<'m> {
     ///
     /// # Errors
     /// The state left the range of numbers; samples up to the end of a block before that were handed over.
-    pub fn forward(
+    pub(crate) fn forward(
         &mut self,
         segment: &Segment,
         parameters: &[f64],
@@ -159,7 +160,7 @@ impl<'m> Adjoint<'m> {
 
     /// The way back. `seed` is given each sample with its outputs and answers with ȳ; `gradient`, of all
     /// parameters of the model, is added to. `checkpoints` are those of the way forward with the same θ.
-    pub fn reverse(
+    pub(crate) fn reverse(
         &mut self,
         segment: &Segment,
         parameters: &[f64],
@@ -386,7 +387,7 @@ impl<'m> Adjoint<'m> {
     }
 
     /// Bytes of the block, without the checkpoints.
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         let own = [&self.stage_states, &self.slopes, &self.seeds];
         let own: usize = own.iter().map(|all| size_of_val(all.as_slice())).sum();
         own + self.dynamics.bytes() + self.observation.bytes() + self.outputs.bytes()

@@ -45,7 +45,7 @@ pub(crate) fn of_effect(
     if effect.edits.is_empty() {
         return None;
     }
-    let mut document = effect.apply(&setting.document).ok()?;
+    let mut document = effect.apply(&setting.document).ok()?.document;
     for value in parameters.iter().filter(|p| p.segment.is_none()) {
         start_at(&mut document, &value.name, value.estimate);
     }
@@ -81,10 +81,8 @@ pub(crate) fn shortfall(
         let term = answer.term.as_deref().map(|term| setting.renamed(term));
         let effect = Effect::edit(kind, setting.renamed(&answer.target), term.as_deref());
         let edited = effect.apply(&setting.document).ok()?;
-        let added = edited
-            .parameters
-            .keys()
-            .find(|name| !setting.document.parameters.contains_key(*name));
+        let added = edited.added.first().map(|added| &added.name);
+        let edited = &edited.document;
         let start = |size: f64| {
             let mut edited = edited.clone();
             if let Some(added) = added {
@@ -99,7 +97,7 @@ pub(crate) fn shortfall(
         };
         start(size)
             .into_iter()
-            .chain(fitted(setting, recordings, &edited))
+            .chain(fitted(setting, recordings, edited))
             .reduce(f64::max)
     };
     let best = fault.answers.iter().filter_map(of).reduce(f64::max)?;

@@ -25,8 +25,9 @@ pub struct Solution {
     pub theta: Vec<f64>,
     /// R, outputs by outputs, SI units squared.
     pub covariance: DMatrix<f64>,
-    /// What there is to read of it.
+    /// The report of it.
     pub estimate: Estimate,
+    /// Measured and modelled outputs of each segment.
     pub histories: Vec<TimeHistory>,
 }
 

@@ -29,7 +29,7 @@ pub(super) fn answer(
     let mut modelled = vec![vec![Vec::new(); model.outputs.len()]; problem.segments.len()];
     let mut gains: Vec<SegmentGain> = Vec::new();
     // the last iterate was predicted before: what fails here failed there
-    let _ = evaluator.innovations(&at.z, &at.gain_noise.inverse, |index, gain, prediction| {
+    let _ = evaluator.innovations(&at.xi, &at.gain_noise.inverse, |index, gain, prediction| {
         if prediction.sample == 0 {
             gains.push(segment_gain(problem, index, gain));
         }
@@ -45,7 +45,7 @@ pub(super) fn answer(
         .collect();
     let collinear = bounds.collinear(name);
     let (outcome, reason) = stopped.say(problem.options.method, iterations, &held, &collinear);
-    let theta = &at.z[..layout.parameters];
+    let theta = &at.xi[..layout.parameters];
     let accuracy = Accuracy::new(&problem.unknowns, &at.information, &at.held, bounds);
     let estimate = Estimate {
         outcome,
@@ -90,7 +90,7 @@ fn process_noise(
         .states
         .iter()
         .zip(&problem.model.document.states);
-    let intensities = layout.intensities(&at.z);
+    let intensities = layout.intensities(&at.xi);
     let row = |(index, (state, (_, document)))| {
         let place = layout.place(index);
         let unit = match (document as &crate::model::State).unit.as_str() {

@@ -12,7 +12,7 @@ use crate::model::{Jacobian, Model, Program, Workspace};
 use crate::simulate::{Segment, Stepper, between, initial_state};
 
 /// One sample.
-pub(super) struct Prediction<'a> {
+pub(super) struct Predicted<'a> {
     pub sample: usize,
     /// By output.
     pub outputs: &'a [f64],
@@ -51,7 +51,7 @@ impl<'p> Predictor<'p> {
         parameters: &[f64],
         gain: &Gain,
         (columns, changes): (&[Column], &[Change]),
-        mut sink: impl FnMut(&Prediction<'_>),
+        mut sink: impl FnMut(&Predicted<'_>),
     ) {
         let model = &self.problem.model;
         self.set_parameters(parameters, columns.len());
@@ -61,7 +61,7 @@ impl<'p> Predictor<'p> {
         let mut elapsed = 0.0;
         for k in 0..segment.len() {
             self.observe(segment, (k, elapsed), &state, &tangent, &mut sample);
-            sink(&Prediction {
+            sink(&Predicted {
                 sample: k,
                 outputs: &sample.outputs,
                 innovations: &sample.innovations,
@@ -152,7 +152,7 @@ impl<'p> Predictor<'p> {
     }
 }
 
-/// What is known at one sample; see [`Prediction`].
+/// What is known at one sample; see [`Predicted`].
 struct Sample {
     outputs: Vec<f64>,
     innovations: Vec<f64>,

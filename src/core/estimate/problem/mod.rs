@@ -13,9 +13,13 @@ use unusable::Unusable;
 /// Everything an estimation needs; built once, then only read.
 #[derive(Clone, Debug)]
 pub struct Problem {
+    /// The compiled model.
     pub model: Model,
+    /// The recordings that the model is fitted to, one simulation each.
     pub segments: Vec<Segment>,
+    /// Its parameters, shared by all segments or one for each.
     pub unknowns: Unknowns,
+    /// How to estimate.
     pub options: Options,
     pub(crate) columns: Columns,
     /// By output: samples that have a value, over all segments.
@@ -23,6 +27,7 @@ pub struct Problem {
 }
 
 impl Problem {
+    /// Lays out which parameters each output is differentiated by. Unknowns must be laid out over these segments.
     pub fn new(model: Model, segments: Vec<Segment>, unknowns: Unknowns, options: Options) -> Self {
         let is_free = |parameter: &usize| {
             unknowns
@@ -48,7 +53,7 @@ impl Problem {
         self.segments.iter().map(Segment::len).sum()
     }
 
-    /// What an unknown is called: the parameter's name, with the segment where each has its own.
+    /// The name of an unknown: the parameter's, with the segment where each has its own.
     pub fn name(&self, place: usize) -> String {
         let unknown = self.unknowns.at(place);
         let name = &self.model.parameters[unknown.parameter].name;

@@ -9,17 +9,22 @@ pub struct Unknown {
     pub parameter: usize,
     /// The segment it belongs to, where each has its own.
     pub segment: Option<usize>,
+    /// The start value; of a fixed one the value.
     pub start: f64,
+    /// The smallest value it may take; -∞ where it is free.
     pub lower: f64,
+    /// The largest value it may take; ∞ where it is free.
     pub upper: f64,
+    /// Whether it is held at its start value.
     pub fixed: bool,
-    /// What was known of it before the data, SI.
+    /// Knowledge of it from before the data, SI.
     pub prior: Option<Prior>,
 }
 
 /// All unknowns, and where each segment finds its parameters.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Unknowns {
+    /// Free and fixed ones, by parameter of the model, then segment.
     pub all: Vec<Unknown>,
     /// Indices into `all` of those that are free; θ has them in this order.
     pub free: Vec<usize>,
@@ -129,10 +134,12 @@ impl Unknowns {
         &self.all[self.free[place]]
     }
 
+    /// The length of θ: free unknowns.
     pub fn len(&self) -> usize {
         self.free.len()
     }
 
+    /// Whether nothing is free.
     pub fn is_empty(&self) -> bool {
         self.free.is_empty()
     }

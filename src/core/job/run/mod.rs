@@ -4,7 +4,7 @@ mod diagnosis;
 mod study;
 
 pub use diagnosis::run_diagnosis;
-pub use study::{Progress, run_study};
+pub use study::{StudyProgress, run_study};
 
 use std::ops::ControlFlow;
 

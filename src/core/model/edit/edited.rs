@@ -1,4 +1,4 @@
-//! What an edit made of a document, and what each parameter that it added is there for.
+//! A document that was edited, and the role of each parameter that was added.
 
 use crate::model::document::ModelDocument;
 
@@ -19,7 +19,7 @@ pub struct Added {
     pub role: AddedRole,
 }
 
-/// What a parameter is to the effect that it belongs to.
+/// The role of a parameter in the effect that added it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum AddedRole {
     /// How much there is of the effect: a bias, a scale, the factor of a term.
@@ -35,6 +35,6 @@ pub enum AddedRole {
     Frequency,
     Damping,
     Steepness,
-    /// What something is at the start of the maneuver, or in its steady part: read off the recording.
+    /// The value of something at the start of the maneuver, or in its steady part: read off the recording.
     Reference,
 }

@@ -173,7 +173,7 @@ impl<'a> Sheet<'a> {
         Names::collect(&self.document, &mut Vec::new()).dimension(name)
     }
 
-    /// What an expression is at the start of a segment, in parameters and constants: states are replaced by their
+    /// An expression at the start of a segment, in parameters and constants: states are replaced by their
     /// initial values, definitions written out, inputs replaced by fixed parameters that read their first sample.
     /// Where that is too long, a free parameter of each maneuver that starts at the first sample of `channel`.
     pub(super) fn at_start(&mut self, text: &str, unit: &str, channel: &str) -> String {

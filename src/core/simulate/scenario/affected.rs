@@ -66,7 +66,7 @@ impl<'s> Affected<'s> {
             } else {
                 let known: Vec<&str> = EditKind::ALL.iter().map(|kind| kind.name()).collect();
                 return Err(unfit(format!(
-                    "there is no effect '{}'; known are {}, {OUTLIERS}, {PROCESS_NOISE}",
+                    "there is no effect '{}'; choose one of {}, {OUTLIERS}, {PROCESS_NOISE}",
                     effect.kind,
                     known.join(", ")
                 )));

@@ -33,10 +33,14 @@ use crate::model::{Edit, EditKind, Input, Reference};
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioEffect {
+    /// The name of an [`EditKind`], `sensor_outliers` or `process_noise`.
     pub kind: String,
+    /// The channel, state or definition that it acts on.
     pub target: String,
+    /// As of an [`Edit`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub term: Option<String>,
+    /// As of an [`Edit`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub parameter: Option<String>,
     /// As of an [`Edit`].

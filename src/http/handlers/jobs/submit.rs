@@ -35,7 +35,7 @@ const LONGEST_TAG: usize = 64;
 /// What a request that is answered with 200 has led to.
 #[derive(Serialize, ToSchema)]
 #[serde(untagged)]
-enum Outcome {
+enum Submission {
     Prepared(Prepared),
     Job(Box<JobResource>),
 }
@@ -58,7 +58,7 @@ struct SubmitQuery {
     request_body = JobSpec,
     responses(
         (status = 202, description = "It is accepted.", body = JobResource, headers(("Location" = String, description = "Its path."))),
-        (status = 200, description = "With `validate_only`: what the job would amount to. With `Prefer: wait=N`: the job, which is over.", body = inline(Outcome)),
+        (status = 200, description = "With `validate_only`: what the job would amount to. With `Prefer: wait=N`: the job, which is over.", body = inline(Submission)),
         (status = 400, description = "`invalid_json`", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 422, description = "`wrong_shape`, `invalid_job`: `errors` lists the faults by JSON pointer.", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
@@ -72,7 +72,7 @@ async fn submit_job(
     let spec = Arc::new(spec);
     let (model, prepared) = check(&service, &spec).await?;
     if query.validate_only {
-        return Ok(Json(Outcome::Prepared(prepared)).into_response());
+        return Ok(Json(Submission::Prepared(prepared)).into_response());
     }
     room(&service, 1).await?;
     let job = new_job(&spec, text, &model)?;
@@ -89,7 +89,7 @@ async fn submit_job(
     };
     let job = JobResource::of(job);
     let location = [(header::LOCATION, job.path())];
-    let mut response = (status, location, Json(Outcome::Job(Box::new(job)))).into_response();
+    let mut response = (status, location, Json(Submission::Job(Box::new(job)))).into_response();
     response.headers_mut().extend(wait.map(prefer::applied));
     Ok(response)
 }
@@ -210,7 +210,7 @@ async fn resolve_model(
     Ok(model.ok_or_else(|| {
         let name: String = name.chars().take(80).collect();
         let message = format!(
-            "there is no model '{name}'; the catalog goes by name, stored models by their id: /v1/models lists both"
+            "there is no model '{name}'; name a catalog model by its name, a stored one by its id: /v1/models lists both"
         );
         Fault::new("/model", "unknown_model", message)
     }))
