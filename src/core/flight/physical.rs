@@ -12,50 +12,91 @@ use super::Dimension;
 )]
 #[serde(rename_all = "snake_case")]
 pub enum PhysicalQuantity {
+    /// α, rad.
     AngleOfAttack,
+    /// β, rad.
     AngleOfSideslip,
+    /// V, m/s, true.
     Airspeed,
+    /// Mach number.
     Mach,
+    /// q̄, Pa.
     DynamicPressure,
+    /// ρ, kg/m³.
     AirDensity,
+    /// u, m/s.
     VelocityX,
+    /// v, m/s.
     VelocityY,
+    /// w, m/s.
     VelocityZ,
+    /// p, rad/s.
     RollRate,
+    /// q, rad/s.
     PitchRate,
+    /// r, rad/s.
     YawRate,
+    /// dp/dt, rad/s².
     RollAcceleration,
+    /// dq/dt, rad/s².
     PitchAcceleration,
+    /// dr/dt, rad/s².
     YawAcceleration,
     /// A specific force, or a load factor.
     AccelerationX,
+    /// As [`Self::AccelerationX`], to the right.
     AccelerationY,
+    /// As [`Self::AccelerationX`], downwards.
     AccelerationZ,
+    /// φ, rad.
     RollAngle,
+    /// θ, rad.
     PitchAngle,
+    /// ψ, rad.
     HeadingAngle,
+    /// North, m.
     PositionX,
+    /// East, m.
     PositionY,
+    /// Down, m.
     PositionZ,
+    /// h, m.
     Altitude,
+    /// Towards north, m/s.
     WindX,
+    /// Towards east, m/s.
     WindY,
+    /// Downwards, m/s.
     WindZ,
+    /// δe, rad.
     Elevator,
+    /// δa, rad.
     Aileron,
+    /// δr, rad.
     Rudder,
+    /// δc, rad.
     Canard,
+    /// δf, rad.
     Flap,
+    /// N, or a throttle.
     Thrust,
     /// Any other control.
     Control,
+    /// CL.
     LiftCoefficient,
+    /// CD.
     DragCoefficient,
+    /// CY.
     SideForceCoefficient,
+    /// CX.
     ForceCoefficientX,
+    /// CZ.
     ForceCoefficientZ,
+    /// Cl.
     RollingMomentCoefficient,
+    /// Cm.
     PitchingMomentCoefficient,
+    /// Cn.
     YawingMomentCoefficient,
     /// Any other aerodynamic coefficient.
     Coefficient,
@@ -68,24 +109,38 @@ pub enum PhysicalQuantity {
 /// The instruments that record a quantity, or the part of the model that it belongs to.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub enum Family {
+    /// Vanes, probes, the air data computer.
     AirData,
+    /// Velocities in body axes.
     Velocity,
+    /// Rate gyros.
     Gyro,
+    /// Rates differentiated, or accelerometers for them.
     AngularAcceleration,
+    /// Accelerometers.
     Accelerometer,
+    /// Angles of an inertial platform.
     Attitude,
+    /// Satellite navigation.
     Position,
+    /// The air around it.
     Wind,
+    /// Control surfaces and engines.
     Control,
+    /// Aerodynamic coefficients.
     Coefficient,
+    /// Elastic modes.
     Structural,
+    /// None of these.
     Other,
 }
 
 /// Which of the two motions of a symmetric aircraft a quantity belongs to.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Motion {
+    /// In the plane of symmetry.
     Longitudinal,
+    /// Out of it.
     Lateral,
 }
 
@@ -97,6 +152,7 @@ impl PhysicalQuantity {
             .unwrap_or_default()
     }
 
+    /// The instruments that record it.
     pub fn family(self) -> Family {
         use PhysicalQuantity::*;
         match self {
@@ -124,10 +180,12 @@ impl PhysicalQuantity {
         }
     }
 
+    /// Angle of attack or of sideslip.
     pub fn is_flow_angle(self) -> bool {
         matches!(self, Self::AngleOfAttack | Self::AngleOfSideslip)
     }
 
+    /// A control surface or an engine.
     pub fn is_control(self) -> bool {
         self.family() == Family::Control
     }

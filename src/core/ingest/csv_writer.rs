@@ -40,6 +40,7 @@ impl CsvWriter {
         }
     }
 
+    /// Ends the row.
     pub fn end_row(&mut self) {
         self.text.push('\n');
         self.is_in_row = false;

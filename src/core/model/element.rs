@@ -17,6 +17,7 @@ pub enum Element {
 }
 
 impl Element {
+    /// In the order in which a signal passes them.
     pub const ALL: [Self; 4] = [Self::Play, Self::RateLimit, Self::Lag, Self::Delay];
 
     /// The field of a document, and what it is called.
@@ -29,6 +30,7 @@ impl Element {
         }
     }
 
+    /// As it is called in messages.
     pub fn words(self) -> &'static str {
         match self {
             Self::RateLimit => "rate limit",

@@ -15,7 +15,9 @@ use super::scalar::Scalar;
 /// An element in the path of an input or output, which goes by its index.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct PathElement {
+    /// Index of the input or output.
     pub signal: usize,
+    /// What the signal passes.
     pub element: Element,
 }
 
@@ -52,6 +54,7 @@ impl Paths {
         }
     }
 
+    /// Whether no input and no output has a path.
     pub fn is_empty(&self) -> bool {
         self.elements.is_empty()
     }
@@ -61,10 +64,12 @@ impl Paths {
         &self.elements
     }
 
+    /// Elements of the inputs, in the order of the sizes.
     pub fn of_inputs(&self) -> &[PathElement] {
         &self.elements[..self.of_inputs]
     }
 
+    /// Elements of the outputs, whose sizes follow those of the inputs.
     pub fn of_outputs(&self) -> &[PathElement] {
         &self.elements[self.of_inputs..]
     }

@@ -49,7 +49,7 @@ impl<'m, T: Scalar> March<'m, T> {
     }
 
     /// How many samples of a segment to go on by: `samples`, where that may be chosen.
-    pub fn stretch(model: &Model, segment: &Segment, samples: usize) -> usize {
+    pub(crate) fn stretch(model: &Model, segment: &Segment, samples: usize) -> usize {
         if model.paths.is_empty() {
             samples
         } else {

@@ -40,7 +40,6 @@ pub use block::Block;
 pub use columns::Columns;
 pub(crate) use input_path::{MOST_DELAY, driven, path_out_of_bounds};
 pub(crate) use march::{March, Standing};
-pub(crate) use method::Stage;
 pub use method::{InputInterpolation, Integrator};
 pub use outputs::Outputs;
 pub(crate) use pack::{PACK, Pack, multiply_add, packs};

@@ -7,17 +7,29 @@ use crate::simulate::{Diverged, MOST_DELAY};
 pub enum Unusable {
     /// The simulation left the range of numbers.
     #[error("the simulation leaves the range of numbers (segment {}, sample {})", segment + 1, sample + 1)]
-    LeftRange { segment: usize, sample: usize },
+    LeftRange {
+        /// Its index.
+        segment: usize,
+        /// Index of the first sample, as far as it is known.
+        sample: usize,
+    },
     /// Outputs are finite, but the cost or a derivative of an output is not.
     #[error("the cost, an output or a derivative of an output is not a finite number")]
     NotFinite,
     /// The Riccati equation of the Kalman filter has no solution with which the filter is stable.
     #[error("the Kalman filter of segment {} has no steady gain with which it is stable", segment + 1)]
-    NoSteadyGain { segment: usize },
-    /// An element of a path has a size that it cannot have (see [`crate::simulate::path_out_of_bounds`]); by its place
-    /// in [`crate::model::Paths::at`].
+    NoSteadyGain {
+        /// Its index.
+        segment: usize,
+    },
+    /// An element of a path has a size that it cannot have ; by its place in [`crate::model::Paths::at`].
     #[error("an element of the path of an input or output in segment {} has a size that it cannot have: play, rate limit, lag, or a delay of more than {MOST_DELAY} samples", segment + 1)]
-    Path { segment: usize, place: usize },
+    Path {
+        /// Its index.
+        segment: usize,
+        /// Of the element.
+        place: usize,
+    },
     /// The covariance of the residuals is singular: some outputs' residuals are not independent.
     #[error("the residuals of some outputs are not independent: their covariance is singular")]
     SingularNoise,

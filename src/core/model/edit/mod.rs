@@ -75,7 +75,9 @@ pub struct Edit {
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(untagged)]
 pub enum Reference {
+    /// A number, in the unit of the name.
     Value(f64),
+    /// An expression in parameters and constants.
     Expression(String),
 }
 

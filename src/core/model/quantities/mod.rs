@@ -20,6 +20,7 @@ use super::document::ModelDocument;
 const PASSES: usize = 4;
 
 impl Quantities {
+    /// What each name of a document is, declared or guessed.
     pub fn of(document: &ModelDocument) -> Self {
         let mut found = Self::default();
         found.declared(document);

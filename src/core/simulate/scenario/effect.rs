@@ -46,8 +46,10 @@ pub struct ScenarioEffect {
     /// As of an [`Edit`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
+    /// As of an [`Edit`](crate::model::Edit).
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub channels: IndexMap<String, Input>,
+    /// As of an [`Edit`](crate::model::Edit).
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub about: IndexMap<String, Reference>,
     /// Of the first parameter that is added; the share of spikes, or the intensity of process noise.
