@@ -24,7 +24,7 @@ pub struct Case {
 /// Values of parameters, SI: by name, and by segment where each has its own.
 pub(super) type Values = IndexMap<(String, Option<String>), f64>;
 
-/// An explicit integrator cannot follow a lag of fewer samples than this.
+/// An explicit integrator cannot follow a state that lags by fewer samples than this.
 const SHORTEST_LAG: f64 = 0.45;
 
 /// Why a model cannot be fitted to the case.

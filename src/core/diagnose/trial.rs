@@ -59,11 +59,14 @@ pub(super) fn starts(case: &Case, effect: &Effect, edited: &Edited) -> Vec<Value
         return vec![Values::new()];
     };
     let factors: &[f64] = match kind {
-        EditKind::Backlash => return backlash_starts(case, effect, &edited.added),
-        EditKind::InputDelay => return delay_starts(case, &edited.added),
-
-        EditKind::SensorLag | EditKind::ActuatorLag => &[0.5, 2.0],
-        EditKind::ActuatorRateLimit => &[0.03, 0.1, 0.3, 1.0],
+        EditKind::Backlash => return at_first(&edited.added, &plays(case, effect)),
+        EditKind::ActuatorRateLimit => return at_first(&edited.added, &rate_limits(case, effect)),
+        EditKind::SensorLag | EditKind::ActuatorLag => return at_first(&edited.added, &lags(case)),
+        // a recorded input that jumps has no slope at its samples, and so its delay none at whole samples
+        EditKind::InputDelay => {
+            let late = [-1.5, -0.5, 0.5, 1.5, 3.5, 6.5];
+            return at_first(&edited.added, &in_samples(case, &late));
+        }
         EditKind::UnsteadyAero | EditKind::StallHysteresis => &[0.4, 1.0, 2.5],
         EditKind::StructuralMode => &[0.6, 0.8, 1.0, 1.3, 1.7, 2.2, 2.9],
         EditKind::Gust => return gust_starts(case, &edited.added),
@@ -80,6 +83,8 @@ pub(super) fn starts(case: &Case, effect: &Effect, edited: &Edited) -> Vec<Value
             let factor = match added.role {
                 // these are not where the uncertainty is
                 AddedRole::Damping | AddedRole::Steepness => 1.0,
+                // a flow that separates at 25 deg does so in hardly any flight
+                AddedRole::Limit => factor.min(1.6),
                 _ => *factor,
             };
             Some(((added.name.clone(), None), unit.to_si(start * factor)))
@@ -89,45 +94,62 @@ pub(super) fn starts(case: &Case, effect: &Effect, edited: &Edited) -> Vec<Value
     factors.iter().map(scaled).collect()
 }
 
-/// Shares of how far the input moves.
-fn backlash_starts(case: &Case, effect: &Effect, added: &[Added]) -> Vec<Values> {
-    let moved = case
-        .of_role(Role::Estimation)
-        .filter_map(|flight| flight.channels.get(&effect.target));
-    let (least, most) = (moved.flat_map(|(values, _)| values))
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), v| {
-            (least.min(*v), most.max(*v))
-        });
-    let of = |share: f64| at_first(added, share * (most - least));
-    [0.02, 0.1].into_iter().map(of).collect()
+/// A start at each of these values, SI, of the parameter that an effect is called after.
+fn at_first(added: &[Added], values: &[f64]) -> Vec<Values> {
+    let of = |value: &f64| {
+        let first = added.first();
+        Values::from_iter(first.map(|added| ((added.name.clone(), None), *value)))
+    };
+    values.iter().map(of).collect()
 }
 
-/// A recorded input that jumps has no slope at its samples, and so its delay none at whole samples: starts are between.
-fn delay_starts(case: &Case, added: &[Added]) -> Vec<Values> {
-    samples_late(case, added, &[-1.5, -0.5, 0.5, 1.5, 3.5, 6.5])
+fn in_samples(case: &Case, counts: &[f64]) -> Vec<f64> {
+    let first = case.flights.first();
+    let step = first.map_or(0.0, super::flight::Flight::step);
+    counts.iter().map(|count| count * step).collect()
+}
+
+/// What is recorded of a channel in the flights to be fitted, with its time.
+fn recorded<'c>(case: &'c Case, channel: &'c str) -> impl Iterator<Item = (&'c [f64], &'c [f64])> {
+    let flights = case.of_role(Role::Estimation);
+    flights.filter_map(move |flight| {
+        let (values, _) = flight.channels.get(channel)?;
+        Some((flight.time.as_slice(), values.as_slice()))
+    })
+}
+
+/// Shares of how far the input moves.
+fn plays(case: &Case, effect: &Effect) -> Vec<f64> {
+    let values = recorded(case, &effect.target).flat_map(|(_, values)| values);
+    let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), v| {
+        (least.min(*v), most.max(*v))
+    });
+    [0.02, 0.1].map(|share| share * (most - least)).to_vec()
+}
+
+/// Shares of how fast the input moves.
+fn rate_limits(case: &Case, effect: &Effect) -> Vec<f64> {
+    let rates = recorded(case, &effect.target).flat_map(|(time, values)| {
+        let pairs = time.windows(2).zip(values.windows(2));
+        pairs.map(|(t, u)| ((u[1] - u[0]) / (t[1] - t[0])).abs())
+    });
+    let largest = rates.fold(0.0, f64::max);
+    [0.9, 0.6, 0.35].map(|share| share * largest).to_vec()
+}
+
+/// Of some samples, and such as instruments and actuators have.
+fn lags(case: &Case) -> Vec<f64> {
+    let mut lags = in_samples(case, &[0.5, 1.0, 3.0]);
+    lags.extend([0.1, 0.3]);
+    lags
 }
 
 /// A delay of many samples is far from what one linear step tells: further starts of it.
 pub(super) fn starts_of_delay(case: &Case, effect: &Effect, added: &[Added]) -> Vec<Values> {
     match effect.kind {
-        EffectKind::Edit(EditKind::SensorDelay) => samples_late(case, added, &[2.0, 5.0]),
+        EffectKind::Edit(EditKind::SensorDelay) => at_first(added, &in_samples(case, &[2.0, 5.0])),
         _ => Vec::new(),
     }
-}
-
-fn samples_late(case: &Case, added: &[Added], samples: &[f64]) -> Vec<Values> {
-    let step = case
-        .flights
-        .first()
-        .map_or(0.0, super::flight::Flight::step);
-    let of = |samples: &f64| at_first(added, samples * step);
-    samples.iter().map(of).collect()
-}
-
-/// A value, SI, of the parameter that an effect is called after.
-fn at_first(added: &[Added], value: f64) -> Values {
-    let first = added.first();
-    Values::from_iter(first.map(|added| ((added.name.clone(), None), value)))
 }
 
 /// A gust may come at any time: every half length of one, of two lengths.
@@ -201,6 +223,10 @@ pub(super) fn disturbed_throughout(case: &Case, calm: &Fitted, one: Fitted) -> F
 /// The declared model fitted by filter error, without process noise on the states that are `held`.
 fn filtered(case: &Case, base: &Fitted, held: &dyn Fn(&str) -> bool) -> Result<Fitted, Unfit> {
     let mut problem = case.problem(&base.document, &base.values())?;
+    if !problem.model.paths.of_outputs().is_empty() {
+        let why = "the filter-error method knows no lag or delay of an output";
+        return Err(Unfit(why.into()));
+    }
     problem.options.estimator = Estimator::FilterError;
     problem.options.tolerance = problem.options.tolerance.max(1e-3);
     problem.options.process_noise = (problem.model.states.iter())

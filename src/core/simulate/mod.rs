@@ -2,8 +2,8 @@
 //!
 //! dx/dt = f(x, u, θ), x(0) = x0(θ), y_k = g(x_k, u_k, θ), stepped once a sample by an explicit method.
 //! [`simulate`] gives y for any kind of number; [`Sensitivities`] gives y and ∂y/∂θ, the adjoint the
-//! product (∂y/∂θ)ᵀ ȳ alone. A [`Scenario`] makes a maneuver of known truth. Inputs and outputs that the model delays
-//! are delayed here: inputs before a run, outputs behind it.
+//! product (∂y/∂θ)ᵀ ȳ alone. A [`Scenario`] makes a maneuver of known truth. Inputs and outputs pass their paths (play,
+//! rate limit, lag, delay) here: inputs before a run, outputs behind it.
 //!
 //! Invariant: derivatives are those of the discretised model itself, and numbers do not depend on how many threads or
 //! lanes there are.
@@ -12,14 +12,16 @@ mod adjoint;
 mod aligned;
 mod block;
 mod columns;
-mod delay_line;
-mod delayed_inputs;
+mod input_path;
 mod interpolation;
+mod lag;
 mod linearised;
 mod march;
 mod method;
 mod one_step;
 mod one_step_recursion;
+mod output_line;
+mod output_path;
 mod output_rows;
 mod outputs;
 mod pack;
@@ -28,6 +30,7 @@ mod scenario;
 mod segment;
 mod sensitivity;
 mod side_by_side;
+mod signal;
 mod simulation;
 mod state_sensitivities;
 mod stepper;
@@ -38,8 +41,8 @@ mod transition_recursion;
 pub(crate) use adjoint::{Adjoint, Checkpoints};
 pub use block::Block;
 pub use columns::Columns;
-pub use delayed_inputs::MOST_DELAY;
-pub(crate) use delayed_inputs::delay_out_of_bounds;
+pub use input_path::MOST_DELAY;
+pub(crate) use input_path::{driven, path_out_of_bounds};
 pub(crate) use march::{March, Standing};
 pub use method::{InputInterpolation, Integrator};
 pub use outputs::Outputs;

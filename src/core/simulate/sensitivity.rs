@@ -13,10 +13,10 @@
 
 use super::block::Block;
 use super::columns::Columns;
-use super::delay_line::DelayLine;
-use super::delayed_inputs::driven;
+use super::input_path::driven;
 use super::linearised::Linearised;
 use super::method::{InputInterpolation, Integrator};
+use super::output_line::OutputLine;
 use super::output_rows::OutputRows;
 use super::pack::Pack;
 use super::segment::Segment;
@@ -35,8 +35,8 @@ pub struct Sensitivities<'m> {
     outputs: Linearised<'m>,
     states: StateSensitivities,
     rows: OutputRows,
-    /// Where outputs are delayed.
-    delay_line: Option<DelayLine<'m>>,
+    /// Where outputs have paths.
+    line: Option<OutputLine<'m>>,
 }
 
 impl<'m> Sensitivities<'m> {
@@ -58,7 +58,7 @@ impl<'m> Sensitivities<'m> {
             outputs: Linearised::new(&model.observation, 1),
             states: StateSensitivities::new(model, columns, stages),
             rows: OutputRows::new(model, columns),
-            delay_line: DelayLine::new(model, columns),
+            line: OutputLine::new(model, columns),
         }
     }
 
@@ -72,11 +72,12 @@ impl<'m> Sensitivities<'m> {
         parameters: &[f64],
         mut sink: impl FnMut(&Block<'_>),
     ) -> Result<(), Diverged> {
-        let delays = self.model.delays.at(parameters);
-        let driven = driven(self.model, segment, &delays);
+        let sizes = self.model.paths.at(parameters);
+        let interpolation = self.trajectory.interpolation();
+        let driven = driven(self.model, interpolation, segment, &sizes);
         let segment = &*driven;
-        if let Some(line) = &mut self.delay_line {
-            line.start(segment, parameters, &delays);
+        if let Some(line) = &mut self.line {
+            line.start(segment, parameters, &sizes);
         }
         self.trajectory.start(segment, parameters);
         if self.trajectory.one_step().is_none() {
@@ -121,7 +122,7 @@ impl<'m> Sensitivities<'m> {
                 columns: self.columns,
                 rows: &rows,
             };
-            match &mut self.delay_line {
+            match &mut self.line {
                 Some(line) => line.pass(&block, &mut sink),
                 None => sink(&block),
             }

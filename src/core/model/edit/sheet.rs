@@ -222,8 +222,8 @@ impl<'a> Sheet<'a> {
         }
         let input = Input {
             unit: unit.to_string(),
-            delay: None,
             description: description.to_string(),
+            ..Default::default()
         };
         self.document.inputs.insert(name.to_string(), input);
         self.inputs.push(name.to_string());

@@ -19,10 +19,11 @@ pub(super) fn hysteresis(sheet: &mut Sheet) -> Result<(), EditError> {
     let separation = sheet.free("X");
     let name = sheet.name(&format!("{angle}_stall"))?;
     let words = format!("{angle} at which half the flow has separated");
+    // at the upper bound none has, whatever the angle that is flown: the separation is 1 to the last bit
     sheet.add(
         &name,
         AddedRole::Limit,
-        unknown("deg", 15.0, Some((5.0, 25.0)), words),
+        unknown("deg", 15.0, Some((5.0, 90.0)), words),
     );
     let steepness = sheet.free(&format!("{angle}_stall_steepness"));
     let words = "steepness of the separation, a1".to_string();

@@ -49,7 +49,7 @@ pub enum EditKind {
     SensorDrift,
     /// y(t - τ)
     SensorDelay,
-    /// T ẏ_m = y - y_m
+    /// T ẏ_m = y - y_m, y_m what is recorded
     SensorLag,
     /// The lever arm of a vane or an accelerometer: α - x q/V + y p/V, β + x r/V - z p/V, a + ω̇ × r + ω × (ω × r)
     SensorPosition,
@@ -61,9 +61,9 @@ pub enum EditKind {
     InputDelay,
     /// T δ̇ = u - δ
     ActuatorLag,
-    /// δ̇ = r tanh((u - δ)/(r T))
+    /// δ goes to u, but abs(δ̇) ≤ r
     ActuatorRateLimit,
-    /// T δ̇ = max(0, u - b - δ) + min(0, u + b - δ)
+    /// δ stays where it is, but u - b ≤ δ ≤ u + b
     Backlash,
     /// ψ u2, a recorded channel that the model does not use
     UnrecordedInput,

@@ -330,8 +330,7 @@ fn edited(document: &ModelDocument) -> ModelDocument {
         let output = Output {
             unit: state.unit.clone(),
             equation: name.clone(),
-            delay: None,
-            description: String::new(),
+            ..Default::default()
         };
         edited
             .outputs
