@@ -101,8 +101,8 @@ pub(super) fn channels(
             input: Input {
                 unit: unit(*dimension, quantity),
                 quantity: Some(quantity),
-                delay: None,
                 description: "recorded".to_string(),
+                ..Input::default()
             },
             movement,
         })
