@@ -159,7 +159,7 @@ pub(super) fn make(random: &mut Random, replay: Option<&Replay>) -> Aircraft {
         document: DOCUMENT.replace("{SPEED}", &format!("{speed:?}")),
         channels,
         sorties,
-        sample: sample(random),
+        sample: sample(random).min(0.04),
         quantum: 0.0,
         faults: both(faults(), unknown_faults()),
     }

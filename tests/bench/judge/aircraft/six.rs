@@ -172,7 +172,7 @@ pub(super) fn flown(
         document: document.to_string(),
         channels,
         sorties,
-        sample: sample(random).max(0.02),
+        sample: sample(random).clamp(0.02, 0.025),
         quantum: 0.0,
         faults: both(faults, unknown),
     }
