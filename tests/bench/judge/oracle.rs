@@ -110,6 +110,16 @@ pub(crate) fn shortfall(
 /// true model reach scatters by some units.
 const ITS_MODEL: f64 = 10.0;
 
+/// ln L that the true model must be thought to reach, of flights that do not tell it to rounding: inputs have noise too,
+/// and are sampled. What the declared model loses by that on the same flights without any fault, the truth loses as well.
+fn reached(setting: &Setting, recordings: &[Recording], faults: usize) -> f64 {
+    let lost = setting.flown(&Vec::new(), true).and_then(|calm| {
+        let found = fitted(setting, &calm, &setting.document)?;
+        Some(of_truth(setting, &calm, 0) - found)
+    });
+    of_truth(setting, recordings, faults) - lost.unwrap_or(0.0).max(0.0)
+}
+
 /// Whether a named effect is an alias of the truth: it fits within three units of ln L of what the truth reaches.
 pub(crate) fn is_alias(
     setting: &Setting,
@@ -121,12 +131,11 @@ pub(crate) fn is_alias(
     let Some(found) = of_effect(setting, recordings, effect, parameters) else {
         return false;
     };
-    let expected = of_truth(setting, recordings, 1);
-    let reached = match shortfall(setting, recordings, fault, size) {
-        Some(shortfall) if fault.known && shortfall.abs() < ITS_MODEL => expected - shortfall,
-        _ => expected,
-    };
-    found > reached - ALIKE
+    let expected = reached(setting, recordings, 1);
+    let own = shortfall(setting, recordings, fault, size);
+    let own = own.map(|shortfall| of_truth(setting, recordings, 1) - shortfall);
+    let truth = own.filter(|own| fault.known && (own - expected).abs() < ITS_MODEL);
+    found > truth.unwrap_or(expected) - ALIKE
 }
 
 /// Whether a document explains the flights as well as the truth with its faults does.
@@ -136,6 +145,6 @@ pub(crate) fn explains(
     document: &ModelDocument,
     faults: usize,
 ) -> bool {
-    let expected = of_truth(setting, recordings, faults);
+    let expected = reached(setting, recordings, faults);
     fitted(setting, recordings, document).is_some_and(|found| found > expected - ALIKE)
 }
