@@ -163,9 +163,9 @@ fn tell(line: &mut Line, setting: &Setting, diagnosis: &Diagnosis) {
     line.named = diagnosis
         .effects
         .iter()
-        .map(|e| setting.own(&e.effect.name()))
+        .map(|e| setting.called(&e.effect))
         .collect();
     let first = diagnosis.effects.first();
     let members = first.iter().flat_map(|first| &first.group);
-    line.group = members.map(|m| setting.own(&m.effect.name())).collect();
+    line.group = members.map(|m| setting.called(&m.effect)).collect();
 }

@@ -52,8 +52,7 @@ impl Judge<'_> {
     }
 
     fn matches(&self, fault: &Fault, effect: &Effect) -> bool {
-        let (kind, target) = (effect.word(), self.setting.own(&effect.target));
-        let term = effect.term.as_deref().map(|term| self.setting.own(term));
+        let (kind, (target, term)) = (effect.word(), self.setting.place(effect));
         fault
             .answers
             .iter()

@@ -160,7 +160,6 @@ pub(super) fn make(random: &mut Random, replay: Option<&Replay>) -> Aircraft {
         channels,
         sorties,
         sample: sample(random).min(0.04),
-        quantum: 0.0,
         faults: both(faults(), unknown_faults()),
     }
 }

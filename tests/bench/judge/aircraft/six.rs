@@ -173,7 +173,6 @@ pub(super) fn flown(
         channels,
         sorties,
         sample: sample(random).clamp(0.02, 0.025),
-        quantum: 0.0,
         faults: both(faults, unknown),
     }
 }
