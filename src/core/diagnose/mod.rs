@@ -38,6 +38,7 @@ mod starts;
 mod terms;
 mod threshold;
 mod trial;
+mod unmodelled;
 mod watch;
 
 pub use case::{Case, Unfit};
