@@ -12,7 +12,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use super::Failure;
-use super::mapping::format_of;
+use super::recording::format_of;
 use super::server::Server;
 use crate::diagnose::Diagnosis;
 use crate::estimate::{Estimate, TimeHistory};

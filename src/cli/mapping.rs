@@ -1,9 +1,9 @@
-//! What a recording is written in, and the mapping of those that say no names and units.
+//! The mapping of recordings that say no names and units.
 
 use std::path::Path;
 
 use super::Failure;
-use super::request::read_text;
+use super::recording::{format_of, read_text};
 use crate::ingest::{Format, Mapping};
 
 #[derive(clap::Args, Debug)]
@@ -46,14 +46,6 @@ impl MappingOption {
         };
         self.text(recording)?.map(read).transpose()
     }
-}
-
-/// The format of a recording, by the end of its name; CSV if that says nothing.
-pub(super) fn format_of(file: &Path) -> Format {
-    let extension = file.extension().and_then(|extension| extension.to_str());
-    extension
-        .and_then(Format::from_extension)
-        .unwrap_or(Format::Csv)
 }
 
 #[cfg(test)]

@@ -16,6 +16,7 @@ mod model;
 mod plots;
 mod process;
 mod progress;
+mod recording;
 mod request;
 mod retain;
 mod serve;
@@ -23,6 +24,7 @@ mod server;
 mod simulate;
 mod stretch;
 mod study;
+mod study_tables;
 mod submit;
 mod table;
 mod watch;
@@ -34,7 +36,7 @@ use clap::{Parser, Subcommand};
 
 use failure::Failure;
 
-pub use study::tables as study_tables;
+pub use study_tables::tables as study_tables;
 
 #[derive(Parser)]
 #[command(

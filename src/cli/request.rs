@@ -6,12 +6,13 @@ use std::sync::Arc;
 use indexmap::{IndexMap, IndexSet};
 
 use super::Failure;
-use super::mapping::{MappingOption, format_of};
+use super::mapping::MappingOption;
+use super::recording::{format_of, read_bytes, read_text};
 use super::stretch::Stretch;
 use crate::estimate::{Derivatives, Estimator, Method, Options, Role};
 use crate::flight::Maneuver;
 use crate::ingest::{self, Limits};
-use crate::job::{Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride};
+use crate::job::{self, Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride, Plan};
 use crate::model::{ModelDocument, Start, catalog};
 
 #[derive(clap::Args, Debug)]
@@ -79,7 +80,7 @@ impl Request {
     }
 
     /// The recording of each stretch.
-    pub(super) fn recordings(&self) -> Result<Vec<Arc<Maneuver>>, Failure> {
+    fn recordings(&self) -> Result<Vec<Arc<Maneuver>>, Failure> {
         let read = |file: &Path| {
             let (bytes, mapping) = (read_bytes(file)?, self.mapping.of(file)?);
             ingest::read_mapped(
@@ -112,7 +113,7 @@ impl Request {
     }
 
     /// The document that `model` stands for here, without a server.
-    pub(super) fn document(&self) -> Result<ModelDocument, Failure> {
+    fn document(&self) -> Result<ModelDocument, Failure> {
         match self.model()? {
             ModelSource::Document(document) => Ok(*document),
             ModelSource::Reference(name) => catalog::find(&name).ok_or_else(|| {
@@ -139,6 +140,22 @@ impl Request {
                 known.join(", ")
             ))
         })
+    }
+
+    /// The job, ready to be run here. What is to be known of its data is said.
+    pub(super) fn plan(&self, kind: JobKind) -> Result<Plan, Failure> {
+        let maneuvers = self.recordings()?;
+        let ids: Vec<String> = maneuvers.iter().map(|maneuver| maneuver.digest()).collect();
+        let spec = JobSpec {
+            kind,
+            ..self.spec(&ids)?
+        };
+        let plan = job::prepare(&spec, &self.document()?, &maneuvers)
+            .map_err(|faults| Failure::faults("the job cannot start", &faults))?;
+        for finding in &plan.prepared.findings {
+            eprintln!("note: {}; {}", finding.message, finding.remedy);
+        }
+        Ok(plan)
     }
 
     /// The job, for recordings that are known by `ids`.
@@ -193,6 +210,7 @@ impl Request {
             channels: channels.collect::<Result<_, Failure>>()?,
             parameters,
             candidates: Vec::new(),
+            knowledge: Default::default(),
             constants: constants.collect::<Result<_, Failure>>()?,
             options: Options {
                 method: if self.gauss_newton {
@@ -212,15 +230,6 @@ impl Request {
             },
         })
     }
-}
-
-pub(super) fn read_bytes(file: &Path) -> Result<Vec<u8>, Failure> {
-    std::fs::read(file).map_err(|error| Failure::new(format!("{}: {error}", file.display())))
-}
-
-pub(super) fn read_text(file: &Path) -> Result<String, Failure> {
-    std::fs::read_to_string(file)
-        .map_err(|error| Failure::new(format!("{}: {error}", file.display())))
 }
 
 fn pair<'a>(text: &'a str, option: &str) -> Result<(&'a str, &'a str), Failure> {

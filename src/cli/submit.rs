@@ -3,7 +3,8 @@
 use indexmap::IndexMap;
 
 use super::client::Client;
-use super::request::{Request, read_bytes};
+use super::recording::read_bytes;
+use super::request::Request;
 use super::server::Server;
 use super::watch::{conclude, follow};
 use super::{Failure, table};

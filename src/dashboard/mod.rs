@@ -4,7 +4,9 @@
 //! file or a test alike. Scripts add what moves: live iterations, plots to zoom into, forms.
 
 mod assets;
+mod chart;
 mod correlation;
+mod decimate;
 mod diagnosis;
 mod eigenvalues;
 mod estimate_tables;
@@ -33,12 +35,14 @@ mod tolerances;
 mod unit_list;
 
 pub use assets::{Asset, asset};
+pub use decimate::rows_to_plot;
 pub use figure::history_svg;
 pub use job_page::{JobView, NamedModel, UsedManeuver, job_page};
 pub use jobs_page::{Chosen, JobRow, JobsView, jobs_page};
 pub use maneuver_page::{ManeuverView, maneuver_page};
 pub use maneuvers_page::{ManeuverRow, ManeuversView, maneuvers_page};
-pub use model_page::{Comparison, ModelView, OtherModel, model_page};
+pub use model_diff::Comparison;
+pub use model_page::{ModelView, OtherModel, model_page};
 pub use models_page::{Draft, ModelRow, ModelsView, models_page};
 pub use new_job_page::new_job_page;
 pub use problem_page::{ProblemView, problem_page};

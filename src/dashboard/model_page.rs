@@ -4,10 +4,10 @@ use maud::{Markup, html};
 
 use super::layout::{Frame, page};
 use super::mathml::{Left, equation};
+use super::model_diff::{Comparison, comparison};
+use super::model_tables as tables;
 use super::notation::Notation;
-use super::{model_diff, model_tables as tables};
-use crate::diagnose::DocumentChange;
-use crate::model::ModelDocument;
+use crate::model::{Element, ModelDocument};
 
 /// What the page shows.
 pub struct ModelView {
@@ -27,17 +27,6 @@ pub struct OtherModel {
     pub created: Option<String>,
 }
 
-/// Another model, and what it has that this one has not.
-pub struct Comparison {
-    /// As in the address.
-    pub reference: String,
-    pub name: String,
-    /// Its own page.
-    pub address: String,
-    pub document: ModelDocument,
-    pub changes: Vec<DocumentChange>,
-}
-
 /// The whole page as HTML.
 pub fn model_page(view: &ModelView) -> String {
     let document = &view.document;
@@ -47,7 +36,7 @@ pub fn model_page(view: &ModelView) -> String {
         @if !document.title.is_empty() { p { strong { (document.title) } } }
         @if !document.source.is_empty() { p.soft { "Source: " (document.source) } }
         (actions(&view.id))
-        @if let Some(against) = &view.against { (model_diff::comparison(document, against)) }
+        @if let Some(against) = &view.against { (comparison(document, against)) }
         @for paragraph in document.description.split("\n\n").filter(|text| !text.trim().is_empty()) { p { (paragraph) } }
         (equations(document, &notation))
         (quantities(document, &notation))
@@ -74,14 +63,17 @@ fn actions(id: &str) -> Markup {
 }
 
 fn equations(document: &ModelDocument, notation: &Notation) -> Markup {
-    let input_delays =
-        (document.inputs.iter()).filter_map(|(name, input)| Some((name, input.delay.as_ref()?)));
-    let output_delays =
-        (document.outputs.iter()).filter_map(|(name, output)| Some((name, output.delay.as_ref()?)));
-    let delays: Vec<_> = input_delays
-        .chain(output_delays)
-        .map(|(name, delay)| (Left::Delay(name), delay.as_str(), "in seconds"))
-        .collect();
+    let inputs = document.inputs.iter().map(|(name, one)| (name, one.path()));
+    let outputs = document
+        .outputs
+        .iter()
+        .map(|(name, one)| (name, one.path()));
+    let mut paths = Vec::new();
+    for (name, path) in inputs.chain(outputs) {
+        let passed = path.into_iter();
+        paths
+            .extend(passed.map(|(element, size)| (Left::Size(element, name), size, what(element))));
+    }
     let states = || document.states.iter();
     let dynamics = states().map(|(name, state)| {
         let (text, description) = (state.derivative.as_str(), state.description.as_str());
@@ -105,7 +97,16 @@ fn equations(document: &ModelDocument, notation: &Notation) -> Markup {
         (list("Initial values", notation, initial))
         (list("Definitions", notation, definitions))
         (list("Output equations", notation, outputs))
-        (list("Delays", notation, delays.into_iter()))
+        (list("Signal paths", notation, paths.into_iter()))
+    }
+}
+
+fn what(element: Element) -> &'static str {
+    match element {
+        Element::Play => "half the width of the dead band",
+        Element::RateLimit => "largest rate",
+        Element::Lag => "time constant, in seconds",
+        Element::Delay => "in seconds",
     }
 }
 

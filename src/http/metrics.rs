@@ -1,15 +1,10 @@
-//! `/metrics`: what the service does, in the format of Prometheus.
+//! What the service does, counted, and told in the format of Prometheus.
 //!
 //! Requests and followers are this process's own; jobs are counted in the store, over all machines.
 
 use std::fmt;
 use std::sync::Arc;
-use std::time::Instant;
 
-use axum::extract::{MatchedPath, Request, State};
-use axum::http::header;
-use axum::middleware::Next;
-use axum::response::{IntoResponse, Response};
 use prometheus_client::collector::Collector;
 use prometheus_client::encoding::text::encode;
 use prometheus_client::encoding::{DescriptorEncoder, EncodeLabelSet, EncodeMetric, NoLabelSet};
@@ -19,18 +14,8 @@ use prometheus_client::metrics::family::Family;
 use prometheus_client::metrics::gauge::{ConstGauge, Gauge};
 use prometheus_client::metrics::histogram::Histogram;
 use prometheus_client::registry::Registry;
-use utoipa_axum::router::OpenApiRouter;
-use utoipa_axum::routes;
 
-use super::Server;
-use super::problem::Problem;
 use crate::store::{BUCKETS, Census, Histogram as Durations};
-
-pub(super) fn router() -> OpenApiRouter<Server> {
-    OpenApiRouter::new().routes(routes!(get_metrics))
-}
-
-const MEDIA_TYPE: &str = "application/openmetrics-text; version=1.0.0; charset=utf-8";
 
 /// What this process counts.
 #[derive(Clone)]
@@ -42,11 +27,11 @@ pub(super) struct Metrics {
 }
 
 #[derive(Clone, PartialEq, Eq, Hash, Debug, EncodeLabelSet)]
-struct Route {
-    method: String,
+pub(super) struct Route {
+    pub method: String,
     /// As it stands in the OpenAPI document; what is in none is one route.
-    route: String,
-    status: u16,
+    pub route: String,
+    pub status: u16,
 }
 
 impl Metrics {
@@ -70,10 +55,29 @@ impl Metrics {
         }
     }
 
+    /// Counts a request, and how many seconds its answer took.
+    pub(super) fn answered(&self, route: &Route, seconds: f64) {
+        self.requests.get_or_create(route).inc();
+        self.seconds.get_or_create(route).observe(seconds);
+    }
+
     /// Counts a follower until what is returned goes away.
     pub(super) fn follower(&self) -> Follower {
         self.followers.inc();
         Follower(self.followers.clone())
+    }
+
+    /// All that was counted, and the jobs, as OpenMetrics text.
+    pub(super) fn written(&self, jobs: Census) -> Result<String, fmt::Error> {
+        let mut of_jobs = Registry::with_prefix("trimtab");
+        of_jobs.register_collector(Box::new(OfJobs(jobs)));
+        let mut text = String::new();
+        encode(&mut text, &self.registry)?;
+        // one document has one end
+        let end = text.rfind("# EOF").unwrap_or(text.len());
+        text.truncate(end);
+        encode(&mut text, &of_jobs)?;
+        Ok(text)
     }
 }
 
@@ -83,53 +87,6 @@ impl Drop for Follower {
     fn drop(&mut self) {
         self.0.dec();
     }
-}
-
-/// Counts every request.
-pub(super) async fn count(State(server): State<Server>, request: Request, next: Next) -> Response {
-    let began = Instant::now();
-    let route = request.extensions().get::<MatchedPath>();
-    let route = route.map_or("none", MatchedPath::as_str).to_string();
-    // methods are anybody's invention: only those that are known become a label
-    let method = match request.method().as_str() {
-        known @ ("GET" | "POST" | "DELETE" | "HEAD" | "OPTIONS") => known,
-        _ => "other",
-    };
-    let method = method.to_string();
-    let response = next.run(request).await;
-    let route = Route {
-        method,
-        route,
-        status: response.status().as_u16(),
-    };
-    let metrics = &server.metrics;
-    metrics.requests.get_or_create(&route).inc();
-    let seconds = began.elapsed().as_secs_f64();
-    metrics.seconds.get_or_create(&route).observe(seconds);
-    response
-}
-
-/// What the service does, for Prometheus.
-///
-/// Requests and event streams are those of this process; jobs are those of all machines: how many there are by status, how
-/// long they wait and run, and how they ended (of those that failed, the code of the fault).
-#[utoipa::path(get, path = "/metrics", tag = "Operations", operation_id = "getMetrics",
-    responses((status = 200, description = "OpenMetrics text.", body = String, content_type = "application/openmetrics-text")))]
-async fn get_metrics(State(server): State<Server>) -> Result<Response, Problem> {
-    let mut of_jobs = Registry::with_prefix("trimtab");
-    of_jobs.register_collector(Box::new(OfJobs(server.store.census().await?)));
-    let mut text = String::new();
-    encode(&mut text, &server.metrics.registry).map_err(unwritten)?;
-    // one document has one end
-    let end = text.rfind("# EOF").unwrap_or(text.len());
-    text.truncate(end);
-    encode(&mut text, &of_jobs).map_err(unwritten)?;
-    Ok(([(header::CONTENT_TYPE, MEDIA_TYPE)], text).into_response())
-}
-
-fn unwritten(error: fmt::Error) -> Problem {
-    tracing::error!(%error, "metrics");
-    Problem::internal()
 }
 
 #[derive(Debug)]

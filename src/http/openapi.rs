@@ -7,7 +7,8 @@ use utoipa::openapi::schema::Type;
 use utoipa::openapi::security::{Http, HttpAuthScheme, SecurityRequirement, SecurityScheme};
 use utoipa::openapi::{ContentBuilder, ObjectBuilder, Ref, Required, Response, ResponseBuilder};
 
-use super::{caller, once, problem, routes};
+use super::middleware::once;
+use super::{caller, handlers, problem};
 
 #[derive(OpenApi)]
 #[openapi(
@@ -37,7 +38,7 @@ struct Api;
 /// The document that `/openapi.json` serves and `openapi/trimtab.json` holds.
 pub fn document() -> utoipa::openapi::OpenApi {
     let mut document = Api::openapi();
-    document.merge(routes::api().into_openapi());
+    document.merge(handlers::api().into_openapi());
     document.info.version = env!("CARGO_PKG_VERSION").to_string();
     let posts = document.paths.paths.values_mut();
     posts

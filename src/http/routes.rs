@@ -2,7 +2,7 @@
 
 use axum::Router;
 use axum::http::{HeaderName, HeaderValue, Request};
-use axum::middleware;
+use axum::middleware::{from_fn, from_fn_with_state, map_request};
 use axum::response::IntoResponse;
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::compression::CompressionLayer;
@@ -11,46 +11,18 @@ use tower_http::request_id::{
     MakeRequestId, PropagateRequestIdLayer, RequestId, SetRequestIdLayer,
 };
 use tower_http::trace::TraceLayer;
-use utoipa_axum::router::OpenApiRouter;
 use utoipa_swagger_ui::SwaggerUi;
 
 use super::code::Code;
-use super::headers::Origin;
+use super::middleware::{admission, count, drain, headers, once};
+use super::origin::Origin;
 use super::problem::{self, Problem};
-use super::{
-    Server, bulk, caller, coefficients, diagnosis, drain, events, headers, health, histories, jobs,
-    keys, maneuvers, mappings, metrics, models, once, problems, rerun, residual_analysis, results,
-    retention, study, submit, webhooks,
-};
-
-/// Every resource.
-pub(super) fn api() -> OpenApiRouter<Server> {
-    OpenApiRouter::new()
-        .merge(maneuvers::router())
-        .merge(mappings::router())
-        .merge(models::router())
-        .merge(submit::router())
-        .merge(bulk::router())
-        .merge(rerun::router())
-        .merge(retention::router())
-        .merge(jobs::router())
-        .merge(events::router())
-        .merge(results::router())
-        .merge(study::router())
-        .merge(diagnosis::router())
-        .merge(coefficients::router())
-        .merge(histories::router())
-        .merge(residual_analysis::router())
-        .merge(problems::router())
-        .merge(keys::router())
-        .merge(webhooks::router())
-        .merge(metrics::router())
-        .merge(health::router())
-}
+use super::service::Server;
+use super::{handlers, openapi, pages};
 
 pub(super) fn router(server: Server) -> Router {
-    let (api, _) = api().split_for_parts();
-    let docs = SwaggerUi::new("/docs").url("/openapi.json", super::document());
+    let (api, _) = handlers::api().split_for_parts();
+    let docs = SwaggerUi::new("/docs").url("/openapi.json", openapi::document());
     let origins = server.config.origins.clone();
     let cross_origin = forgery_guard(&origins).with_rejection_response(|_: ProtectionError| {
         let detail = "a browser sent this for a page of another origin; use the service's own pages, or no browser";
@@ -58,26 +30,26 @@ pub(super) fn router(server: Server) -> Router {
     });
     let request_id = HeaderName::from_static("x-request-id");
     let [of_once, of_callers, of_counts] = [(); 3].map(|()| server.clone());
-    api.merge(super::pages::router())
+    api.merge(pages::router())
         .with_state(server)
         .merge(docs)
         .fallback(async || problem::unknown_route())
         .method_not_allowed_fallback(async || problem::method_not_allowed())
         // from here on upwards: the last one added is the first to see a request
-        .layer(middleware::from_fn_with_state(of_once, once::once))
-        .layer(middleware::from_fn_with_state(of_callers, caller::admit))
+        .layer(from_fn_with_state(of_once, once::once))
+        .layer(from_fn_with_state(of_callers, admission::admit))
         .layer(cross_origin)
         .layer(CatchPanicLayer::custom(Problem::of_panic))
-        .layer(middleware::from_fn(problem::render))
-        .layer(middleware::from_fn_with_state(of_counts, metrics::count))
-        .layer(middleware::map_request(drain::drain))
+        .layer(from_fn(problem::render))
+        .layer(from_fn_with_state(of_counts, count::count))
+        .layer(map_request(drain::drain))
         .layer(CompressionLayer::new())
         .layer(headers::cross_origin(&origins))
-        .layer(middleware::from_fn(headers::guard))
+        .layer(from_fn(headers::guard))
         .layer(TraceLayer::new_for_http().make_span_with(span))
         .layer(PropagateRequestIdLayer::new(request_id.clone()))
         .layer(SetRequestIdLayer::new(request_id, OwnRequestId))
-        .layer(middleware::map_request(drop_unfit_request_id))
+        .layer(map_request(drop_unfit_request_id))
 }
 
 /// Refuses what a page of another site has a browser send, other than of these.

@@ -13,11 +13,13 @@ use tokio::sync::Semaphore;
 use tokio_io_timeout::TimeoutStream;
 use tokio_util::sync::CancellationToken;
 
-use super::body::Room;
 use super::compute::Compute;
+use super::config::Config;
 use super::metrics::Metrics;
 use super::rates::Rates;
-use super::{Config, Server, routes};
+use super::room::Room;
+use super::routes;
+use super::service::Server;
 use crate::store::{Store, StoreError};
 
 /// A client that sends the head of a request more slowly than this is hung up on, and so is one that

@@ -11,8 +11,8 @@ use sqlx::{AssertSqlSafe, Row};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-use super::jobs::read_id;
-use super::{Clock, Store, StoreError};
+use super::row::read_id;
+use super::{Clock, Project, Store, StoreError};
 
 /// What every key begins with: tools that look for leaked secrets find it by that.
 const PREFIX: &str = "trimtab_";
@@ -323,5 +323,36 @@ impl Store {
             .fetch_optional(&self.readers)
             .await?;
         row.as_ref().map(read_key).transpose()
+    }
+}
+
+/// What a project does with its own keys.
+impl Project {
+    /// # Errors
+    /// As [`Store::keys`].
+    pub async fn keys(&self) -> Result<Vec<KeyRecord>, StoreError> {
+        self.store.keys(Some(&self.name)).await
+    }
+
+    /// # Errors
+    /// As [`Store::add_key`].
+    pub async fn add_key(&self, new: &NewKey) -> Result<(KeyRecord, Key), StoreError> {
+        self.store.add_key(new).await
+    }
+
+    /// # Errors
+    /// As [`Store::revoke_key`].
+    pub async fn revoke_key(&self, id: Uuid) -> Result<Option<KeyRecord>, StoreError> {
+        self.store.revoke_key(Some(&self.name), id).await
+    }
+
+    /// # Errors
+    /// As [`Store::rotate_key`].
+    pub async fn rotate_key(
+        &self,
+        id: Uuid,
+        overlap: Duration,
+    ) -> Result<Option<(KeyRecord, Key)>, StoreError> {
+        self.store.rotate_key(Some(&self.name), id, overlap).await
     }
 }

@@ -13,7 +13,7 @@ use super::stop::{Reason, Stop};
 use crate::estimate::Outcome;
 use crate::flight::Maneuver;
 use crate::job::{EventBody, Fault, Status};
-use crate::store::{Claim, LEASE, ResultParts, Signal, Store, StoreError};
+use crate::store::{Claim, LEASE, NotLoaded, ResultParts, Signal, Store, StoreError};
 
 /// How long a solver may take to notice that the process ends; the job is released in any case.
 const SHUTDOWN_GRACE: Duration = Duration::from_secs(2);
@@ -104,31 +104,21 @@ async fn work_on(store: &Store, claim: &Arc<Claim>, shutdown: &CancellationToken
 
 /// The maneuvers of the spec, in its order.
 async fn load(store: &Store, claim: &Claim) -> Result<Vec<Arc<Maneuver>>, Unanswered> {
-    let mut maneuvers: Vec<Arc<Maneuver>> = Vec::new();
-    let uses = &claim.spec.maneuvers;
+    let uses = claim.spec.maneuvers.iter();
+    let ids: Vec<&str> = uses.map(|used| used.id.as_str()).collect();
     let project = store.project(&claim.project, "");
-    for (number, used) in uses.iter().enumerate() {
-        // parts of one recording are often used side by side
-        if let Some(same) = uses[..number]
-            .iter()
-            .position(|earlier| earlier.id == used.id)
-        {
-            maneuvers.push(maneuvers[same].clone());
-            continue;
-        }
-        let loaded = persist("load", || project.maneuver_data(&used.id)).await?;
-        let Some(maneuver) = loaded else {
-            let message = "there is no maneuver of this id any more; upload it again";
-            let fault = Fault::new(
-                format!("/maneuvers/{number}/id"),
-                "unknown_maneuver",
-                message,
-            );
-            return Err(Unanswered::Refused(vec![fault]));
-        };
-        maneuvers.push(Arc::new(maneuver));
-    }
-    Ok(maneuvers)
+    let loaded = persist("load", || project.load(&ids, usize::MAX)).await?;
+    loaded.map_err(|missing| Unanswered::Refused(missing.into_iter().map(not_there).collect()))
+}
+
+fn not_there(why: NotLoaded) -> Fault {
+    // they are as much as was accepted
+    let (NotLoaded::Unknown(place) | NotLoaded::TooMuch(place)) = why;
+    Fault::new(
+        format!("/maneuvers/{place}/id"),
+        "unknown_maneuver",
+        "there is no maneuver of this id any more; upload it again",
+    )
 }
 
 /// Writes what the solver tells, all that comes within a moment in one transaction; what came last is left for the

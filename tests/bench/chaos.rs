@@ -2,30 +2,24 @@
 //!
 //! On PostgreSQL: three worker processes, one of which is killed (SIGKILL) every two seconds, 50 times, the server
 //! restarted twice and the database, too. On SQLite: one process that serves and works, killed 50 times. What is promised is checked by
-//! [`chaos::Chaos::run`]: each accepted job ends once, its events are all there and were seen once by who followed them.
+//! [`Chaos::run`]: each accepted job ends once, its events are all there and were seen once by who followed them.
 
-#[path = "../common/chaos.rs"]
-mod chaos;
-#[allow(dead_code)]
-#[path = "../common/database.rs"]
-mod database;
-#[allow(dead_code)]
-#[path = "../common/process.rs"]
-mod process;
-#[allow(dead_code)]
-#[path = "../common/recordings.rs"]
-mod recordings;
-#[allow(dead_code)]
-#[path = "../common/server.rs"]
-mod server;
-#[allow(dead_code)]
-#[path = "../common/sse.rs"]
-mod sse;
+#[path = "../common"]
+#[allow(dead_code)] // the tests use the rest
+mod common {
+    pub(crate) mod chaos;
+    pub(crate) mod database;
+    pub(crate) mod jobs;
+    pub(crate) mod process;
+    pub(crate) mod recordings;
+    pub(crate) mod server;
+    pub(crate) mod sse;
+}
 
 use std::time::Duration;
 
-use chaos::Chaos;
-use database::Database;
+use common::chaos::Chaos;
+use common::database::Database;
 
 #[tokio::main]
 async fn main() {

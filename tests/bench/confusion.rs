@@ -21,8 +21,8 @@ mod tally;
 use std::ops::ControlFlow;
 
 use rayon::prelude::*;
-use trimtab::diagnose::{Conclusion, Diagnosis, Effect, Step, diagnose};
-use trimtab::simulate::NoiseColour;
+use trimtab_core::diagnose::{Conclusion, Diagnosis, Effect, Step, diagnose};
+use trimtab_core::simulate::NoiseColour;
 
 use aircraft::{Aircraft, Flown, aircraft};
 use reached::Reached;

@@ -1,21 +1,22 @@
 //! How often the 95 % intervals contain the truth: `cargo bench --bench coverage [-- SEEDS [FIRST]]` prints the tables.
 //! Seeds count from FIRST, 1 if not given.
 
-#[path = "../common/coloured.rs"]
-mod coloured;
-#[path = "../common/coverage.rs"]
-mod coverage;
-#[path = "../common/reconstruction.rs"]
-mod reconstruction;
+#[path = "../common"]
+mod common {
+    pub(crate) mod coloured;
+    pub(crate) mod coverage;
+    pub(crate) mod reconstruction;
+}
 
 use std::ops::Range;
 use std::time::Instant;
 
 use serde_json::{Value, json};
-use trimtab::job::JobSpec;
-use trimtab::simulate::NoiseColour;
+use trimtab_core::job::JobSpec;
+use trimtab_core::simulate::NoiseColour;
 
-use coverage::{Coverage, fit, over_seeds};
+use common::coverage::{Coverage, fit, over_seeds};
+use common::{coloured, reconstruction};
 
 /// Where no number is given.
 const SEEDS: u64 = 1000;

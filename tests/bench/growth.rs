@@ -7,7 +7,7 @@ mod simulated;
 
 use std::time::{Duration, Instant};
 
-use trimtab::estimate::{Evaluator, NormalEquations};
+use trimtab_core::estimate::{Evaluator, NormalEquations};
 
 /// The largest memory that this process has had, MB, where the system tells.
 fn peak_memory() -> f64 {

@@ -7,8 +7,8 @@ mod simulated;
 
 use std::ops::ControlFlow;
 
-use trimtab::estimate::{Evaluator, NormalEquations};
-use trimtab::job;
+use trimtab_core::estimate::{Evaluator, NormalEquations};
+use trimtab_core::job;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

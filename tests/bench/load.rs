@@ -5,29 +5,28 @@
 //! `tests/bench/python` has it, the same load is put on that in the same run; with `PYTHON`, an interpreter that has
 //! pandas, the upload is compared with its C parser.
 
-#[allow(dead_code)]
-#[path = "../common/process.rs"]
-mod process;
-#[allow(dead_code)]
-#[path = "../common/recordings.rs"]
-mod recordings;
-#[allow(dead_code)]
-#[path = "../common/server.rs"]
-mod server;
-#[allow(dead_code)]
-#[path = "../common/sse.rs"]
-mod sse;
+#[path = "../common"]
+#[allow(dead_code)] // the tests use the rest
+mod common {
+    pub(crate) mod jobs;
+    pub(crate) mod process;
+    pub(crate) mod recordings;
+    pub(crate) mod server;
+    pub(crate) mod sse;
+}
 
 use std::fmt::Write;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
+use common::jobs::job;
+use common::process::Process;
+use common::recordings::{elevator, maneuver};
+use common::server::{self, client};
+use common::sse;
 use futures_util::StreamExt;
-use process::Process;
-use recordings::{elevator, job, maneuver};
 use reqwest::Client;
 use serde_json::Value;
-use server::client;
 use tempfile::TempDir;
 use trimtab::job::{self as jobs, JobSpec};
 use trimtab::model::catalog;

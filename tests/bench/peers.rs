@@ -5,21 +5,25 @@
 //! Names of problems as arguments restrict the run. One evaluation is by one thread; a solve of P5b, with its 50
 //! maneuvers, by as many as there are cores (`RAYON_NUM_THREADS=1` for one).
 
-#[path = "../common/flight_data.rs"]
-mod flight_data;
+#[path = "../common"]
+mod common {
+    pub(crate) mod flight_data;
+    pub(crate) mod repository;
+}
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use common::flight_data;
 use indexmap::IndexMap;
 use serde_json::{Value, json};
-use trimtab::estimate::{Evaluator, NormalEquations};
-use trimtab::flight::{Channel, Maneuver, Unit};
-use trimtab::ingest;
-use trimtab::job::{self, JobSpec, Plan};
-use trimtab::model::ModelDocument;
+use trimtab_core::estimate::{Evaluator, NormalEquations};
+use trimtab_core::flight::{Channel, Maneuver, Unit};
+use trimtab_core::ingest;
+use trimtab_core::job::{self, JobSpec, Plan};
+use trimtab_core::model::ModelDocument;
 
 struct Problem {
     name: &'static str,
@@ -55,13 +59,13 @@ fn problems() -> [Problem; 5] {
         Problem {
             name: "P1",
             file: "attas_elv1.csv",
-            model: include_str!("../../src/model/catalog/short-period.toml").into(),
+            model: include_str!("../../src/core/model/catalog/short-period.toml").into(),
             spec: json!({}),
         },
         Problem {
             name: "P2",
             file: "attas_ailrud1.csv",
-            model: include_str!("../../src/model/catalog/lateral-directional-2.toml").into(),
+            model: include_str!("../../src/core/model/catalog/lateral-directional-2.toml").into(),
             spec: json!({
                 "channels": {"da": "(da_right - da_left)/2"},
                 "parameters": {
@@ -153,7 +157,7 @@ fn timed(mut call: impl FnMut()) -> Times {
     }
 }
 
-fn solve(plan: &Plan) -> trimtab::estimate::Estimate {
+fn solve(plan: &Plan) -> trimtab_core::estimate::Estimate {
     job::run(plan, &mut |_| ControlFlow::Continue(()))
         .unwrap_or_else(|faults| panic!("{faults:#?}"))
         .estimate

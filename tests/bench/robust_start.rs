@@ -4,23 +4,21 @@
 //! range of multiples of its published estimate; initial states are those of the case. The best optimum is reached
 //! when det R is within 1e-4 of the published one.
 
-#[path = "../common/flight_data.rs"]
-mod flight_data;
-#[allow(dead_code)]
-#[path = "../common/preprocessing.rs"]
-mod preprocessing;
+#[path = "../common"]
 #[allow(dead_code)] // the tests use the rest
-#[path = "../common/published_cases.rs"]
-mod published_cases;
-#[path = "../common/random_starts.rs"]
-mod random_starts;
-#[path = "../common/recordings.rs"]
-#[allow(dead_code)]
-mod recordings;
+mod common {
+    pub(crate) mod flight_data;
+    pub(crate) mod preprocessing;
+    pub(crate) mod published_cases;
+    pub(crate) mod random_starts;
+    pub(crate) mod recordings;
+    pub(crate) mod repository;
+}
 
 use std::time::Instant;
 
-use trimtab::estimate::StartMethod;
+use common::{flight_data, published_cases, random_starts};
+use trimtab_core::estimate::StartMethod;
 
 fn main() {
     let Some(directory) = flight_data::directory("bench robust_start") else {

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use serde_json::json;
-use trimtab::job::{self, JobSpec, Plan};
-use trimtab::model::{Model, ModelDocument, catalog};
-use trimtab::simulate::Scenario;
+use trimtab_core::job::{self, JobSpec, Plan};
+use trimtab_core::model::{Model, ModelDocument, catalog};
+use trimtab_core::simulate::Scenario;
 
 const SHORT_PERIOD: &str = include_str!("../../data/elevator.toml");
 const LATERAL: &str = r#"
@@ -85,7 +85,7 @@ const FLIGHT_PATH: &str = r#"
 
 /// A problem on `short-period`, `lateral-directional-2`, `flight-path-reconstruction` or
 /// `hfb320`, with a recording of `duration` seconds, or of its own length.
-pub fn plan(name: &str, duration: Option<f64>) -> Plan {
+pub(crate) fn plan(name: &str, duration: Option<f64>) -> Plan {
     let (document, scenario): (ModelDocument, &str) = match name {
         "hfb320" => {
             let document = toml::from_str(include_str!("hfb320.toml")).expect("a document");

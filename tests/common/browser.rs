@@ -27,7 +27,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 const EVERY: Duration = Duration::from_millis(50);
 
 /// A window with one page.
-pub struct Browser {
+pub(crate) struct Browser {
     client: Client,
     /// What the console may complain of, for the test provokes it.
     expected: RefCell<Vec<String>>,
@@ -41,7 +41,7 @@ pub struct Browser {
 ///
 /// # Panics
 /// The story did, or the console has errors.
-pub async fn browse(title: &str, story: impl AsyncFnOnce(&Browser)) {
+pub(crate) async fn browse(title: &str, story: impl AsyncFnOnce(&Browser)) {
     let Ok(driver) = std::env::var("TRIMTAB_TEST_WEBDRIVER") else {
         let required = std::env::var_os("TRIMTAB_REQUIRE_BROWSER").is_some();
         assert!(!required, "TRIMTAB_TEST_WEBDRIVER is not set");
@@ -104,7 +104,7 @@ impl Browser {
     }
 
     /// The size of what is seen of the page; a real window cannot be as narrow as a telephone.
-    pub async fn resize(&self, width: u32, height: u32) {
+    pub(crate) async fn resize(&self, width: u32, height: u32) {
         let size =
             json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": false});
         self.devtools("Emulation.setDeviceMetricsOverride", size)
@@ -112,7 +112,7 @@ impl Browser {
     }
 
     /// What the reader's system prefers. Nothing moves by itself: a click would miss it.
-    pub async fn dark(&self, dark: bool) {
+    pub(crate) async fn dark(&self, dark: bool) {
         let scheme = if dark { "dark" } else { "light" };
         let features = json!({"features": [
             {"name": "prefers-color-scheme", "value": scheme},
@@ -121,26 +121,26 @@ impl Browser {
         self.devtools("Emulation.setEmulatedMedia", features).await;
     }
 
-    pub async fn go(&self, address: &str) {
+    pub(crate) async fn go(&self, address: &str) {
         self.client
             .goto(address)
             .await
             .unwrap_or_else(|error| panic!("{address}: {error}"));
     }
 
-    pub async fn address(&self) -> Url {
+    pub(crate) async fn address(&self) -> Url {
         let address = self.client.current_url().await.expect("an address");
         Url::parse(address.as_str()).expect("a URL")
     }
 
     /// What a script returns.
-    pub async fn run(&self, script: &str) -> Value {
+    pub(crate) async fn run(&self, script: &str) -> Value {
         let answer = self.client.execute(script, Vec::new()).await;
         answer.unwrap_or_else(|error| panic!("{script}: {error}"))
     }
 
     /// Waits until an expression of the page's is true, or no more nothing; its value.
-    pub async fn until(&self, expression: &str) -> Value {
+    pub(crate) async fn until(&self, expression: &str) -> Value {
         let script = format!("return {expression};");
         let began = Instant::now();
         loop {
@@ -155,7 +155,7 @@ impl Browser {
     }
 
     /// Waits for an element that can be seen.
-    pub async fn find(&self, selector: &str) -> Element {
+    pub(crate) async fn find(&self, selector: &str) -> Element {
         self.until(&format!(
             "document.querySelector({selector:?})?.checkVisibility()"
         ))
@@ -165,25 +165,25 @@ impl Browser {
     }
 
     /// Waits for an element; all that is written in it.
-    pub async fn text(&self, selector: &str) -> String {
+    pub(crate) async fn text(&self, selector: &str) -> String {
         let text = format!("document.querySelector({selector:?})?.textContent");
         self.until(&text).await.as_str().expect("text").to_string()
     }
 
     /// Waits until an element says `part`; all that it says.
-    pub async fn says(&self, selector: &str, part: &str) -> String {
+    pub(crate) async fn says(&self, selector: &str, part: &str) -> String {
         let text = format!("document.querySelector({selector:?})?.textContent");
         self.until(&format!("{text}?.includes({part:?})")).await;
         self.text(selector).await
     }
 
     /// How many there are now.
-    pub async fn count(&self, selector: &str) -> u64 {
+    pub(crate) async fn count(&self, selector: &str) -> u64 {
         let script = format!("return document.querySelectorAll({selector:?}).length");
         self.run(&script).await.as_u64().expect("a number")
     }
 
-    pub async fn click(&self, selector: &str) {
+    pub(crate) async fn click(&self, selector: &str) {
         let began = Instant::now();
         loop {
             let clicked = self.find(selector).await.click().await;
@@ -196,28 +196,28 @@ impl Browser {
         }
     }
 
-    pub async fn choose(&self, selector: &str, value: &str) {
+    pub(crate) async fn choose(&self, selector: &str, value: &str) {
         let select = self.find(selector).await;
         let chosen = select.select_by_value(value).await;
         chosen.unwrap_or_else(|error| panic!("{selector}: {error}"));
     }
 
     /// Writes into a field; a file field is given paths, one a line.
-    pub async fn fill(&self, selector: &str, text: &str) {
+    pub(crate) async fn fill(&self, selector: &str, text: &str) {
         let field = self.find(selector).await;
         let filled = field.send_keys(text).await;
         filled.unwrap_or_else(|error| panic!("{selector}: {error}"));
     }
 
     /// Writes into a field in place of what is there.
-    pub async fn correct(&self, selector: &str, text: &str) {
+    pub(crate) async fn correct(&self, selector: &str, text: &str) {
         let cleared = self.find(selector).await.clear().await;
         cleared.unwrap_or_else(|error| panic!("{selector}: {error}"));
         self.fill(selector, text).await;
     }
 
     /// Presses a key where the focus is.
-    pub async fn press(&self, key: Key) {
+    pub(crate) async fn press(&self, key: Key) {
         let value = char::from(key);
         let keys = KeyActions::new("keyboard".into())
             .then(KeyAction::Down { value })
@@ -226,7 +226,7 @@ impl Browser {
     }
 
     /// Drags from one share of an element's width to another, along its middle.
-    pub async fn drag(&self, selector: &str, from: f64, to: f64) {
+    pub(crate) async fn drag(&self, selector: &str, from: f64, to: f64) {
         let (left, width, middle) = self.place(selector).await;
         let moved = |share: f64| PointerAction::MoveTo {
             duration: Some(Duration::from_millis(100)),
@@ -243,7 +243,7 @@ impl Browser {
         self.act(drag).await;
     }
 
-    pub async fn double_click(&self, selector: &str) {
+    pub(crate) async fn double_click(&self, selector: &str) {
         let (left, width, middle) = self.place(selector).await;
         let button = MOUSE_BUTTON_LEFT;
         let mut clicks = MouseActions::new("mouse".into()).then(PointerAction::MoveTo {
@@ -280,7 +280,7 @@ impl Browser {
     }
 
     /// Where the focus is: the element's name and what is written on it.
-    pub async fn focus(&self) -> String {
+    pub(crate) async fn focus(&self) -> String {
         let script = "const at = document.activeElement;
             const named = at.getAttribute('aria-label') ?? at.labels?.[0]?.childNodes[0]?.textContent ?? at.textContent;
             return `${at.localName} ${named.trim()}`;";
@@ -292,7 +292,7 @@ impl Browser {
     }
 
     /// Tabs on until the focus is at `wanted`, which is not far; where it was on the way.
-    pub async fn tab_to(&self, wanted: &str) -> Vec<String> {
+    pub(crate) async fn tab_to(&self, wanted: &str) -> Vec<String> {
         let mut way = Vec::new();
         for _ in 0..40 {
             self.press(Key::Tab).await;
@@ -309,7 +309,7 @@ impl Browser {
     ///
     /// # Panics
     /// Something does.
-    pub async fn fits(&self) {
+    pub(crate) async fn fits(&self) {
         let script = "const width = document.documentElement.clientWidth;
             if (document.documentElement.scrollWidth <= width) return [];
             return [...document.body.querySelectorAll('*')]
@@ -320,7 +320,7 @@ impl Browser {
     }
 
     /// Complaints of the console with this in them are no failure from here on.
-    pub fn expect_error(&self, part: &str) {
+    pub(crate) fn expect_error(&self, part: &str) {
         self.expected.borrow_mut().push(part.to_string());
     }
 
@@ -342,7 +342,7 @@ impl Browser {
     ///
     /// # Panics
     /// It breaks some.
-    pub async fn is_accessible(&self) {
+    pub(crate) async fn is_accessible(&self) {
         let Some(axe) = std::env::var_os("TRIMTAB_TEST_AXE") else {
             eprintln!(
                 "NOT CHECKED {}: accessibility, for there is no axe-core",
@@ -366,7 +366,7 @@ impl Browser {
     }
 
     /// Keeps a picture of the whole page, if TRIMTAB_SCREENSHOTS names a directory for them.
-    pub async fn picture(&self, name: &str) {
+    pub(crate) async fn picture(&self, name: &str) {
         let Some(directory) = std::env::var_os("TRIMTAB_SCREENSHOTS") else {
             return;
         };

@@ -11,12 +11,13 @@ use serde_json::{Value, json};
 use tokio::task::JoinSet;
 use tokio::time::sleep;
 
-use super::process::Process;
-use super::recordings::{elevator, elevator_of, job};
+use super::jobs::job;
+use super::process::{Process, own_address};
+use super::recordings::{elevator, elevator_of};
 use super::server::{Answer, client};
 use super::sse::Stream;
 
-pub struct Chaos<'a> {
+pub(crate) struct Chaos<'a> {
     /// As an operator would give it.
     pub database: &'a str,
     /// At least; as many more as it takes until all kills were.
@@ -36,7 +37,7 @@ pub struct Chaos<'a> {
 }
 
 #[derive(Debug, Default)]
-pub struct Report {
+pub(crate) struct Report {
     pub kills: usize,
     pub server_restarts: usize,
     pub database_restarts: usize,
@@ -74,10 +75,10 @@ const FOLLOWED: usize = 40;
 impl Chaos<'_> {
     /// # Panics
     /// A promise was broken.
-    pub async fn run(&self) -> Report {
+    pub(crate) async fn run(&self) -> Report {
         let began = Instant::now();
         let in_server = if self.workers == 0 { 2 } else { 0 };
-        let server = Process::serve(self.database, "127.0.0.1:0", in_server);
+        let server = Process::serve(self.database, &own_address(), in_server);
         let url = server.url.clone();
         let listen = url.strip_prefix("http://").expect("a URL").to_string();
         let server = Mutex::new(Some(server));

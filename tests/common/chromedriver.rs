@@ -8,7 +8,7 @@ use serde_json::Value;
 
 /// A command of chromedriver's own: its path within the session, and what is posted there.
 #[derive(Debug)]
-pub struct Post(pub &'static str, pub Value);
+pub(crate) struct Post(pub &'static str, pub Value);
 
 impl WebDriverCompatibleCommand for Post {
     fn endpoint(&self, base: &Url, session: Option<&str>) -> Result<Url, <Url as FromStr>::Err> {

@@ -4,14 +4,14 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use serde_json::json;
-use trimtab::job::JobSpec;
-use trimtab::model::{Model, catalog};
-use trimtab::simulate::{NoiseColour, Scenario};
+use trimtab_core::job::JobSpec;
+use trimtab_core::model::{Model, catalog};
+use trimtab_core::simulate::{NoiseColour, Scenario};
 
 use super::coverage::{Coverage, fit, over_seeds};
 
 /// Fits the bundled elevator maneuver with `seeds` realisations of its noise, coloured.
-pub fn short_period(colour: NoiseColour, seeds: Range<u64>) -> Coverage {
+pub(crate) fn short_period(colour: NoiseColour, seeds: Range<u64>) -> Coverage {
     let text = include_str!("../../data/elevator.toml");
     let mut scenario: Scenario = toml::from_str(text).expect("a scenario");
     for output in scenario.outputs.values_mut() {

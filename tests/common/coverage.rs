@@ -4,17 +4,17 @@ use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
 use indexmap::IndexMap;
-use trimtab::estimate::Estimate;
-use trimtab::flight::Maneuver;
-use trimtab::job::{self, JobSpec};
-use trimtab::model::ModelDocument;
+use trimtab_core::estimate::Estimate;
+use trimtab_core::flight::Maneuver;
+use trimtab_core::job::{self, JobSpec};
+use trimtab_core::model::ModelDocument;
 
 /// Half the width of a 95 % interval in standard errors.
 const TWO_SIDED_95: f64 = 1.959_964;
 
 /// Errors and standard errors of one parameter, by seed.
 #[derive(Default)]
-pub struct Row {
+pub(crate) struct Row {
     pub errors: Vec<f64>,
     pub corrected: Vec<f64>,
     pub conventional: Vec<f64>,
@@ -22,11 +22,11 @@ pub struct Row {
 
 /// By name of the parameter.
 #[derive(Default)]
-pub struct Coverage(pub IndexMap<String, Row>);
+pub(crate) struct Coverage(pub IndexMap<String, Row>);
 
 impl Coverage {
     /// Adds the estimate of one seed; parameters without a standard error do not count.
-    pub fn add(&mut self, estimate: &Estimate, truth: &IndexMap<String, f64>) {
+    pub(crate) fn add(&mut self, estimate: &Estimate, truth: &IndexMap<String, f64>) {
         for parameter in &estimate.parameters {
             let errors = (
                 parameter.standard_error,
@@ -42,12 +42,12 @@ impl Coverage {
     }
 
     /// Share of all intervals, of all parameters, that contain the truth.
-    pub fn pooled(&self, bounds: fn(&Row) -> &Vec<f64>) -> f64 {
+    pub(crate) fn pooled(&self, bounds: fn(&Row) -> &Vec<f64>) -> f64 {
         let rows = self.0.values();
         rows.map(|row| row.share(bounds)).sum::<f64>() / self.0.len() as f64
     }
 
-    pub fn print(&self, title: &str) {
+    pub(crate) fn print(&self, title: &str) {
         println!("\n{title}");
         println!(
             "{:12} {:>5} {:>9} {:>12} {:>11} {:>11} {:>11} {:>11}",
@@ -84,19 +84,19 @@ impl Coverage {
 
 impl Row {
     /// Share of the 95 % intervals that contain the truth.
-    pub fn share(&self, bounds: fn(&Row) -> &Vec<f64>) -> f64 {
+    pub(crate) fn share(&self, bounds: fn(&Row) -> &Vec<f64>) -> f64 {
         let both = self.errors.iter().zip(bounds(self));
         let inside = both.filter(|(error, bound)| error.abs() <= TWO_SIDED_95 * **bound);
         inside.count() as f64 / self.errors.len() as f64
     }
 
     /// Mean error in standard errors of the mean.
-    pub fn bias(&self) -> f64 {
+    pub(crate) fn bias(&self) -> f64 {
         mean(&self.errors) / (self.scatter() / (self.errors.len() as f64).sqrt())
     }
 
     /// Standard deviation of the errors.
-    pub fn scatter(&self) -> f64 {
+    pub(crate) fn scatter(&self) -> f64 {
         let middle = mean(&self.errors);
         let squares: f64 = self.errors.iter().map(|e| (e - middle).powi(2)).sum();
         (squares / (self.errors.len() as f64 - 1.0)).sqrt()
@@ -108,14 +108,14 @@ fn mean(values: &[f64]) -> f64 {
 }
 
 /// Fits one recording.
-pub fn fit(document: &ModelDocument, spec: &JobSpec, recording: Arc<Maneuver>) -> Estimate {
+pub(crate) fn fit(document: &ModelDocument, spec: &JobSpec, recording: Arc<Maneuver>) -> Estimate {
     let plan = job::prepare(spec, document, &[recording]).unwrap_or_else(|f| panic!("{f:#?}"));
     let result = job::run(&plan, &mut |_| ControlFlow::Continue(()));
     result.unwrap_or_else(|f| panic!("{f:#?}")).estimate
 }
 
 /// Fits the recordings of `seeds` on all cores.
-pub fn over_seeds(
+pub(crate) fn over_seeds(
     seeds: Range<u64>,
     truth: &IndexMap<String, f64>,
     fit: impl Fn(u64) -> Estimate + Sync,

@@ -5,14 +5,14 @@ use tempfile::TempDir;
 use uuid::Uuid;
 
 /// It is gone with the test, or with the server that `tests/postgres` ends.
-pub struct Database {
+pub(crate) struct Database {
     /// As an operator would give it.
     pub address: String,
     _directory: Option<TempDir>,
 }
 
 impl Database {
-    pub fn file() -> Self {
+    pub(crate) fn file() -> Self {
         let directory = TempDir::new().expect("a directory");
         let path = directory.path().join("test.db");
         Self {
@@ -22,7 +22,7 @@ impl Database {
     }
 
     /// `None`, said loudly, where there is no PostgreSQL; with TRIMTAB_REQUIRE_POSTGRES that is a failure.
-    pub async fn postgres(test: &str) -> Option<Self> {
+    pub(crate) async fn postgres(test: &str) -> Option<Self> {
         let Ok(server) = std::env::var("TRIMTAB_TEST_POSTGRES") else {
             let required = std::env::var_os("TRIMTAB_REQUIRE_POSTGRES").is_some();
             assert!(!required, "TRIMTAB_TEST_POSTGRES is not set");
@@ -47,13 +47,5 @@ impl Database {
             address: format!("{scheme}///{name}?{parameters}"),
             _directory: None,
         })
-    }
-
-    /// As the driver has it.
-    pub fn url(&self) -> String {
-        if self.address.starts_with("postgres:") {
-            return self.address.clone();
-        }
-        format!("sqlite://{}", self.address)
     }
 }

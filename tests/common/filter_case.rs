@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 use super::published_cases::{channels, find, model};
 
-pub struct FilterCase {
+pub(crate) struct FilterCase {
     pub file: String,
     pub rows: Value,
     /// The model document without the process noise, which is no parameter of ours.
@@ -23,7 +23,7 @@ pub struct FilterCase {
     pub gain_variance: Vec<f64>,
 }
 
-pub fn read(directory: &Path, name: &str) -> FilterCase {
+pub(crate) fn read(directory: &Path, name: &str) -> FilterCase {
     let case = find(directory, name);
     let mut model = model(&case);
     let parameters = model["parameters"].as_object_mut().expect("parameters");

@@ -2,17 +2,17 @@
 //! publisher's. `TRIMTAB_FLIGHT_DATA` names their directory, else they are looked for beside the
 //! project, in `../shared/data/flight`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+
+use super::repository;
 
 /// The directory, or `None` after saying loudly that the test is skipped.
 ///
 /// # Panics
 /// If there are no files though `TRIMTAB_REQUIRE_FLIGHT_DATA` demands them.
-pub fn directory(test: &str) -> Option<PathBuf> {
-    let directory = std::env::var_os("TRIMTAB_FLIGHT_DATA").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/flight"),
-        PathBuf::from,
-    );
+pub(crate) fn directory(test: &str) -> Option<PathBuf> {
+    let directory = std::env::var_os("TRIMTAB_FLIGHT_DATA")
+        .map_or_else(|| repository::path("../shared/data/flight"), PathBuf::from);
     if directory.join("attas_elv1.csv").is_file() {
         return Some(directory);
     }

@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use indexmap::IndexMap;
 use serde_json::{Value, json};
-use trimtab::estimate::{Evaluator, NormalEquations, ParameterEstimate};
-use trimtab::flight::{Channel, Maneuver, Unit};
-use trimtab::job::{self, Fault, JobResult, JobSpec, ModelSource, Plan};
-use trimtab::model::catalog;
+use trimtab_core::estimate::{Evaluator, NormalEquations, ParameterEstimate};
+use trimtab_core::flight::{Channel, Maneuver, Unit};
+use trimtab_core::job::{self, Fault, JobResult, JobSpec, ModelSource, Plan};
+use trimtab_core::model::catalog;
 
 /// A recording of pure numbers, on the time axis `time`.
-pub fn recording(time: Vec<f64>, channels: &[(&str, Vec<f64>)]) -> Arc<Maneuver> {
+pub(crate) fn recording(time: Vec<f64>, channels: &[(&str, Vec<f64>)]) -> Arc<Maneuver> {
     let channel = |(name, values): &(&str, Vec<f64>)| {
         let channel = Channel::from_recorded("-", Unit::NONE, values.clone());
         (name.to_string(), channel)
@@ -21,7 +21,7 @@ pub fn recording(time: Vec<f64>, channels: &[(&str, Vec<f64>)]) -> Arc<Maneuver>
 }
 
 /// A plan for a model, by catalog name or as a document, with `changes` in the spec.
-pub fn try_plan(
+pub(crate) fn try_plan(
     model: Value,
     changes: Value,
     maneuvers: &[Arc<Maneuver>],
@@ -42,25 +42,25 @@ pub fn try_plan(
     job::prepare(&spec, &document, maneuvers)
 }
 
-pub fn plan(model: Value, changes: Value, maneuvers: &[Arc<Maneuver>]) -> Plan {
+pub(crate) fn plan(model: Value, changes: Value, maneuvers: &[Arc<Maneuver>]) -> Plan {
     try_plan(model, changes, maneuvers).unwrap_or_else(|faults| panic!("{faults:#?}"))
 }
 
-pub fn solve(model: Value, changes: Value, maneuvers: &[Arc<Maneuver>]) -> JobResult {
+pub(crate) fn solve(model: Value, changes: Value, maneuvers: &[Arc<Maneuver>]) -> JobResult {
     job::run(&plan(model, changes, maneuvers), &mut |_| {
         ControlFlow::Continue(())
     })
     .unwrap_or_else(|faults| panic!("{faults:#?}"))
 }
 
-pub fn parameter<'r>(result: &'r JobResult, name: &str) -> &'r ParameterEstimate {
+pub(crate) fn parameter<'r>(result: &'r JobResult, name: &str) -> &'r ParameterEstimate {
     let mut all = result.estimate.parameters.iter();
     all.find(|p| p.name == name).expect("the parameter")
 }
 
 /// By unknown: how far the gradient at the start is from central differences of -ln L at ± `step`, relative to the
 /// gradient's largest component.
-pub fn gradient_errors(plan: &Plan, step: f64) -> Vec<f64> {
+pub(crate) fn gradient_errors(plan: &Plan, step: f64) -> Vec<f64> {
     let mut evaluator = Evaluator::new(&plan.problem);
     let theta = plan.problem.unknowns.start();
     let mut at = |theta: &[f64]| NormalEquations::at(&mut evaluator, theta).expect("a cost");
@@ -78,6 +78,6 @@ pub fn gradient_errors(plan: &Plan, step: f64) -> Vec<f64> {
 }
 
 /// Numbers from -0.5 to 0.5 without structure.
-pub fn scatter(k: usize, seed: f64) -> f64 {
+pub(crate) fn scatter(k: usize, seed: f64) -> f64 {
     ((k as f64 * 12.9898 + seed).sin() * 43_758.547).fract() / 2.0
 }

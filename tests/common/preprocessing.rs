@@ -1,11 +1,11 @@
 //! Recordings made from others, as the published cases say: columns by formulas, smoothed and differentiated.
 
 use indexmap::IndexMap;
-use trimtab::flight::Dimension;
-use trimtab::model::{ChannelFormula, Recorded};
+use trimtab_core::flight::Dimension;
+use trimtab_core::model::{ChannelFormula, Recorded};
 
 /// Columns of numbers without units, evenly sampled.
-pub struct Table {
+pub(crate) struct Table {
     pub step: f64,
     time: Vec<f64>,
     columns: IndexMap<String, Vec<f64>>,
@@ -26,7 +26,7 @@ impl Recorded for Table {
 
 impl Table {
     /// The numbers of some rows (from 1, both included) of a CSV file, under their names without units.
-    pub fn read(csv: &str, [first, last]: [usize; 2], step: f64) -> Self {
+    pub(crate) fn read(csv: &str, [first, last]: [usize; 2], step: f64) -> Self {
         let mut lines = csv.lines();
         let names = lines.next().expect("a header").split(',');
         let mut columns: IndexMap<String, Vec<f64>> = names
@@ -50,16 +50,16 @@ impl Table {
         }
     }
 
-    pub fn set(&mut self, name: &str, column: Vec<f64>) {
+    pub(crate) fn set(&mut self, name: &str, column: Vec<f64>) {
         self.columns.insert(name.to_string(), column);
     }
 
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.time.len()
     }
 
     /// A formula in which `smooth15(...)` and `diff8(...)` may stand.
-    pub fn evaluate(&mut self, formula: &str) -> Vec<f64> {
+    pub(crate) fn evaluate(&mut self, formula: &str) -> Vec<f64> {
         let mut text = formula.to_string();
         while let Some((begin, filter)) = (text.find("smooth15(").map(|at| (at, 8)).into_iter())
             .chain(text.find("diff8(").map(|at| (at, 5)))
@@ -80,7 +80,7 @@ impl Table {
     }
 
     /// As CSV with the columns `(name, unit)` and the time.
-    pub fn to_csv(&self, columns: &[(String, String)]) -> String {
+    pub(crate) fn to_csv(&self, columns: &[(String, String)]) -> String {
         let mut csv = "t[s]".to_string();
         for (name, unit) in columns {
             csv.push_str(&format!(",{name}[{unit}]"));
@@ -97,7 +97,7 @@ impl Table {
 }
 
 /// What stands between the bracket at `open` and the one that closes it, and the place behind that.
-pub fn argument(text: &str, open: usize) -> (String, usize) {
+pub(crate) fn argument(text: &str, open: usize) -> (String, usize) {
     let mut depth = 0;
     for (at, character) in text[open..].char_indices() {
         match character {

@@ -3,13 +3,13 @@
 //! As printed, line 25 *sets* the adjoint state to what the output gives, where it has to be *added* to what came
 //! back from later samples (line 21). So each output reaches one step back and no further.
 
-use trimtab::estimate::Problem;
-use trimtab::model::Jacobian;
-use trimtab::simulate::Steps;
+use trimtab_core::estimate::Problem;
+use trimtab_core::model::Jacobian;
+use trimtab_core::simulate::Steps;
 
 /// Line 25 as it is printed, or as the chain rule has it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Line25 {
+pub(crate) enum Line25 {
     AsPrinted,
     Added,
 }
@@ -19,7 +19,7 @@ type Entries = (Vec<(usize, usize, f64)>, Vec<(usize, usize, f64)>);
 
 /// Cost (without its constant) and gradient by parameter of the model, SI; one segment, even steps, `inverse` the
 /// diagonal of R⁻¹.
-pub fn algorithm_3(
+pub(crate) fn algorithm_3(
     problem: &Problem,
     theta: &[f64],
     inverse: &[f64],
@@ -31,7 +31,7 @@ pub fn algorithm_3(
     };
     let mut parameters = Vec::new();
     problem.unknowns.parameters(0, theta, &mut parameters);
-    let run = |program: &trimtab::model::Program, k: usize, state: &[f64]| -> Vec<f64> {
+    let run = |program: &trimtab_core::model::Program, k: usize, state: &[f64]| -> Vec<f64> {
         let mut workspace = program.workspace::<f64>();
         program.set_parameters(&mut workspace, &parameters);
         program.states(&mut workspace).copy_from_slice(state);

@@ -3,10 +3,11 @@
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicU8, Ordering};
 use std::time::{Duration, Instant};
 
 /// A running `trimtab serve` or `trimtab work`. It is killed with the test, if it was not ended before.
-pub struct Process {
+pub(crate) struct Process {
     /// Of a server.
     pub url: String,
     child: Child,
@@ -14,17 +15,17 @@ pub struct Process {
 
 impl Process {
     /// A server on a free port, with the database in `directory`.
-    pub fn start(directory: &Path, workers: usize) -> Self {
+    pub(crate) fn start(directory: &Path, workers: usize) -> Self {
         let database = super::server::database(directory);
         Self::serve(database.to_str().unwrap(), "127.0.0.1:0", workers)
     }
 
-    pub fn serve(database: &str, listen: &str, workers: usize) -> Self {
+    pub(crate) fn serve(database: &str, listen: &str, workers: usize) -> Self {
         Self::serve_with(database, listen, workers, &[])
     }
 
     /// With further settings.
-    pub fn serve_with(database: &str, listen: &str, workers: usize, more: &[&str]) -> Self {
+    pub(crate) fn serve_with(database: &str, listen: &str, workers: usize, more: &[&str]) -> Self {
         let workers = workers.to_string();
         let arguments = ["serve", "--listen", listen, "--workers", &workers];
         let (child, line) = started(&[&arguments, more].concat(), database);
@@ -35,7 +36,7 @@ impl Process {
         }
     }
 
-    pub fn work(database: &str, workers: usize) -> Self {
+    pub(crate) fn work(database: &str, workers: usize) -> Self {
         let workers = workers.to_string();
         let (child, line) = started(&["work", "--workers", &workers], database);
         assert!(line.contains(" workers on "), "{line}");
@@ -46,7 +47,7 @@ impl Process {
     }
 
     /// Sends SIGTERM; how it ended, and how long that took.
-    pub fn terminate(mut self) -> (ExitStatus, Duration) {
+    pub(crate) fn terminate(mut self) -> (ExitStatus, Duration) {
         let started = Instant::now();
         let id = self.child.id().to_string();
         assert!(
@@ -61,10 +62,17 @@ impl Process {
     }
 
     /// Sends SIGKILL: no chance to put anything in order.
-    pub fn kill(mut self) {
+    pub(crate) fn kill(mut self) {
         self.child.kill().unwrap();
         self.child.wait().unwrap();
     }
+}
+
+/// Where a server listens that is to come back: at an address of the machine's that no other test has, or the next
+/// server that any test starts could take its port while it is away.
+pub(crate) fn own_address() -> String {
+    static LAST: AtomicU8 = AtomicU8::new(1);
+    format!("127.0.0.{}:0", LAST.fetch_add(1, Ordering::Relaxed) + 1)
 }
 
 impl Drop for Process {

@@ -7,8 +7,7 @@ use serde_json::{Map, Value, json};
 use super::preprocessing::{Table, argument};
 
 /// One case: what to send, and what the reference found.
-pub struct Case {
-    pub name: String,
+pub(crate) struct Case {
     /// Recordings, with first and last row to use.
     pub segments: Vec<(String, [usize; 2])>,
     /// The model document, as JSON.
@@ -18,12 +17,10 @@ pub struct Case {
     pub det_r: f64,
     /// Name, segment (from 1) where each has its own, estimate, standard deviation at the final estimate.
     pub reference: Vec<(String, Option<String>, f64, f64)>,
-    /// Diagonal of the reference's R.
-    pub variance: Vec<(String, f64)>,
 }
 
 /// Reads a case from the directory of flight data.
-pub fn read(directory: &Path, name: &str) -> Case {
+pub(crate) fn read(directory: &Path, name: &str) -> Case {
     let case = &find(directory, name);
     let reference = &case["reference_results"]["gauss_newton"];
     let number = |value: &Value| value.as_f64().expect("a number");
@@ -45,7 +42,6 @@ pub fn read(directory: &Path, name: &str) -> Case {
         files.collect()
     };
     Case {
-        name: name.to_string(),
         segments,
         model: model(case),
         channels: if made { json!({}) } else { channels(case) },
@@ -65,17 +61,11 @@ pub fn read(directory: &Path, name: &str) -> Case {
                 )
             })
             .collect(),
-        variance: reference["R_diag"]
-            .as_object()
-            .expect("R_diag")
-            .iter()
-            .map(|(name, value)| (name.clone(), number(value)))
-            .collect(),
     }
 }
 
 /// A case as the file has it.
-pub fn find(directory: &Path, name: &str) -> Value {
+pub(crate) fn find(directory: &Path, name: &str) -> Value {
     let text = std::fs::read_to_string(directory.join("published_cases.json"))
         .expect("published_cases.json");
     let all: Value = serde_json::from_str(&text).expect("valid JSON");
@@ -152,7 +142,7 @@ fn without_delay(equation: &str) -> (String, Option<String>) {
     (prompt, Some(delay.trim().to_string()))
 }
 
-pub fn model(case: &Value) -> Value {
+pub(crate) fn model(case: &Value) -> Value {
     let units = |list_of: &str| -> Map<String, Value> {
         list(&case[list_of])
             .map(|q| (text_of(&q["name"]), json!({"unit": unit(&q["unit"])})))
@@ -240,7 +230,7 @@ fn definition_unit(name: &str) -> &'static str {
 }
 
 /// Columns are converted to SI when they are uploaded: the factors `pi/180` of the cases fall away.
-pub fn channels(case: &Value) -> Value {
+pub(crate) fn channels(case: &Value) -> Value {
     let quantities = list(&case["inputs"]).chain(list(&case["outputs"]));
     let formula = |q: &Value| text_of(&q["from_columns"]).replace("*pi/180", "");
     Value::Object(

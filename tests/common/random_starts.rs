@@ -6,14 +6,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::json;
-use trimtab::estimate::{Problem, StartMethod, estimate};
-use trimtab::job::{self, JobSpec, ModelSource};
+use trimtab_core::estimate::{Problem, StartMethod, estimate};
+use trimtab_core::job::{self, JobSpec, ModelSource};
 
 use super::published_cases::Case;
 use super::recordings::maneuver;
 
 /// A published case, ready to be solved, and the reference's estimate at the places of θ (SI).
-pub fn problem(case: &Case) -> (Problem, Vec<f64>) {
+pub(crate) fn problem(case: &Case) -> (Problem, Vec<f64>) {
     let (text, rows) = &case.segments[0];
     let recording = maneuver(text.as_bytes());
     let spec = json!({
@@ -37,7 +37,7 @@ pub fn problem(case: &Case) -> (Problem, Vec<f64>) {
 }
 
 /// The problem from random start `number`: each unknown drawn evenly from `share` times its reference.
-pub fn drawn(
+pub(crate) fn drawn(
     problem: &Problem,
     reference: &[f64],
     share: &std::ops::RangeInclusive<f64>,
@@ -54,7 +54,7 @@ pub fn drawn(
 
 /// What came of some random starts.
 #[derive(Clone, Copy, Default, Debug)]
-pub struct Count {
+pub(crate) struct Count {
     pub starts: usize,
     /// det R within 1e-4 of the best known.
     pub best: usize,
@@ -67,7 +67,7 @@ pub struct Count {
 }
 
 /// Runs random starts on all cores; `best` is the best known det R.
-pub fn count(
+pub(crate) fn count(
     problem: &Problem,
     reference: &[f64],
     share: &std::ops::RangeInclusive<f64>,

@@ -11,9 +11,9 @@ use indexmap::IndexMap;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
-use trimtab::flight::{Channel, Maneuver, Unit};
-use trimtab::model::{Model, ModelDocument, catalog};
-use trimtab::simulate::{InputInterpolation, Integrator, Segment, Steps, simulate};
+use trimtab_core::flight::{Channel, Maneuver, Unit};
+use trimtab_core::model::{Model, ModelDocument, catalog};
+use trimtab_core::simulate::{InputInterpolation, Integrator, Segment, Steps, simulate};
 
 const STEP: f64 = 0.05;
 const SAMPLES: usize = 1200;
@@ -21,14 +21,14 @@ const SUBSTEPS: usize = 10;
 const G: f64 = 9.80665;
 
 /// Standard deviation of the noise of each output, SI.
-pub const NOISE: [f64; 6] = [3.0e-3, 3.0e-3, 0.30, 1.0, 1.0, 1.5];
+pub(crate) const NOISE: [f64; 6] = [3.0e-3, 3.0e-3, 0.30, 1.0, 1.0, 1.5];
 
-pub fn document() -> ModelDocument {
+pub(crate) fn document() -> ModelDocument {
     catalog::find("flight-path-reconstruction").expect("a catalog model")
 }
 
 /// A maneuver without noise, to which each seed adds its own.
-pub struct Truth {
+pub(crate) struct Truth {
     pub parameters: IndexMap<String, f64>,
     model: Model,
     inputs: Vec<Vec<f64>>,
@@ -89,7 +89,7 @@ fn flown(t: f64) -> [f64; 6] {
 }
 
 impl Truth {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let [_, _, _, phi, theta] = profile(0.0);
         let [u, v, w] = velocity(0.0);
         let parameters = [
@@ -153,7 +153,7 @@ impl Truth {
     }
 
     /// The recording with the noise of a seed, times `share`.
-    pub fn recording(&self, seed: u64, share: f64) -> Arc<Maneuver> {
+    pub(crate) fn recording(&self, seed: u64, share: f64) -> Arc<Maneuver> {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut channels = IndexMap::new();
         let mut add = |name: &str, unit: &str, values: Vec<f64>| {

@@ -10,7 +10,7 @@ use tokio_util::sync::CancellationToken;
 use trimtab::{http, store::Store, webhook, work};
 
 /// API and workers in the test's process. It ends with the test.
-pub struct Server {
+pub(crate) struct Server {
     pub url: String,
     pub store: Store,
     pub directory: TempDir,
@@ -21,19 +21,19 @@ pub struct Server {
 
 /// What was answered.
 #[derive(Debug)]
-pub struct Answer {
+pub(crate) struct Answer {
     pub status: StatusCode,
     pub headers: reqwest::header::HeaderMap,
     pub bytes: Vec<u8>,
 }
 
 impl Server {
-    pub async fn start() -> Self {
+    pub(crate) async fn start() -> Self {
         Self::start_with(http::Config::default(), 2).await
     }
 
     /// With no workers, jobs stay in the queue.
-    pub async fn start_with(config: http::Config, workers: usize) -> Self {
+    pub(crate) async fn start_with(config: http::Config, workers: usize) -> Self {
         let directory = TempDir::new().unwrap();
         let store = Store::open(database(directory.path()).to_str().unwrap())
             .await
@@ -62,24 +62,24 @@ impl Server {
     }
 
     /// Ends as on SIGTERM.
-    pub async fn stop(mut self) {
+    pub(crate) async fn stop(mut self) {
         self.shutdown.cancel();
         (&mut self.task).await.unwrap();
     }
 
-    pub fn request(&self, method: Method, path: &str) -> RequestBuilder {
+    pub(crate) fn request(&self, method: Method, path: &str) -> RequestBuilder {
         self.client.request(method, format!("{}{path}", self.url))
     }
 
-    pub async fn get(&self, path: &str) -> Answer {
+    pub(crate) async fn get(&self, path: &str) -> Answer {
         send(self.request(Method::GET, path)).await
     }
 
-    pub async fn get_as(&self, path: &str, accept: &str) -> Answer {
+    pub(crate) async fn get_as(&self, path: &str, accept: &str) -> Answer {
         send(self.request(Method::GET, path).header("accept", accept)).await
     }
 
-    pub async fn post(
+    pub(crate) async fn post(
         &self,
         path: &str,
         content_type: &str,
@@ -89,12 +89,12 @@ impl Server {
         send(request.header("content-type", content_type).body(body)).await
     }
 
-    pub async fn post_json(&self, path: &str, body: &Value) -> Answer {
+    pub(crate) async fn post_json(&self, path: &str, body: &Value) -> Answer {
         self.post(path, "application/json", body.to_string()).await
     }
 
     /// Uploads a recording; its id.
-    pub async fn upload(&self, csv: &str) -> String {
+    pub(crate) async fn upload(&self, csv: &str) -> String {
         let answer = self
             .post("/v1/maneuvers", "text/csv", csv.to_string())
             .await;
@@ -103,14 +103,14 @@ impl Server {
     }
 
     /// Submits a job; its id.
-    pub async fn submit(&self, spec: &Value) -> String {
+    pub(crate) async fn submit(&self, spec: &Value) -> String {
         let answer = self.post_json("/v1/jobs", spec).await;
         assert_eq!(answer.status, StatusCode::ACCEPTED, "{}", answer.text());
         answer.json()["id"].as_str().unwrap().to_string()
     }
 
     /// Waits until a job is over; the job.
-    pub async fn wait(&self, job: &str) -> Value {
+    pub(crate) async fn wait(&self, job: &str) -> Value {
         wait(&self.url, job).await
     }
 }
@@ -121,11 +121,11 @@ impl Drop for Server {
     }
 }
 
-pub fn database(directory: &Path) -> PathBuf {
+pub(crate) fn database(directory: &Path) -> PathBuf {
     directory.join("test.db")
 }
 
-pub fn client() -> reqwest::Client {
+pub(crate) fn client() -> reqwest::Client {
     // plain HTTP needs no certificates, and a small machine may have none
     reqwest::Client::builder()
         .tls_certs_only([])
@@ -134,7 +134,7 @@ pub fn client() -> reqwest::Client {
         .unwrap()
 }
 
-pub async fn send(request: RequestBuilder) -> Answer {
+pub(crate) async fn send(request: RequestBuilder) -> Answer {
     let response = request.send().await.unwrap();
     let (status, headers) = (response.status(), response.headers().clone());
     Answer {
@@ -145,7 +145,7 @@ pub async fn send(request: RequestBuilder) -> Answer {
 }
 
 /// Waits until a job of the server at `url` is over; the job.
-pub async fn wait(url: &str, job: &str) -> Value {
+pub(crate) async fn wait(url: &str, job: &str) -> Value {
     let client = client();
     for _ in 0..1200 {
         let answer = send(client.get(format!("{url}/v1/jobs/{job}"))).await;
@@ -159,15 +159,15 @@ pub async fn wait(url: &str, job: &str) -> Value {
 }
 
 impl Answer {
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         String::from_utf8(self.bytes.clone()).unwrap()
     }
 
-    pub fn json(&self) -> Value {
+    pub(crate) fn json(&self) -> Value {
         serde_json::from_slice(&self.bytes).unwrap_or_else(|_| panic!("no JSON: {}", self.text()))
     }
 
-    pub fn header(&self, name: &str) -> &str {
+    pub(crate) fn header(&self, name: &str) -> &str {
         self.headers
             .get(name)
             .map_or("", |value| value.to_str().unwrap())
@@ -175,7 +175,7 @@ impl Answer {
 
     /// The faults of a problem with that status and code: pointer and code of each.
     #[track_caller]
-    pub fn problem(&self, status: u16, code: &str) -> Vec<(String, String)> {
+    pub(crate) fn problem(&self, status: u16, code: &str) -> Vec<(String, String)> {
         let problem = self.json();
         assert_eq!(self.status.as_u16(), status, "{problem:#}");
         assert_eq!(self.header("content-type"), "application/problem+json");

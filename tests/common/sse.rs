@@ -4,21 +4,21 @@ use futures_util::StreamExt;
 
 /// One event as it came over the wire.
 #[derive(Clone, PartialEq, Eq, Debug)]
-pub struct Received {
+pub(crate) struct Received {
     pub id: u64,
     pub event: String,
     pub data: String,
 }
 
 /// A stream of events that is read bytewise, so that it can be cut off anywhere.
-pub struct Stream {
+pub(crate) struct Stream {
     response: reqwest::Response,
     text: Vec<u8>,
 }
 
 impl Stream {
     /// `None` where the server says that nothing follows any more.
-    pub async fn open(url: &str, job: &str, last_event_id: Option<u64>) -> Option<Self> {
+    pub(crate) async fn open(url: &str, job: &str, last_event_id: Option<u64>) -> Option<Self> {
         let request = super::server::client().get(format!("{url}/v1/jobs/{job}/events"));
         let mut request = request.header("accept", "text/event-stream");
         if let Some(id) = last_event_id {
@@ -28,7 +28,7 @@ impl Stream {
     }
 
     /// As [`Stream::open`], of a server that may be away.
-    pub async fn try_open(url: &str, job: &str, last_event_id: u64) -> Option<Self> {
+    pub(crate) async fn try_open(url: &str, job: &str, last_event_id: u64) -> Option<Self> {
         let request = super::server::client()
             .get(format!("{url}/v1/jobs/{job}/events"))
             .header("accept", "text/event-stream")
@@ -54,7 +54,7 @@ impl Stream {
     }
 
     /// The next event; `None` at the end of the stream.
-    pub async fn next(&mut self) -> Option<Received> {
+    pub(crate) async fn next(&mut self) -> Option<Received> {
         loop {
             if let Some(end) = self.text.windows(2).position(|pair| pair == b"\n\n") {
                 let block: Vec<u8> = self.text.drain(..end + 2).collect();
@@ -69,7 +69,7 @@ impl Stream {
     }
 
     /// All events to the end of the stream.
-    pub async fn rest(mut self) -> Vec<Received> {
+    pub(crate) async fn rest(mut self) -> Vec<Received> {
         let mut events = Vec::new();
         while let Some(event) = self.next().await {
             events.push(event);
@@ -79,7 +79,7 @@ impl Stream {
 }
 
 /// The bytes of a whole stream, as they come.
-pub async fn bytes(url: &str, job: &str) -> Vec<u8> {
+pub(crate) async fn bytes(url: &str, job: &str) -> Vec<u8> {
     let stream = Stream::open(url, job, None).await.unwrap();
     let mut chunks = stream.response.bytes_stream();
     let mut bytes = Vec::new();
@@ -90,7 +90,7 @@ pub async fn bytes(url: &str, job: &str) -> Vec<u8> {
 }
 
 /// The events that are complete in the first bytes of a stream: what a client that was cut off there has.
-pub fn complete_in(bytes: &[u8]) -> Vec<Received> {
+pub(crate) fn complete_in(bytes: &[u8]) -> Vec<Received> {
     let end = bytes
         .windows(2)
         .rposition(|pair| pair == b"\n\n")

@@ -5,14 +5,14 @@ use std::fmt::Write;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
-use trimtab::estimate::{Options, Problem, Unknowns};
-use trimtab::model::{Model, ModelDocument, Start, catalog};
-use trimtab::simulate::{Segment, Steps, simulate};
+use trimtab_core::estimate::{Options, Problem, Unknowns};
+use trimtab_core::model::{Model, ModelDocument, Start, catalog};
+use trimtab_core::simulate::{Segment, Steps, simulate};
 
 /// As many samples as Machado's tables are made with.
-pub const SAMPLES: usize = 1502;
+pub(crate) const SAMPLES: usize = 1502;
 
-pub fn short_period() -> Problem {
+pub(crate) fn short_period() -> Problem {
     let document = catalog::find("short-period").expect("in the catalog");
     let truth = |name: &str| match name {
         "Za" => -0.85,
@@ -36,7 +36,7 @@ pub fn short_period() -> Problem {
     )
 }
 
-pub fn lateral() -> Problem {
+pub(crate) fn lateral() -> Problem {
     let document = catalog::find("lateral-directional-2").expect("in the catalog");
     let truth = |name: &str| match name {
         "Lp" => -3.8,
@@ -66,37 +66,9 @@ pub fn lateral() -> Problem {
     )
 }
 
-/// Góes, Hemerly, Maciel eq. 18-23: nine states, position biases held since initial positions say the same.
-pub fn flight_path() -> Problem {
-    let document = catalog::find("flight-path-reconstruction").expect("a catalog model");
-    let truth = |name: &str| match name {
-        "K_V" => 1.02,
-        "W_x" => 4.0,
-        "W_y" => -3.0,
-        "W_z" => 0.5,
-        "x_bias" | "y_bias" | "z_bias" => 0.0,
-        "u_0" => 100.0,
-        "v_0" => 1.0,
-        "w_0" => 5.0,
-        "psi_0" => 0.5,
-        "z_0" => -1000.0,
-        "ax_bias" | "ay_bias" | "az_bias" => 0.02,
-        "p_bias" | "q_bias" | "r_bias" => 5e-4,
-        _ => 0.01,
-    };
-    made(
-        &document,
-        truth,
-        |i| 0.97 + 0.002 * i as f64,
-        0.02,
-        2e-2,
-        Options::default(),
-    )
-}
-
 /// As large as the flexible aircraft that Machado's table 12 names (20 states, 42 outputs, 7 inputs, 210
 /// parameters), of our own making.
-pub fn flexible_aircraft() -> Problem {
+pub(crate) fn flexible_aircraft() -> Problem {
     let document = flexible_aircraft_document();
     let values: Vec<f64> = document
         .parameters
@@ -132,7 +104,7 @@ type Rigid = (
 /// by rates, angles and controls of its symmetry and acting back on moments and forces. Sensors: six of the rigid
 /// motion, 18 vertical and six lateral accelerometers along the structure, 12 strain gauges, of which the first
 /// seven read one mode each: they fix the modes' scales. Parameters start at their true values.
-pub fn flexible_aircraft_document() -> ModelDocument {
+pub(crate) fn flexible_aircraft_document() -> ModelDocument {
     let mut text = Text::default();
     for input in LONGITUDINAL.iter().chain(&LATERAL) {
         writeln!(text.inputs, "[inputs.{input}]\nunit = \"rad\"").expect("memory");
@@ -345,7 +317,7 @@ impl Text {
 }
 
 /// Data of `truth` with white noise, and start values that are `off(i)` times the truth.
-fn made(
+pub(crate) fn made(
     document: &ModelDocument,
     truth: impl Fn(&str) -> f64,
     off: impl Fn(usize) -> f64,

@@ -5,12 +5,13 @@ use super::fitted::Fitted;
 use super::gate::Passed;
 use super::report::{Evidence, Member};
 use super::threshold::Threshold;
+use crate::model::Added;
 
 #[derive(Clone, Debug)]
 pub(super) struct Accepted {
     pub effect: Effect,
-    /// Names of the parameters that it added, its size first.
-    pub added: Vec<String>,
+    /// The parameters that it added, as they are called in the model with all effects that stand, its size first.
+    pub added: Vec<Added>,
     /// The model with it, fitted by output error.
     pub fitted: Fitted,
     pub group: Vec<Member>,
@@ -22,7 +23,6 @@ impl Accepted {
         let Passed {
             trial,
             settled,
-            added,
             gains,
         } = passed;
         let screened = trial.screened.as_ref();
@@ -38,7 +38,7 @@ impl Accepted {
                 held_out: (!gains.is_empty()).then_some(held_out),
                 held_out_by_output: gains,
             },
-            added,
+            added: trial.added,
             effect: trial.effect,
             fitted: settled,
         }

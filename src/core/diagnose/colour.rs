@@ -95,6 +95,18 @@ impl Autoregression {
         model
     }
 
+    /// The predictor's coefficients, the nearest sample's first.
+    pub(super) fn coefficients(&self) -> &[f64] {
+        self.predictors.last().map_or(&[], Vec::as_slice)
+    }
+
+    /// Standard deviation of the prediction error.
+    pub(super) fn deviation(&self) -> f64 {
+        self.variances
+            .last()
+            .map_or(0.0, |variance| variance.sqrt())
+    }
+
     pub(super) fn order(&self) -> usize {
         self.predictors.len() - 1
     }

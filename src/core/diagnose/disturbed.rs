@@ -34,7 +34,11 @@ pub(super) fn disturbed_throughout(case: &Case, calm: &Fitted, one: Fitted) -> F
 
 /// The declared model fitted by filter error, without process noise on the states that are `held`.
 fn filtered(case: &Case, base: &Fitted, held: &dyn Fn(&str) -> bool) -> Result<Fitted, Unfit> {
-    let mut problem = case.problem(&base.document, &base.values)?;
+    let mut problem = case.problem(&base.document, &base.values())?;
+    if !problem.model.paths.of_outputs().is_empty() {
+        let why = "the filter-error method knows no lag or delay of an output";
+        return Err(Unfit(why.into()));
+    }
     problem.options.estimator = Estimator::FilterError;
     problem.options.tolerance = problem.options.tolerance.max(1e-3);
     problem.options.process_noise = (problem.model.states.iter())
@@ -54,10 +58,5 @@ fn filtered(case: &Case, base: &Fitted, held: &dyn Fn(&str) -> bool) -> Result<F
     if solution.estimate.outcome == Outcome::Diverged {
         return Err(Unfit(solution.estimate.reason));
     }
-    Ok(Fitted::of(
-        base.document.clone(),
-        problem,
-        solution.estimate,
-        &solution.histories,
-    ))
+    Ok(Fitted::of(base.document.clone(), problem, &solution))
 }

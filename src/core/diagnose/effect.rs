@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::model::{Edit, EditError, EditKind, ModelDocument};
+use super::plausible::Plausible;
+use crate::model::{Edit, EditError, EditKind, Edited, ModelDocument, Start};
 
 /// What kind of effect. Most are edits of the model document; the others change how it is fitted.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
@@ -38,23 +39,27 @@ pub struct Effect {
     /// The edits that make it; none of a treatment.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub edits: Vec<Edit>,
+    /// The range in which its size, the first parameter that it frees or adds, is looked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plausible: Option<Plausible>,
 }
 
 impl Effect {
     pub fn edit(kind: EditKind, target: impl Into<String>, term: Option<&str>) -> Self {
-        let target = target.into();
-        let edit = Edit {
-            kind,
-            target: target.clone(),
+        Self::of(Edit {
             term: term.map(ToString::to_string),
-            parameter: None,
-            unit: None,
-        };
+            ..Edit::new(kind, target)
+        })
+    }
+
+    /// The effect that is one edit.
+    pub fn of(edit: Edit) -> Self {
         Self {
-            kind: EffectKind::Edit(kind),
-            target,
+            kind: EffectKind::Edit(edit.kind),
+            target: edit.target.clone(),
             term: edit.term.clone(),
             edits: vec![edit],
+            plausible: None,
         }
     }
 
@@ -64,6 +69,7 @@ impl Effect {
             target: target.into(),
             term: None,
             edits: Vec::new(),
+            plausible: None,
         }
     }
 
@@ -75,13 +81,33 @@ impl Effect {
         }
     }
 
-    /// The document with the effect in it.
+    /// The document with the effect in it, and what all its edits added.
     ///
     /// # Errors
     /// An edit does not fit the document.
-    pub fn apply(&self, document: &ModelDocument) -> Result<ModelDocument, EditError> {
-        let apply = |document: ModelDocument, edit: &Edit| edit.apply(&document);
-        self.edits.iter().try_fold(document.clone(), apply)
+    pub fn apply(&self, document: &ModelDocument) -> Result<Edited, EditError> {
+        let mut whole = Edited {
+            document: document.clone(),
+            added: Vec::new(),
+            inputs: Vec::new(),
+        };
+        for edit in &self.edits {
+            let edited = edit.apply(&whole.document)?;
+            whole.document = edited.document;
+            whole.added.extend(edited.added);
+            whole.inputs.extend(edited.inputs);
+        }
+        if let (Some(plausible), Some(size)) = (&self.plausible, whole.added.first())
+            && let Some(size) = whole.document.parameters.get_mut(&size.name)
+        {
+            let held = self.kind == EffectKind::Edit(EditKind::FixedParameter);
+            let none = match size.start {
+                Start::Value(value) if held => value,
+                _ => 0.0,
+            };
+            plausible.bound(size, none);
+        }
+        Ok(whole)
     }
 
     /// Process noise: what no model document expresses, and what ends a diagnosis.

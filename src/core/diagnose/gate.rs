@@ -13,10 +13,13 @@ use super::report::{OutputGain, Refusal};
 use super::threshold::Threshold;
 use super::trial::Trial;
 use crate::estimate::Role;
-use crate::model::{Added, EditKind};
+use crate::model::{Added, AddedRole, EditKind};
 
 /// A size within so many standard errors of nothing is nothing that one can tell an engineer of.
 const LEAST_ERRORS: f64 = 2.0;
+
+/// Two sizes of a larger correlation are one.
+const TIED: f64 = 0.97;
 
 /// Flights that were not fitted speak of an effect where it should change their likelihood by at least this.
 const HEARD: f64 = 8.0;
@@ -34,8 +37,6 @@ pub(super) struct Passed {
     pub trial: Trial,
     /// What is reported of it: converged, by output error.
     pub settled: Fitted,
-    /// Names of the parameters that it adds, its size first.
-    pub added: Vec<String>,
     /// By output, N ln(σ0²/σ1²) on flights that were not fitted; empty where there are none.
     pub gains: Vec<OutputGain>,
 }
@@ -62,10 +63,9 @@ pub(super) fn pass(
     threshold: Threshold,
 ) -> Result<Passed, Box<(Trial, Objection)>> {
     match judge(null, &trial, threshold) {
-        Ok((settled, added, gains)) => Ok(Passed {
+        Ok((settled, gains)) => Ok(Passed {
             trial,
             settled,
-            added,
             gains,
         }),
         Err(objection) => Err(Box::new((trial, objection))),
@@ -76,21 +76,21 @@ fn judge(
     null: &NullModel<'_>,
     trial: &Trial,
     threshold: Threshold,
-) -> Result<(Fitted, Vec<String>, Vec<OutputGain>), Objection> {
+) -> Result<(Fitted, Vec<OutputGain>), Objection> {
     let least = threshold.of(trial.freedom, trial.starts);
     significant(trial, least)?;
-    let added = Added::between(&null.base.document, &trial.likeliest.document).parameters;
-    within_range(null.base, &trial.effect, &trial.likeliest)?;
+    within_range(trial, &trial.likeliest)?;
     let settled = settle(null.case, trial)?;
-    within_range(null.base, &trial.effect, &settled)?;
-    told_from_nothing(&trial.effect, &settled, &added)?;
-    if let Some(size) = added.first().filter(|_| !is_local_in_time(&trial.effect))
-        && let Some(why) = disagreement(&settled, size)
+    within_range(trial, &settled)?;
+    told_from_nothing(&trial.effect, &settled, &trial.added)?;
+    told_from_earlier(null, &settled, &trial.added)?;
+    if let Some(size) = (trial.added.first()).filter(|_| !is_local_in_time(&trial.effect))
+        && let Some(why) = disagreement(&settled, &size.name)
     {
         return Err((Refusal::NotRepeatable, why));
     }
     let gains = predictive(null, trial, &settled, least)?;
-    Ok((settled, added, gains))
+    Ok((settled, gains))
 }
 
 fn significant(trial: &Trial, least: f64) -> Result<(), Objection> {
@@ -104,14 +104,17 @@ fn significant(trial: &Trial, least: f64) -> Result<(), Objection> {
     Err((Refusal::NotSignificant, why))
 }
 
-fn within_range(base: &Fitted, effect: &Effect, fitted: &Fitted) -> Result<(), Objection> {
-    let mut at_bound = fitted.at_bound(base);
-    at_bound.retain(|(name, _)| decides(effect, name));
+fn within_range(trial: &Trial, fitted: &Fitted) -> Result<(), Objection> {
+    let mut at_bound = fitted.at_bound(&trial.added);
+    at_bound.retain(|added| decides(&trial.effect, added.role));
     match at_bound.first() {
         None => Ok(()),
-        Some((name, _)) => Err((
+        Some(added) => Err((
             Refusal::OutOfRange,
-            format!("its estimate ends at a bound of its physical range ({name})"),
+            format!(
+                "its estimate ends at a bound of its physical range ({})",
+                added.name
+            ),
         )),
     }
 }
@@ -122,7 +125,7 @@ fn settle(case: &Case, trial: &Trial) -> Result<Fitted, Objection> {
         return Ok(trial.likeliest.clone());
     }
     let document = trial.likeliest.document.clone();
-    let settled = Fitted::settled(case, document, &trial.likeliest.values);
+    let settled = Fitted::settled(case, document, &trial.likeliest.values());
     let settled = settled.map_err(|why| (Refusal::NotFitted, why.to_string()))?;
     if settled.estimate.outcome.is_minimum() {
         Ok(settled)
@@ -136,30 +139,63 @@ fn settle(case: &Case, trial: &Trial) -> Result<Fitted, Objection> {
 }
 
 /// Some size that it adds is clearly not nothing.
-fn told_from_nothing(effect: &Effect, fitted: &Fitted, added: &[String]) -> Result<(), Objection> {
+fn told_from_nothing(effect: &Effect, fitted: &Fitted, added: &[Added]) -> Result<(), Objection> {
     if !vanishes_at_zero(effect) {
         return Ok(());
     }
     let Some(size) = added.first() else {
         return Ok(());
     };
-    let rows = fitted.estimate.parameters.iter();
-    let sizes: Vec<_> = rows.filter(|row| row.name == *size && !row.fixed).collect();
-    let told = sizes.iter().any(|row| {
-        row.standard_error
-            .is_none_or(|error| row.estimate.abs() > LEAST_ERRORS * error)
+    let sizes = fitted.sizes(std::slice::from_ref(size));
+    let told = sizes.iter().any(|size| {
+        size.standard_error
+            .is_none_or(|error| size.own_units().abs() > LEAST_ERRORS * error)
     });
     match sizes.first() {
-        Some(row) if !told => {
-            let error = row.standard_error.unwrap_or(f64::NAN);
+        Some(size) if !told => {
+            let error = size.standard_error.unwrap_or(f64::NAN);
             let why = format!(
                 "its size is within {LEAST_ERRORS} standard errors of nothing: {:.2e} ± {error:.1e} {}",
-                row.estimate, row.unit
+                size.own_units(),
+                size.unit
             );
             Err((Refusal::NotSignificant, why))
         }
         _ => Ok(()),
     }
+}
+
+/// Its size is not tied to that of an effect that is in the model already: two that nearly cancel (all outputs late, and
+/// the input early) are each significant, and together next to nothing.
+fn told_from_earlier(
+    null: &NullModel<'_>,
+    fitted: &Fitted,
+    added: &[Added],
+) -> Result<(), Objection> {
+    let names: Vec<&str> = (fitted.estimate.parameters.iter())
+        .filter(|row| !row.fixed)
+        .map(|row| row.name.as_str())
+        .collect();
+    let places = |of: &[Added]| -> Vec<usize> {
+        (0..names.len())
+            .filter(|&place| of.iter().any(|added| added.name == names[place]))
+            .collect()
+    };
+    let (new, earlier) = (places(added), places(null.earlier));
+    let correlation = &fitted.estimate.correlation;
+    for &i in &new {
+        for &j in &earlier {
+            let tied = correlation.get(i).and_then(|row| row.get(j));
+            if tied.is_some_and(|r| r.abs() > TIED) {
+                let why = format!(
+                    "the data cannot tell it from {}, which is in the model already (correlation {:.3})",
+                    names[j], correlation[i][j]
+                );
+                return Err((Refusal::Outdone, why));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Whether flights that were not fitted are predicted better with it; gains by output.
@@ -204,12 +240,10 @@ fn predictive(
 
 /// Whether a parameter at its bound speaks against the effect: how steeply and how late the flow separates is hardly seen
 /// in many a stall, at which angle it does is.
-fn decides(effect: &Effect, parameter: &str) -> bool {
+fn decides(effect: &Effect, role: AddedRole) -> bool {
+    use AddedRole::{Delay, Steepness, TimeConstant};
     let is_stall = effect.kind == EffectKind::Edit(EditKind::StallHysteresis);
-    !is_stall
-        || !["_steepness", "_time", "_delay"]
-            .iter()
-            .any(|shape| parameter.contains(shape))
+    !(is_stall && matches!(role, Steepness | TimeConstant | Delay))
 }
 
 /// Whether a size of zero is no effect; a rate limit or a stall is absent at the other end of its range.

@@ -9,9 +9,10 @@
 
 mod accepted;
 mod answer;
+mod candidates;
 mod case;
-mod catalogue;
 mod colour;
+mod declared;
 mod difference;
 mod disturbed;
 mod effect;
@@ -20,8 +21,11 @@ mod flight;
 mod found;
 mod gate;
 mod group;
+mod inconclusive;
+mod knowledge;
 mod null_model;
 mod outliers;
+mod plausible;
 mod polish;
 mod predicted;
 mod projection;
@@ -33,19 +37,25 @@ mod review;
 mod round;
 mod screen;
 mod sentence;
+mod size;
+mod spikes;
 mod stack;
 mod starts;
-mod terms;
 mod threshold;
 mod trial;
 mod unmodelled;
+mod verdict;
 mod watch;
 
+pub use answer::Conclusion;
+pub use candidates::{TakenFor, candidates};
 pub use case::{Case, Unfit};
-pub use catalogue::candidates;
 pub use difference::difference;
 pub use effect::{Effect, EffectKind, Treatment};
 pub use flight::Flight;
+pub use inconclusive::Inconclusive;
+pub use knowledge::{Knowledge, KnownSize};
+pub use plausible::Plausible;
 pub use report::{
     Diagnosis, DocumentChange, EffectParameter, Evidence, FitChange, Member, NamedEffect,
     OutputGain, ParameterChange, Refusal, RefusedEffect, Step, Verdict,
@@ -55,68 +65,53 @@ pub use watch::Watcher;
 
 use accepted::Accepted;
 use answer::answer;
+use declared::Declared;
 use disturbed::disturbed_throughout;
 use fitted::Fitted;
 use found::Found;
 use review::remove_needless;
 use round::round;
-use watch::{Stopped, ask, tell};
-
-use crate::estimate::{Estimate, TimeHistory, estimate};
+use watch::{Stopped, tell};
 
 /// Rounds, and so effects, at most: who lacks more than these has another model.
-const MOST_ROUNDS: usize = 4;
+const MOST_ROUNDS: usize = 6;
 
-/// Everything that a diagnosis comes to.
-pub struct Conclusion {
-    pub diagnosis: Diagnosis,
-    /// Of the model with the effects in it.
-    pub estimate: Estimate,
-    pub histories: Vec<TimeHistory>,
-}
-
-/// Why there is no conclusion.
-#[derive(Debug)]
-pub enum Inconclusive {
-    /// The declared model cannot be fitted.
-    Unfit(Unfit),
-    /// It was asked to stop.
-    Stopped,
-}
-
-impl From<Unfit> for Inconclusive {
-    fn from(why: Unfit) -> Self {
-        Self::Unfit(why)
-    }
-}
-
-impl From<Stopped> for Inconclusive {
-    fn from(_: Stopped) -> Self {
-        Self::Stopped
-    }
-}
+/// How often the declared model's fit may turn out to have ended in a false minimum.
+const MOST_RENEWALS: usize = 2;
 
 /// Finds what the declared model of a case lacks.
 ///
 /// # Errors
 /// The declared model cannot be fitted at all, or `watcher` stopped it.
 pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, Inconclusive> {
-    let (declared, fitted) = declared(case, watcher)?;
+    let mut declared = Declared::of(case, watcher)?;
     let mut found = Found::default();
-    let mut base = declared.clone();
-    let cleaned = clean(case, &declared, &mut base, &mut found, watcher)?;
+    let mut base = declared.fitted.clone();
+    let cleaned = clean(case, &declared.fitted, &mut base, &mut found, watcher)?;
     let case = cleaned.as_ref().unwrap_or(case);
-    let catalogue = catalogue::candidates(case, &declared.problem.model);
-    for number in 1..=MOST_ROUNDS {
+    let catalogue = candidates::candidates(case, &declared.fitted.problem.model);
+    let mut number = 1;
+    while number <= MOST_ROUNDS {
         let left: Vec<Effect> = (catalogue.iter())
             .filter(|effect| !found.accepted.iter().any(|a| a.effect == **effect))
             .cloned()
             .collect();
-        let round = round(case, &base, left, number, watcher)?;
-        found.refuse(round.refused);
+        let round = round(case, &base, left, &found.added(), number, watcher)?;
         let Some(accepted) = round.accepted else {
+            found.refuse(round.refused);
             break;
         };
+        // what made the difference may be where the fit began, not the effect
+        if found.accepted.is_empty()
+            && !accepted.effect.is_noise()
+            && declared.renewals() < MOST_RENEWALS
+            && let Some(lower) = declared.lower(case, &accepted.fitted, watcher)
+        {
+            base = lower.fitted.clone();
+            declared = lower;
+            continue;
+        }
+        found.refuse(round.refused);
         let calm = std::mem::replace(&mut base, accepted.fitted.clone());
         let last = accepted.effect.is_noise();
         accept(accepted, number, &mut found, watcher)?;
@@ -124,9 +119,10 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
             base = disturbed_throughout(case, &calm, base);
             break;
         }
+        number += 1;
     }
-    remove_needless(case, &declared, &mut base, &mut found);
-    Ok(answer(case, &declared, &fitted, &base, found)?)
+    remove_needless(case, &declared.fitted, &mut base, &mut found);
+    Ok(answer(case, &declared, &base, found)?)
 }
 
 /// Leaves out samples that are no measurements; `None` where there are none.
@@ -157,41 +153,8 @@ fn accept(
         round,
         name: accepted.effect.name(),
         likelihood_ratio: accepted.evidence.likelihood_ratio,
-        sentence: sentence::of(&accepted.effect, &accepted.added, &accepted.fitted.estimate),
+        sentence: sentence::of(&accepted.effect, &accepted.fitted.sizes(&accepted.added)),
     };
     found.accepted.push(accepted);
     tell(watcher, &step)
-}
-
-/// The declared model, fitted as the job's options say, and its time histories.
-fn declared(
-    case: &Case,
-    watcher: &mut Watcher<'_>,
-) -> Result<(Fitted, Vec<TimeHistory>), Inconclusive> {
-    let problem = case.problem(&case.document, &case::Values::new())?;
-    let mut stopped = Ok(());
-    let solution = estimate(&problem, &mut |_| {
-        stopped = stopped.and(ask(watcher));
-        match stopped {
-            Ok(()) => std::ops::ControlFlow::Continue(()),
-            Err(Stopped) => std::ops::ControlFlow::Break(()),
-        }
-    });
-    stopped?;
-    let solution = solution.map_err(|_| {
-        Unfit("with the start values the simulation of the declared model leaves the range of numbers".into())
-    })?;
-    let step = Step::Fitted {
-        round: 0,
-        cost: solution.estimate.cost,
-        iterations: solution.estimate.iterations,
-    };
-    tell(watcher, &step)?;
-    let fitted = Fitted::of(
-        case.document.clone(),
-        problem,
-        solution.estimate,
-        &solution.histories,
-    );
-    Ok((fitted, solution.histories))
 }

@@ -7,11 +7,14 @@ use super::predicted::Predicted;
 use super::projection::norm;
 use super::stack::Layout;
 use crate::estimate::Role;
+use crate::model::Added;
 
 pub(super) struct NullModel<'c> {
     pub case: &'c Case,
     /// Fitted by output error.
     pub base: &'c Fitted,
+    /// Parameters of the effects that are in it already.
+    pub earlier: &'c [Added],
     /// ln L with the noise that suits it, where that is greatest.
     pub ln_evidence: f64,
     /// Of flights that were not fitted; `None` where there are none.
@@ -23,11 +26,16 @@ pub(super) struct NullModel<'c> {
 impl<'c> NullModel<'c> {
     /// # Errors
     /// The flights that were not fitted cannot be predicted.
-    pub(super) fn new(case: &'c Case, base: &'c Fitted) -> Result<Self, Unfit> {
+    pub(super) fn new(
+        case: &'c Case,
+        base: &'c Fitted,
+        earlier: &'c [Added],
+    ) -> Result<Self, Unfit> {
         let layout = Layout::of(&base.problem);
         Ok(Self {
             case,
             base,
+            earlier,
             ln_evidence: base.clone().likeliest().ln_evidence(),
             predicted: Predicted::of(base, case, Role::Validation)?,
             colour: Colour::of_best_order(&layout, &base.residual),

@@ -44,7 +44,7 @@ impl Fitted {
             Colour::of_orders(&layout, &model.residual, orders)
                 .ln_likelihood(&layout, &model.residual)
         };
-        let mut theta = self.theta();
+        let mut theta = self.theta.clone();
         let Some(mut here) = at(&theta) else {
             return self;
         };
@@ -72,7 +72,7 @@ impl Fitted {
         }
         if best > before {
             self.residual = here.residual;
-            self.put(&theta);
+            self.put(theta);
         }
         self
     }
@@ -131,25 +131,18 @@ impl Fitted {
     }
 
     /// Makes `theta` the estimate.
-    fn put(&mut self, theta: &[f64]) {
-        for (place, &value) in theta.iter().enumerate() {
+    fn put(&mut self, theta: Vec<f64>) {
+        let bound = |(place, &value): (usize, &f64)| {
             let unknown = self.problem.unknowns.at(place);
-            let info = &self.problem.model.parameters[unknown.parameter];
-            let segment = unknown
-                .segment
-                .map(|s| self.problem.segments[s].label.clone());
-            let rows = self.estimate.parameters.iter_mut();
-            for row in rows.filter(|row| row.name == info.name && row.segment == segment) {
-                row.estimate = info.unit.from_si(value);
-                row.at_bound = if value <= unknown.lower {
-                    Some(Bound::Lower)
-                } else if value >= unknown.upper {
-                    Some(Bound::Upper)
-                } else {
-                    None
-                };
+            if value <= unknown.lower {
+                Some(Bound::Lower)
+            } else if value >= unknown.upper {
+                Some(Bound::Upper)
+            } else {
+                None
             }
-            self.values.insert((info.name.clone(), segment), value);
-        }
+        };
+        self.bounds = theta.iter().enumerate().map(bound).collect();
+        self.theta = theta;
     }
 }

@@ -54,7 +54,8 @@ impl Predicted {
             })
             .collect();
         for flight in &flights {
-            let (prediction, history) = predict(&problem, &fitted.estimate, flight);
+            let (prediction, history) =
+                predict(&problem, &fitted.theta, &fitted.covariance, flight);
             let history = history.ok_or(Unfit(prediction.reason))?;
             for (errors, output) in outputs.iter_mut().zip(&history.outputs) {
                 errors.residual.extend(&output.residual);

@@ -28,7 +28,8 @@ pub(super) fn disagreement(fitted: &Fitted, parameter: &str) -> Option<String> {
         return None;
     }
     let pulls = pulls(fitted, index)?;
-    let size = fitted.values.get(&(parameter.to_string(), None))?;
+    let size = fitted.values();
+    let size = size.get(&(parameter.to_string(), None))?;
     let weight: f64 = pulls.iter().map(|p| p.error.powi(-2)).sum();
     let middle = pulls.iter().map(|p| p.by * p.error.powi(-2)).sum::<f64>() / weight;
     let chi_squared: f64 = (pulls.iter())
@@ -66,10 +67,10 @@ fn pulls(fitted: &Fitted, index: usize) -> Option<Vec<Pull>> {
         .collect();
     free.sort_unstable();
     free.dedup();
-    let theta = fitted.theta();
-    let others = sensitivities(problem, &layout, &theta, &free)?;
+    let theta = &fitted.theta;
+    let others = sensitivities(problem, &layout, theta, &free)?;
     let others = Basis::of(others.iter().map(whiten));
-    let own = sensitivities(problem, &layout, &theta, &[index])?;
+    let own = sensitivities(problem, &layout, theta, &[index])?;
     let [own] = own.as_slice() else { return None };
     let mut clear = whiten(own);
     others.remove_from(&mut clear);

@@ -4,7 +4,7 @@ use super::accepted::Accepted;
 use super::case::Case;
 use super::fitted::Fitted;
 use super::found::Found;
-use crate::model::{Added, ModelDocument};
+use crate::model::{EditError, ModelDocument};
 
 /// Takes out effects whose removal costs less than what they had to pass, one at a time, the least needed first.
 pub(super) fn remove_needless(
@@ -25,7 +25,7 @@ pub(super) fn remove_needless(
         let Some((_, cost, at, document)) = needless else {
             break;
         };
-        let Ok(fitted) = Fitted::settled(case, document, &base.values) else {
+        let Ok(fitted) = Fitted::settled(case, document, &base.values()) else {
             break;
         };
         *base = fitted;
@@ -52,10 +52,10 @@ fn removal(
     let without = others
         .map(|(_, accepted)| accepted)
         .try_fold(declared.document.clone(), |document, accepted| {
-            accepted.effect.apply(&document)
+            Ok::<_, EditError>(accepted.effect.apply(&document)?.document)
         });
     let without = without.ok()?;
-    let fitted = Fitted::trial(case, without.clone(), &base.values).ok()?;
+    let fitted = Fitted::trial(case, without.clone(), &base.values()).ok()?;
     Some((2.0 * (evidence - fitted.likeliest().ln_evidence()), without))
 }
 
@@ -65,8 +65,8 @@ fn name_again(declared: &ModelDocument, accepted: &mut [Accepted]) {
     let mut document = declared.clone();
     for accepted in accepted {
         if let Ok(with) = accepted.effect.apply(&document) {
-            accepted.added = Added::between(&document, &with).parameters;
-            document = with;
+            accepted.added = with.added;
+            document = with.document;
         }
     }
 }

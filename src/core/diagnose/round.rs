@@ -16,7 +16,7 @@ use super::starts::{is_tried_outright, starts};
 use super::threshold::Threshold;
 use super::trial::Trial;
 use super::watch::{Stopped, Watcher, ask, tell};
-use crate::model::EditKind;
+use crate::model::{Added, EditKind};
 
 /// Below this share the declared parameters imitate an effect but for their own curvature: it counts as visible only
 /// where even so a step promises much.
@@ -50,7 +50,7 @@ struct Seen {
     screened: Option<Screened>,
 }
 
-/// One round with `number`, from the fit of the model as it is.
+/// One round with `number`, from the fit of the model as it is; `earlier` are the parameters of the effects in it.
 ///
 /// # Errors
 /// The watcher stopped it.
@@ -58,6 +58,7 @@ pub(super) fn round(
     case: &Case,
     base: &Fitted,
     candidates: Vec<Effect>,
+    earlier: &[Added],
     number: usize,
     watcher: &mut Watcher<'_>,
 ) -> Result<Round, Stopped> {
@@ -65,7 +66,8 @@ pub(super) fn round(
         accepted: None,
         refused: Vec::new(),
     };
-    let (Some(screen), Ok(null)) = (Screen::new(case, base), NullModel::new(case, base)) else {
+    let (Some(screen), Ok(null)) = (Screen::new(case, base), NullModel::new(case, base, earlier))
+    else {
         return Ok(result);
     };
     let seen = screen_all(&screen, candidates, &mut result.refused, watcher)?;
@@ -152,13 +154,13 @@ fn screen_all(
 /// The screen of a candidate, from the best of its starts.
 fn screened(screen: &Screen<'_>, effect: &Effect) -> Result<Screened, String> {
     let base = &screen.base.document;
-    let document = effect.apply(base).map_err(|error| error.to_string())?;
+    let edited = effect.apply(base).map_err(|error| error.to_string())?;
     let mut best: Option<Screened> = None;
     let mut failure = String::new();
-    let starts = starts(screen.case, effect, &document, base);
+    let starts = starts(screen.case, effect, &edited);
     let count = starts.len();
     for start in starts {
-        match screen.of(&document, &start) {
+        match screen.of(&edited, &start) {
             Ok(seen) if best.as_ref().is_none_or(|best| seen.promise > best.promise) => {
                 best = Some(seen);
             }

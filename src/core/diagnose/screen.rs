@@ -18,7 +18,7 @@ use super::colour::Colour;
 use super::fitted::Fitted;
 use super::projection::{Basis, dot, least_squares, norm};
 use super::stack::{Layout, sensitivities};
-use crate::model::{ModelDocument, Per};
+use crate::model::{Edited, Per};
 
 /// One way to weigh the residual, with the declared model projected out.
 struct Metric {
@@ -48,8 +48,6 @@ pub(super) struct Screened {
     before: Values,
     /// From how many starts it was screened.
     pub starts: usize,
-    /// Names of the parameters that the effect adds, free ones.
-    pub added: Vec<String>,
     /// ‖S⊥‖/‖S‖: what the declared parameters cannot imitate.
     pub visible: f64,
     pub score: f64,
@@ -103,7 +101,7 @@ impl<'c> Screen<'c> {
         free.dedup();
         free.sort_unstable();
         free.dedup();
-        let declared = sensitivities(&base.problem, &layout, &base.theta(), &free)?;
+        let declared = sensitivities(&base.problem, &layout, &base.theta, &free)?;
         let metric = |colour: Colour, orders: Vec<usize>| {
             let whiten = |column: &Vec<f64>| colour.whiten(&layout, &base.residual, column);
             let declared = Basis::of(declared.iter().map(whiten));
@@ -138,23 +136,18 @@ impl<'c> Screen<'c> {
     ///
     /// # Errors
     /// Why it cannot be screened.
-    pub(super) fn of(&self, document: &ModelDocument, start: &Values) -> Result<Screened, String> {
+    pub(super) fn of(&self, edited: &Edited, start: &Values) -> Result<Screened, String> {
         let values = self.base.values_with(start);
         let problem = self
             .case
-            .problem(document, &values)
+            .problem(&edited.document, &values)
             .map_err(|e| e.to_string())?;
-        let declared = &self.base.problem.model.parameters;
         let model = &problem.model;
         let is_added = |index: &usize| {
             let info = &model.parameters[*index];
-            !info.document.fixed && !declared.iter().any(|p| p.name == info.name)
+            !info.document.fixed && edited.added.iter().any(|added| added.name == info.name)
         };
         let added: Vec<usize> = (0..model.parameters.len()).filter(is_added).collect();
-        let names: Vec<String> = added
-            .iter()
-            .map(|&index| model.parameters[index].name.clone())
-            .collect();
         let theta = problem.unknowns.start();
         let columns = sensitivities(&problem, &self.layout, &theta, &added)
             .ok_or("the simulation leaves the range of numbers")?;
@@ -181,7 +174,6 @@ impl<'c> Screen<'c> {
         let mut best: Option<Screened> = None;
         for metric in &self.metrics {
             let mut seen = self.in_metric(metric, &columns);
-            seen.added = names.clone();
             seen.start = start.clone();
             for (key, size) in keys.iter().zip(std::mem::take(&mut seen.sizes)) {
                 let before = values.get(key).copied().unwrap_or(0.0);
@@ -254,7 +246,6 @@ impl<'c> Screen<'c> {
             start: Values::new(),
             before: Values::new(),
             starts: 1,
-            added: Vec::new(),
             visible,
             score,
             promise,

@@ -7,7 +7,7 @@ use super::fitted::Fitted;
 use super::null_model::NullModel;
 use super::screen::Screened;
 use super::starts::{starts, starts_of_delay};
-use crate::model::ModelDocument;
+use crate::model::{Added, ModelDocument};
 
 /// Fits whose ln L differ by less ended at the same minimum.
 const SAME: f64 = 1e-3;
@@ -22,13 +22,15 @@ pub(super) struct Trial {
     /// From how many starts it was looked for.
     pub starts: usize,
     pub screened: Option<Screened>,
+    /// The parameters that it adds, its size first.
+    pub added: Vec<Added>,
     /// Where the likelihood with coloured noise is greatest.
     pub likeliest: Fitted,
     /// What it takes off the whitened residual, of length 1.
     pub explained: Vec<f64>,
     /// Twice the gain of the colour-aware log-likelihood over the model without it, each with the noise that suits it.
     pub likelihood_ratio: f64,
-    /// Parameters that it adds.
+    /// Unknowns that it adds.
     pub freedom: usize,
 }
 
@@ -43,21 +45,24 @@ impl Trial {
         screened: Option<Screened>,
     ) -> Result<Self, String> {
         let (case, base) = (null.case, null.base);
-        let document = effect
+        let edited = effect
             .apply(&base.document)
             .map_err(|error| error.to_string())?;
         let starts = match &screened {
             Some(seen) => {
-                let further = starts_of_delay(case, &effect, &seen.added);
+                let further = starts_of_delay(case, &effect, &edited.added);
                 seen.starts().into_iter().chain(further).collect()
             }
-            None => starts(case, &effect, &document, &base.document),
+            None => starts(case, &effect, &edited),
         };
         let tried = screened.as_ref().map_or(starts.len(), |seen| seen.starts);
-        let (ln_evidence, likeliest) =
-            likeliest(fits(case, base, &effect, &document, &starts)?, &effect);
+        let (ln_evidence, likeliest) = likeliest(
+            fits(case, base, &effect, &edited.document, &starts)?,
+            &effect,
+        );
         let declared = base.problem.unknowns.len();
         Ok(Self {
+            added: edited.added,
             explained: null.explained_by(&likeliest),
             freedom: (likeliest.problem.unknowns.len().saturating_sub(declared)).max(1),
             likelihood_ratio: 2.0 * (ln_evidence - null.ln_evidence),

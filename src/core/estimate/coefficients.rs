@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::report::{Estimate, ParameterEstimate};
+use crate::estimate::report::estimate::Estimate;
+use crate::estimate::report::parameter::ParameterEstimate;
 use crate::flight::{self, Aircraft, Fault, Unit, WeightedSum};
 
 /// A nondimensional stability or control derivative.

@@ -9,75 +9,76 @@
 //!
 //! [`filter_error`] does so with one-step predictions in place of the simulation, for states that are disturbed,
 //! and [`Estimate`] is the answer, with the reason why the solver stopped.
+//!
+//! Rooms stand on floors, each on those before it and none on one behind it:
+//!
+//! ```text
+//! options      what a user may ask of an estimation
+//! report       what an estimation answers: types alone
+//! problem      a model with its data and unknowns
+//! linear       sums of products, and what is solved with them
+//! likelihood   R, cost, gradient and information from sums
+//! evaluation   one look at the data for a θ; derivatives
+//! descent      from one θ to the next until there is a reason to stop
+//! accuracy     what the estimate is worth: bounds, colour, identifiability, modes, fit
+//! answer       estimate and time histories, put together at the end
+//! regression   the problem of equation error
+//! start        where to begin; multiple shooting
+//! output_error, filter_error, study
+//! ```
 
-mod absorbed;
-mod acceleration;
+mod accuracy;
 mod answer;
-mod autoregression;
 mod coefficients;
-mod coloured_residuals;
-mod definite;
-pub mod derivatives;
-mod elimination;
+mod descent;
 mod equation_error;
-mod error_bounds;
 mod estimator;
 mod evaluation;
 mod filter_error;
-mod fit;
-mod identifiability;
-mod information;
-mod iterate;
 mod likelihood;
-mod local_sums;
-mod missing;
-mod modes;
+mod linear;
 mod options;
 mod output_error;
 mod prediction;
-mod priors;
 mod problem;
-mod process_noise;
-mod products;
-pub mod quasi_newton;
+mod regression;
 mod report;
-mod role;
-mod search;
-mod second_try;
-mod shooting;
-mod skyline;
 mod start;
-mod state_matrix;
-mod step;
-mod stopped;
-mod strand;
 pub mod study;
-mod sums;
-mod unknowns;
 
+pub use crate::flight::five_digits;
 pub use answer::Solution;
 pub use coefficients::{Coefficient, coefficients};
-pub use derivatives::{Derivatives, Scaling};
+pub use descent::quasi_newton;
 pub use equation_error::{equation_error, has_equation_error};
-pub use error_bounds::ErrorBoundsKind;
-pub use estimator::{Estimator, Progress, Watcher, estimate};
-pub use evaluation::{Evaluator, Unusable};
-pub use filter_error::{
-    FilterEquations, FilterEstimate, FilterEvaluator, Pole, ProcessNoiseEstimate, SegmentGain,
-    filter_error, process_noise_names,
-};
-pub use identifiability::{CorrelatedPair, DataInformation, Identifiability, NearlyCollinearSet};
-pub use likelihood::NormalEquations;
-pub use modes::{Measure, Mode};
+pub use estimator::estimate;
+pub use evaluation::derivatives;
+pub use evaluation::evaluator::Evaluator;
+pub use evaluation::normal_equations::NormalEquations;
+pub use filter_error::{FilterEquations, FilterEvaluator, filter_error, process_noise_names};
+pub use options::error_bounds::ErrorBoundsKind;
+pub use options::estimator::Estimator;
+pub use options::process_noise::ProcessNoise;
+pub use options::role::Role;
+pub use options::start::StartMethod;
+pub use options::technique::{Derivatives, Scaling};
 pub use options::{Method, Noise, NoiseStructure, Options};
-pub use output_error::{Observer, output_error};
-pub use prediction::{Prediction, Validation, predict};
+pub use output_error::output_error;
+pub use prediction::{Validation, predict};
 pub use problem::Problem;
-pub use process_noise::ProcessNoise;
-pub use report::{
-    Bound, CollinearSet, Estimate, Iteration, Outcome, OutputFit, OutputSeries, ParameterEstimate,
-    Series, TheilShares, TimeHistory, five_digits,
+pub use problem::unknowns::{Unknown, Unknowns};
+pub use problem::unusable::Unusable;
+pub use report::collinear::CollinearSet;
+pub use report::estimate::Estimate;
+pub use report::filter::{FilterEstimate, Pole, ProcessNoiseEstimate, SegmentGain};
+pub use report::fit::{OutputFit, TheilShares};
+pub use report::history::{OutputSeries, Series, TimeHistory};
+pub use report::identifiability::{
+    CorrelatedPair, DataInformation, Identifiability, NearlyCollinearSet,
 };
-pub use role::Role;
-pub use start::{StartKind, StartMethod, StartReport};
-pub use unknowns::{Unknown, Unknowns};
+pub use report::iteration::{Iteration, Outcome};
+pub use report::mode::{Measure, Mode};
+pub use report::parameter::{Bound, ParameterEstimate};
+pub use report::prediction::Prediction;
+pub use report::progress::{Observer, Progress, Watcher};
+pub use report::start::{StartKind, StartReport};

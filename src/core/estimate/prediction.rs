@@ -2,17 +2,19 @@
 
 use std::ops::ControlFlow;
 
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
+use nalgebra::DMatrix;
 
-use super::evaluation::Unusable;
-use super::options::Noise;
-use super::output_error::output_error;
-use super::problem::Problem;
-use super::report::{Estimate, Outcome, OutputFit, ParameterEstimate, TimeHistory};
-use super::role::Role;
-use super::unknowns::Unknowns;
-use crate::model::{Model, Per};
+use crate::estimate::options::Noise;
+use crate::estimate::options::role::Role;
+use crate::estimate::output_error::output_error;
+use crate::estimate::problem::Problem;
+use crate::estimate::problem::unknowns::Unknowns;
+use crate::estimate::problem::unusable::Unusable;
+use crate::estimate::report::estimate::Estimate;
+use crate::estimate::report::history::TimeHistory;
+use crate::estimate::report::iteration::Outcome;
+use crate::estimate::report::prediction::Prediction;
+use crate::model::Per;
 use crate::simulate::Segment;
 
 /// A segment to be predicted.
@@ -23,32 +25,14 @@ pub struct Validation {
     pub unknowns: Unknowns,
 }
 
-/// How well the estimated model predicts one segment that it was not fitted to.
-///
-/// What all maneuvers share is held at the estimate. What belongs to a maneuver (`per = "maneuver"`: its initial
-/// state, its biases) is no property of the aircraft, and is estimated on the segment itself unless it is fixed,
-/// with the noise covariance held at its estimate.
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
-pub struct Prediction {
-    #[schema(example = "doublet")]
-    pub segment: String,
-    /// Of the estimation of the segment's own parameters; `converged` where it has none.
-    pub outcome: Outcome,
-    pub reason: String,
-    /// The segment's own parameters.
-    pub parameters: Vec<ParameterEstimate>,
-    /// Empty where the simulation left the range of numbers.
-    pub outputs: Vec<OutputFit>,
-    pub samples: usize,
-}
-
-/// Predicts a segment with the result of the estimation of `problem`.
+/// Predicts a segment with the estimate of `problem`: θ and R, SI.
 pub fn predict(
     problem: &Problem,
-    estimate: &Estimate,
+    theta: &[f64],
+    covariance: &DMatrix<f64>,
     validation: &Validation,
 ) -> (Prediction, Option<TimeHistory>) {
-    let held = held(problem, estimate, validation);
+    let held = held(problem, theta, covariance, validation);
     let segment = validation.segment.label.clone();
     let samples = validation.segment.len();
     match output_error(&held, &mut |_| ControlFlow::Continue(())) {
@@ -88,8 +72,9 @@ pub fn predict(
                     "with the estimate the simulation leaves the range of numbers at sample {}",
                     sample + 1
                 ),
-                Unusable::Delayed { .. } => {
-                    "with the estimate an input or output is delayed too long".to_string()
+                Unusable::Path { .. } => {
+                    "with the estimate an input or output is delayed too long, or its rate limited to less than nothing"
+                        .to_string()
                 }
                 // it is simulated without a filter, and not regressed
                 Unusable::NotFinite
@@ -113,23 +98,23 @@ pub fn predict(
 }
 
 /// The problem of the segment alone, with shared parameters and the noise held at the estimate.
-fn held(problem: &Problem, estimate: &Estimate, validation: &Validation) -> Problem {
+fn held(
+    problem: &Problem,
+    theta: &[f64],
+    covariance: &DMatrix<f64>,
+    validation: &Validation,
+) -> Problem {
     let model = &problem.model;
-    let unknowns =
-        (validation.unknowns).with_shared_held(|parameter| shared(model, estimate, parameter));
+    let is_shared = |parameter: usize| model.parameters[parameter].document.per != Per::Maneuver;
+    let mut parameters = Vec::new();
+    problem.unknowns.parameters(0, theta, &mut parameters);
+    let unknowns = (validation.unknowns)
+        .with_shared_held(|parameter| is_shared(parameter).then(|| parameters[parameter]));
     let mut options = problem.options.clone();
-    let variance = |i: usize| estimate.noise_covariance[i][i];
     options.noise = Noise::Given {
-        variance: (0..model.outputs.len()).map(variance).collect(),
+        variance: covariance.diagonal().iter().copied().collect(),
     };
     options.max_iterations = options.max_iterations.max(1);
     let segments = vec![validation.segment.clone()];
     Problem::new(model.clone(), segments, unknowns, options)
-}
-
-/// The estimate of a parameter that all segments share, SI; `None` where each has its own.
-fn shared(model: &Model, estimate: &Estimate, parameter: usize) -> Option<f64> {
-    let info = &model.parameters[parameter];
-    let row = (estimate.parameters.iter()).find(|row| row.name == info.name)?;
-    (info.document.per != Per::Maneuver).then(|| info.unit.to_si(row.estimate))
 }

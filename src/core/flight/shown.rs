@@ -1,4 +1,4 @@
-//! How quantities are shown to people: angles in degrees, all else as it is.
+//! How quantities are shown to people: angles in degrees, numbers with five digits.
 
 /// What a value in SI is multiplied by, and the unit it then has.
 #[derive(Clone, PartialEq, Debug)]
@@ -19,6 +19,19 @@ pub fn shown_in(unit: &str) -> Shown {
             scale: 1.0,
             unit: unit.to_string(),
         }
+    }
+}
+
+/// A number for a table: five digits, as a decimal where that is readable.
+pub fn five_digits(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 {
+        "0".to_string()
+    } else if (1e-3..1e5).contains(&size) {
+        let digits = (4 - size.log10().floor() as i32).max(0) as usize;
+        format!("{value:.digits$}")
+    } else {
+        format!("{value:.4e}")
     }
 }
 
@@ -44,5 +57,19 @@ mod tests {
                 }
             );
         }
+    }
+
+    #[test]
+    fn numbers_have_five_digits() {
+        let cases = [
+            (-4.917_632, "-4.9176"),
+            (0.020_015_48, "0.020015"),
+            (130.0, "130.00"),
+            (1.5e-9, "1.5000e-9"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(five_digits(value), text);
+        }
+        assert_eq!(five_digits(0.0), "0");
     }
 }

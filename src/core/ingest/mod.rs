@@ -17,6 +17,7 @@ mod axis;
 pub mod bundled;
 mod cell;
 mod csv;
+mod csv_writer;
 mod export;
 mod fault;
 mod header;
@@ -35,6 +36,7 @@ mod summary;
 mod text;
 mod units;
 
+pub use csv_writer::CsvWriter;
 pub use export::{to_csv, to_csv_as_recorded, to_json};
 pub use fault::{IngestError, code};
 pub use limits::Limits;

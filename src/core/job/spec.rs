@@ -8,6 +8,7 @@ use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use utoipa::ToSchema;
 
+use crate::diagnose::Knowledge;
 use crate::estimate::{Options, Role};
 use crate::model::{Edit, ModelDocument, Prior, Start};
 
@@ -63,12 +64,19 @@ pub struct JobSpec {
     /// Of a diagnosis: effects of your own, tried beside those of the catalogue.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub candidates: Vec<Candidate>,
+    /// Of a diagnosis: what is known before the data.
+    #[serde(default, skip_serializing_if = "is_nothing")]
+    pub knowledge: Knowledge,
     #[serde(default)]
     pub options: Options,
 }
 
 /// The highest priority that there is; the lowest is its negative.
 pub const HIGHEST_PRIORITY: i32 = 10;
+
+fn is_nothing(knowledge: &Knowledge) -> bool {
+    *knowledge == Knowledge::default()
+}
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
 fn is_zero(priority: &i32) -> bool {

@@ -2,7 +2,8 @@
 //!
 //! Found from the equations, not declared. For such a model one integration step is a constant matrix.
 
-use super::graph::{Binary, Graph, Node, NodeId, Unary};
+use super::graph::{Graph, Node, NodeId};
+use super::operation::{Binary, Unary};
 use super::program::{Program, Slots};
 
 /// The coefficients of affine equations and their derivatives by the parameters; those that are zero for any

@@ -1,6 +1,7 @@
 //! Exact derivatives of the equations in a graph, as more nodes of the graph.
 
-use super::graph::{Binary, Graph, Node, NodeId, Unary};
+use super::graph::{Graph, Node, NodeId};
+use super::operation::{Binary, Unary};
 
 impl Graph {
     /// d(roots)/d(symbol), exactly; `None` where a root does not depend on it.

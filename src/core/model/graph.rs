@@ -4,6 +4,8 @@
 
 use std::collections::HashMap;
 
+use super::operation::{Binary, Unary};
+
 /// A node of the graph.
 pub(super) type NodeId = u32;
 
@@ -18,36 +20,6 @@ pub(super) enum Node {
     Binary(Binary, NodeId, NodeId),
     /// The second operand where the first is not zero, else the third.
     Select(NodeId, NodeId, NodeId),
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub(super) enum Unary {
-    Negate,
-    Sin,
-    Cos,
-    Tan,
-    Asin,
-    Acos,
-    Atan,
-    Tanh,
-    Exp,
-    Ln,
-    Sqrt,
-    Abs,
-    Sign,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub(super) enum Binary {
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Power,
-    Atan2,
-    /// 1 where the left operand is less than the right one, else 0.
-    Less,
-    LessOrEqual,
 }
 
 /// The work that a document may cause: nodes of equations and their derivatives.

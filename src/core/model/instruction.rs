@@ -2,74 +2,8 @@
 
 use multiversion::multiversion;
 
-use super::graph::{Binary, Unary};
-use super::scalar::{Lanes, Scalar};
-
-/// What an instruction does with its operands a, b, c. Flat, so that it is told by one jump.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Operation {
-    Negate,
-    Sin,
-    Cos,
-    Tan,
-    Asin,
-    Acos,
-    Atan,
-    Tanh,
-    Exp,
-    Ln,
-    Sqrt,
-    Abs,
-    Sign,
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Power,
-    Atan2,
-    Less,
-    LessOrEqual,
-    Select,
-    /// c + a b, rounded once.
-    MultiplyAdd,
-    /// c - a b, rounded once.
-    MultiplySubtract,
-}
-
-impl From<Unary> for Operation {
-    fn from(unary: Unary) -> Self {
-        match unary {
-            Unary::Negate => Self::Negate,
-            Unary::Sin => Self::Sin,
-            Unary::Cos => Self::Cos,
-            Unary::Tan => Self::Tan,
-            Unary::Asin => Self::Asin,
-            Unary::Acos => Self::Acos,
-            Unary::Atan => Self::Atan,
-            Unary::Tanh => Self::Tanh,
-            Unary::Exp => Self::Exp,
-            Unary::Ln => Self::Ln,
-            Unary::Sqrt => Self::Sqrt,
-            Unary::Abs => Self::Abs,
-            Unary::Sign => Self::Sign,
-        }
-    }
-}
-
-impl From<Binary> for Operation {
-    fn from(binary: Binary) -> Self {
-        match binary {
-            Binary::Add => Self::Add,
-            Binary::Subtract => Self::Subtract,
-            Binary::Multiply => Self::Multiply,
-            Binary::Divide => Self::Divide,
-            Binary::Power => Self::Power,
-            Binary::Atan2 => Self::Atan2,
-            Binary::Less => Self::Less,
-            Binary::LessOrEqual => Self::LessOrEqual,
-        }
-    }
-}
+use super::operation::Operation;
+use super::scalar::{Lanes, Numbers, Scalar};
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Instruction {
@@ -82,7 +16,7 @@ pub(super) struct Instruction {
 
 /// Instructions in the order in which they are done.
 #[derive(Clone, Debug, Default)]
-pub struct Instructions(Vec<Instruction>);
+pub(super) struct Instructions(Vec<Instruction>);
 
 impl Instructions {
     pub(super) fn push(&mut self, instruction: Instruction) {
@@ -134,12 +68,14 @@ impl Instructions {
         }
     }
 
-    pub(super) fn execute_one(&self, registers: &mut [f64]) {
-        one(self, registers);
-    }
-
-    pub(super) fn execute_lanes(&self, registers: &mut [Lanes]) {
-        lanes(self, registers);
+    /// As [`Self::interpret`], with the widest vectors that the machine has; the numbers do not depend on them.
+    #[inline(always)]
+    pub(super) fn execute<T: Scalar>(&self, registers: &mut [T]) {
+        match T::told_apart(registers) {
+            Numbers::Real(registers) => one(self, registers),
+            Numbers::SideBySide(registers) => lanes(self, registers),
+            Numbers::Other(registers) => self.interpret(registers),
+        }
     }
 }
 

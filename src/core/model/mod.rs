@@ -6,11 +6,11 @@
 mod affine;
 pub mod catalog;
 mod compile;
-mod delays;
 mod derivative;
 mod dimensions;
 mod document;
 mod edit;
+mod element;
 mod equations;
 pub mod expression;
 mod formula;
@@ -20,21 +20,26 @@ mod jacobian;
 pub mod limits;
 mod names;
 mod native;
+mod operation;
+mod paths;
 mod program;
+mod quantities;
 mod scalar;
 mod trigonometry;
 mod unique;
 
 pub use affine::{Affine, Coefficient, Factor};
-pub use delays::Delays;
 pub use document::{
     Constant, Definition, Input, ModelDocument, Output, Parameter, Per, Prior, Start, State,
 };
-pub use edit::{Added, Edit, EditError, EditKind};
+pub use edit::{Added, AddedRole, Edit, EditError, EditKind, Edited, Reference};
+pub use element::Element;
 pub use formula::{ChannelFormula, FormulaError, Recorded};
 pub use jacobian::Jacobian;
 pub use native::{Native, NativeSteps, Stretch};
+pub use paths::{PathElement, Paths};
 pub use program::{Program, Workspace};
+pub use quantities::{Quantities, Source, Taken};
 pub use scalar::{BLOCK, LANES, Lanes, Scalar};
 pub use unique::unique;
 
@@ -61,15 +66,15 @@ pub struct Model {
     pub initial_jacobian: Jacobian,
     pub dynamics_jacobian: Jacobian,
     pub observation_jacobian: Jacobian,
-    pub delays: Delays,
+    pub paths: Paths,
     /// The steps of `dynamics` as machine code, for all who share the model.
     native: Arc<Native>,
 }
 
 impl Model {
-    /// What its equations see as inputs: those of the document, then the rates of those that are delayed.
+    /// What its equations see as inputs: those of the document, then the ρ of each element of their paths.
     pub fn driven_inputs(&self) -> usize {
-        self.inputs.len() + self.delays.inputs.len()
+        self.inputs.len() + self.paths.of_inputs().len()
     }
 
     /// Machine code for `steps` that are about to be taken with so many stages each, where there is some.

@@ -3,8 +3,10 @@
 //! Registers hold states, inputs, time, parameters, constants, then results. What depends on parameters
 //! alone is the *prelude*, run once for each θ; the *body* runs for each sample.
 
-use super::graph::{Binary, Graph, Node, NodeId};
-use super::instruction::{Instruction, Instructions, Operation};
+use super::graph::{Graph, Node, NodeId};
+use super::instruction::{Instruction, Instructions};
+use super::operation::Binary;
+use super::operation::Operation;
 use super::scalar::Scalar;
 
 /// Where the symbols of a model stand, in registers as in the graph.
@@ -201,7 +203,7 @@ impl Program {
     /// Evaluates for the state, inputs and time that stand in the workspace.
     #[inline]
     pub fn run<T: Scalar>(&self, workspace: &mut Workspace<T>) {
-        T::execute(&self.body, &mut workspace.0);
+        self.body.execute(&mut workspace.0);
     }
 
     /// Result `i` of the last run.

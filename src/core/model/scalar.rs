@@ -4,7 +4,6 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use num_complex::Complex64;
 
-use super::instruction::Instructions;
 use super::trigonometry;
 
 /// A number as compiled equations need it.
@@ -42,10 +41,18 @@ pub trait Scalar:
     /// self * factor + addend, rounded once where the number is real: the same on every machine, and one
     /// instruction on those made since 2013. Where there is none it is slow, but the numbers are the same.
     fn multiply_add(self, factor: Self, addend: Self) -> Self;
-    /// Does what a program says, with the widest vectors that the machine has; the numbers do not depend on them.
-    fn execute(body: &Instructions, registers: &mut [Self]) {
-        body.interpret(registers);
+    /// For those who are faster with some of them.
+    #[inline(always)]
+    fn told_apart(numbers: &mut [Self]) -> Numbers<'_, Self> {
+        Numbers::Other(numbers)
     }
+}
+
+/// Numbers by their kind.
+pub enum Numbers<'n, T> {
+    Real(&'n mut [f64]),
+    SideBySide(&'n mut [Lanes]),
+    Other(&'n mut [T]),
 }
 
 fn truth(value: bool) -> f64 {
@@ -115,8 +122,9 @@ impl Scalar for f64 {
     fn multiply_add(self, factor: Self, addend: Self) -> Self {
         self.mul_add(factor, addend)
     }
-    fn execute(body: &Instructions, registers: &mut [Self]) {
-        body.execute_one(registers);
+    #[inline(always)]
+    fn told_apart(numbers: &mut [Self]) -> Numbers<'_, Self> {
+        Numbers::Real(numbers)
     }
 }
 
@@ -295,7 +303,8 @@ impl Scalar for Lanes {
         }
         sum
     }
-    fn execute(body: &Instructions, registers: &mut [Self]) {
-        body.execute_lanes(registers);
+    #[inline(always)]
+    fn told_apart(numbers: &mut [Self]) -> Numbers<'_, Self> {
+        Numbers::SideBySide(numbers)
     }
 }

@@ -15,7 +15,10 @@
 //! States are kept once a block; those between are worked out again on the way back. The Jacobians of a block
 //! are evaluated side by side, as those of the forward sensitivities are.
 
+use super::input_path::driven;
+use super::interpolation::Axis;
 use super::method::{InputInterpolation, Integrator, Stage};
+use super::output_path;
 use super::segment::Segment;
 use super::side_by_side::{SPAN, SideBySide};
 use super::stepper::{Stepper, between};
@@ -28,12 +31,16 @@ pub struct Checkpoints {
     elapsed: Vec<f64>,
     /// By block, then state.
     states: Vec<f64>,
+    /// Where outputs have paths, all that went into them: by output, then sample.
+    outputs: Vec<Vec<f64>>,
 }
 
 impl Checkpoints {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        size_of_val(self.elapsed.as_slice()) + size_of_val(self.states.as_slice())
+        let series = std::iter::once(&self.elapsed).chain([&self.states]);
+        let series = series.chain(&self.outputs);
+        series.map(|series| size_of_val(series.as_slice())).sum()
     }
 }
 
@@ -100,6 +107,29 @@ impl<'m> Adjoint<'m> {
         &mut self,
         segment: &Segment,
         parameters: &[f64],
+        sink: impl FnMut(usize, &[f64]),
+    ) -> Result<Checkpoints, Diverged> {
+        let paths = &self.model.paths;
+        let sizes = paths.at(parameters);
+        let driven = driven(self.model, self.interpolation, segment, &sizes);
+        if paths.of_outputs().is_empty() {
+            return self.advance(&driven, parameters, sink);
+        }
+        let mut outputs = vec![Vec::with_capacity(segment.len()); self.model.outputs.len()];
+        let keep = |_, y: &[f64]| output_path::push(&mut outputs, y);
+        let mut kept = self.advance(&driven, parameters, keep)?;
+        kept.outputs.clone_from(&outputs);
+        let sizes = &sizes[paths.of_inputs().len()..];
+        output_path::pass(self.model, &Axis::new(segment), sizes, &mut outputs);
+        output_path::samples(&outputs, sink);
+        Ok(kept)
+    }
+
+    /// The way forward along a driven segment, outputs before their paths.
+    fn advance(
+        &mut self,
+        segment: &Segment,
+        parameters: &[f64],
         mut sink: impl FnMut(usize, &[f64]),
     ) -> Result<Checkpoints, Diverged> {
         self.stepper.set_parameters(parameters);
@@ -130,6 +160,42 @@ impl<'m> Adjoint<'m> {
     /// The way back. `seed` is given each sample with its outputs and answers with ȳ; `gradient`, of all
     /// parameters of the model, is added to. `checkpoints` are those of the way forward with the same θ.
     pub fn reverse(
+        &mut self,
+        segment: &Segment,
+        parameters: &[f64],
+        checkpoints: &Checkpoints,
+        mut seed: impl FnMut(usize, &[f64], &mut [f64]),
+        gradient: &mut [f64],
+    ) {
+        let paths = &self.model.paths;
+        let sizes = paths.at(parameters);
+        let driven = driven(self.model, self.interpolation, segment, &sizes);
+        if paths.of_outputs().is_empty() {
+            self.step_back_along(&driven, parameters, checkpoints, seed, gradient);
+            return;
+        }
+        let (axis, sizes) = (Axis::new(segment), &sizes[paths.of_inputs().len()..]);
+        let mut outputs = checkpoints.outputs.clone();
+        output_path::pass(self.model, &axis, sizes, &mut outputs);
+        let mut bars = vec![Vec::with_capacity(segment.len()); outputs.len()];
+        let mut y_bar = vec![0.0; outputs.len()];
+        output_path::samples(&outputs, |k, y: &[f64]| {
+            seed(k, y, &mut y_bar);
+            output_path::push(&mut bars, &y_bar);
+        });
+        let prompt = &checkpoints.outputs;
+        let of_sizes = output_path::pass_back(self.model, &axis, sizes, prompt, &mut bars);
+        for (place, parameter, value) in paths.output_derivatives(parameters) {
+            gradient[parameter] += of_sizes[place] * value;
+        }
+        let seed = |k: usize, _: &[f64], y_bar: &mut [f64]| {
+            (y_bar.iter_mut().zip(&bars)).for_each(|(to, series)| *to = series[k]);
+        };
+        self.step_back_along(&driven, parameters, checkpoints, seed, gradient);
+    }
+
+    /// The way back along a driven segment, from outputs before their paths.
+    fn step_back_along(
         &mut self,
         segment: &Segment,
         parameters: &[f64],

@@ -3,13 +3,12 @@
 use multiversion::multiversion;
 
 use super::aligned::Aligned;
-use super::linearised::BLOCK;
 use super::method::{InputInterpolation, Integrator, Stage};
 use super::one_step::{MOST_STATES, OneStep};
 use super::segment::{Segment, Steps};
 use super::stepper::{Stepper, between};
 use super::trajectory::{Diverged, initial_state};
-use crate::model::{LANES, Lanes, Model, Program, Stretch, Workspace};
+use crate::model::{BLOCK, LANES, Lanes, Model, Program, Stretch, Workspace};
 
 /// The course of a model along a segment: states, inputs and times at the samples of a block.
 pub(super) struct Course<'m> {

@@ -2,8 +2,7 @@
 
 use super::aligned::Aligned;
 use super::course::Course;
-pub(super) use crate::model::BLOCK;
-use crate::model::{LANES, Lanes, Program, Workspace};
+use crate::model::{BLOCK, LANES, Lanes, Program, Workspace};
 
 /// Results of one program, by stage of the integration scheme and sample of the block.
 pub(super) struct Linearised<'m> {

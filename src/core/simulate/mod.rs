@@ -2,24 +2,24 @@
 //!
 //! dx/dt = f(x, u, θ), x(0) = x0(θ), y_k = g(x_k, u_k, θ), stepped once a sample by an explicit method.
 //! [`simulate`] gives y for any kind of number; [`Sensitivities`] gives y and ∂y/∂θ, [`Adjoint`] the
-//! product (∂y/∂θ)ᵀ ȳ alone. A [`Scenario`] makes a maneuver of known truth. Inputs and outputs that the model delays
-//! are delayed here: [`driven`] inputs before a run, outputs behind it.
+//! product (∂y/∂θ)ᵀ ȳ alone. A [`Scenario`] makes a maneuver of known truth. Inputs and outputs pass their paths
+//! (play, rate limit, lag, delay) here: [`driven`] inputs before a run, outputs behind it.
 
 mod adjoint;
 mod aligned;
+mod block;
 mod columns;
 mod course;
-mod delay_line;
-mod delayed_inputs;
-mod effects;
-mod input_design;
+mod input_path;
 mod interpolation;
+mod lag;
 mod linearised;
 mod march;
 mod method;
-mod noise;
 mod one_step;
 mod one_step_recursion;
+mod output_line;
+mod output_path;
 mod output_rows;
 mod outputs;
 mod pack;
@@ -28,6 +28,7 @@ mod scenario;
 mod segment;
 mod sensitivity;
 mod side_by_side;
+mod signal;
 mod state_sensitivities;
 mod stepper;
 mod trajectory;
@@ -36,17 +37,18 @@ mod transition_recursion;
 
 pub use adjoint::{Adjoint, Checkpoints};
 pub use aligned::Aligned;
+pub use block::Block;
 pub use columns::Columns;
-pub use delayed_inputs::{MOST_DELAY, delay_out_of_bounds, driven};
-pub use effects::ScenarioEffect;
-pub use input_design::InputDesign;
+pub use input_path::{MOST_DELAY, driven, path_out_of_bounds};
 pub use march::{March, Standing};
 pub use method::{InputInterpolation, Integrator, Stage};
-pub use noise::NoiseColour;
 pub use outputs::Outputs;
 pub use pack::{PACK, Pack, multiply_add, packs};
-pub use scenario::{Scenario, ScenarioChannel, ScenarioError, ScenarioInput, ScenarioOutput};
+pub use scenario::{
+    InputDesign, NoiseColour, Scenario, ScenarioChannel, ScenarioEffect, ScenarioError,
+    ScenarioInput, ScenarioOutput,
+};
 pub use segment::{Segment, Steps};
-pub use sensitivity::{Block, Sensitivities};
+pub use sensitivity::Sensitivities;
 pub use stepper::{Stepper, between};
 pub use trajectory::{Diverged, initial_state, simulate};

@@ -5,10 +5,10 @@ use multiversion::multiversion;
 use super::aligned::Aligned;
 use super::columns::Columns;
 use super::course::Course;
-use super::linearised::BLOCK;
 use super::one_step::OneStep;
 use super::pack::{PACK, Pack, multiply_add};
 use super::segment::Segment;
+use crate::model::BLOCK;
 
 #[derive(Default)]
 pub(super) struct OneStepRecursion {

@@ -4,9 +4,9 @@ use multiversion::multiversion;
 
 use super::aligned::Aligned;
 use super::columns::Columns;
-use super::linearised::{BLOCK, Linearised};
+use super::linearised::Linearised;
 use super::pack::{PACK, Pack, multiply_add, packs};
-use crate::model::Model;
+use crate::model::{BLOCK, Model};
 
 /// Outputs that depend on more states go the general way.
 const MOST_IN_REGISTERS: usize = 16;

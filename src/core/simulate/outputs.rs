@@ -1,11 +1,11 @@
 //! Outputs alone, along the same course as [`super::Sensitivities`]: the same numbers, for less work.
 
 use super::course::Course;
-use super::linearised::{BLOCK, Linearised};
+use super::linearised::Linearised;
 use super::method::{InputInterpolation, Integrator};
 use super::segment::Segment;
 use super::trajectory::{Diverged, simulate};
-use crate::model::Model;
+use crate::model::{BLOCK, Model};
 
 /// The machinery for one model, reusable for any segment and θ.
 pub struct Outputs<'m> {
@@ -42,8 +42,8 @@ impl<'m> Outputs<'m> {
         parameters: &[f64],
         mut sink: impl FnMut(usize, &[&[f64]]),
     ) -> Result<(), Diverged> {
-        if !self.model.delays.is_empty() {
-            self.run_delayed(segment, parameters, sink);
+        if !self.model.paths.is_empty() {
+            self.run_with_paths(segment, parameters, sink);
             return Ok(());
         }
         self.course.start(segment, parameters);
@@ -59,8 +59,9 @@ impl<'m> Outputs<'m> {
         }
         Ok(())
     }
-    /// Delayed outputs look back and ahead: the whole segment is one block.
-    fn run_delayed(
+
+    /// A delayed output looks back and ahead: the whole segment is one block.
+    fn run_with_paths(
         &self,
         segment: &Segment,
         parameters: &[f64],

@@ -4,12 +4,12 @@ use multiversion::multiversion;
 
 use super::aligned::Aligned;
 use super::columns::Columns;
-use super::linearised::{BLOCK, Linearised};
+use super::linearised::Linearised;
 use super::method::Stage;
 use super::pack::{PACK, Pack, multiply_add, packs};
 use super::segment::Segment;
 use super::transition::{meets, moved};
-use crate::model::Model;
+use crate::model::{BLOCK, Model};
 
 /// One product of the recursion: an entry of ∂f/∂x times a row of ∂x/∂θ.
 #[derive(Clone, Copy)]

@@ -11,49 +11,19 @@
 //! The derivative is that of the discretised model, exact but for rounding. Memory does not grow with the
 //! length of the recording.
 
+use super::block::Block;
 use super::columns::Columns;
 use super::course::Course;
-use super::delay_line::DelayLine;
-use super::delayed_inputs::driven;
-use super::linearised::{BLOCK, Linearised};
+use super::input_path::driven;
+use super::linearised::Linearised;
 use super::method::{InputInterpolation, Integrator};
+use super::output_line::OutputLine;
 use super::output_rows::OutputRows;
-use super::pack::{Pack, packs};
+use super::pack::Pack;
 use super::segment::Segment;
 use super::state_sensitivities::StateSensitivities;
 use super::trajectory::Diverged;
-use crate::model::Model;
-
-/// Outputs and sensitivities of some consecutive samples.
-pub struct Block<'a> {
-    /// Index of the first sample.
-    pub first: usize,
-    pub len: usize,
-    /// By output.
-    pub(super) outputs: &'a [[f64; BLOCK]],
-    pub(super) columns: &'a Columns,
-    pub(super) rows: &'a [&'a [Pack]],
-}
-
-impl Block<'_> {
-    /// y of one output, sample by sample.
-    pub fn output(&self, output: usize) -> &[f64] {
-        &self.outputs[output][..self.len]
-    }
-
-    /// ∂y/∂θ of one output at sample `k` of the block, in the order of [`Columns::of_output`].
-    pub fn row(&self, output: usize, k: usize) -> &[f64] {
-        let width = self.columns.of_output(output).len();
-        let stride = packs(width);
-        &self.rows[output][k * stride..(k + 1) * stride].as_flattened()[..width]
-    }
-
-    /// All rows of one output, each padded with zeros to whole packs.
-    pub fn packed_rows(&self, output: usize) -> &[Pack] {
-        let stride = packs(self.columns.of_output(output).len());
-        &self.rows[output][..self.len * stride]
-    }
-}
+use crate::model::{BLOCK, Model};
 
 /// The machinery for one model and one set of columns, reusable for any segment and θ.
 pub struct Sensitivities<'m> {
@@ -65,8 +35,8 @@ pub struct Sensitivities<'m> {
     outputs: Linearised<'m>,
     states: StateSensitivities,
     rows: OutputRows,
-    /// Where outputs are delayed.
-    delay_line: Option<DelayLine<'m>>,
+    /// Where outputs have paths.
+    line: Option<OutputLine<'m>>,
 }
 
 impl<'m> Sensitivities<'m> {
@@ -87,7 +57,7 @@ impl<'m> Sensitivities<'m> {
             outputs: Linearised::new(&model.observation, 1),
             states: StateSensitivities::new(model, columns, stages),
             rows: OutputRows::new(model, columns),
-            delay_line: DelayLine::new(model, columns),
+            line: OutputLine::new(model, columns),
         }
     }
 
@@ -101,11 +71,12 @@ impl<'m> Sensitivities<'m> {
         parameters: &[f64],
         mut sink: impl FnMut(&Block<'_>),
     ) -> Result<(), Diverged> {
-        let delays = self.model.delays.at(parameters);
-        let driven = driven(self.model, segment, &delays);
+        let sizes = self.model.paths.at(parameters);
+        let interpolation = self.course.interpolation();
+        let driven = driven(self.model, interpolation, segment, &sizes);
         let segment = &*driven;
-        if let Some(line) = &mut self.delay_line {
-            line.start(segment, parameters, &delays);
+        if let Some(line) = &mut self.line {
+            line.start(segment, parameters, &sizes);
         }
         self.course.start(segment, parameters);
         if self.course.one_step().is_none() {
@@ -150,7 +121,7 @@ impl<'m> Sensitivities<'m> {
                 columns: self.columns,
                 rows: &rows,
             };
-            match &mut self.delay_line {
+            match &mut self.line {
                 Some(line) => line.pass(&block, &mut sink),
                 None => sink(&block),
             }

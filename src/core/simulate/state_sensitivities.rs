@@ -3,13 +3,13 @@
 use super::aligned::Aligned;
 use super::columns::Columns;
 use super::course::Course;
-use super::linearised::{BLOCK, Linearised};
+use super::linearised::Linearised;
 use super::one_step_recursion::OneStepRecursion;
 use super::pack::{PACK, Pack, packs};
 use super::recursion::Recursion;
 use super::segment::Segment;
 use super::transition_recursion::TransitionRecursion;
-use crate::model::Model;
+use crate::model::{BLOCK, Model};
 
 /// What a product costs where each stage waits for the one before it, beside one that waits for nothing.
 const STAGE_COST: usize = 2;

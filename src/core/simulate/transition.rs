@@ -9,10 +9,10 @@ use multiversion::multiversion;
 
 use super::aligned::Aligned;
 use super::columns::Columns;
-use super::linearised::{BLOCK, Linearised};
+use super::linearised::Linearised;
 use super::method::Stage;
 use super::pack::{PACK, Pack};
-use crate::model::Model;
+use crate::model::{BLOCK, Model};
 
 /// Samples taken at a time, in vectors: so few that all slots of them stay in the nearest memory.
 const VECTORS: usize = 2;

@@ -4,12 +4,12 @@ use multiversion::multiversion;
 
 use super::aligned::Aligned;
 use super::columns::Columns;
-use super::linearised::{BLOCK, Linearised};
+use super::linearised::Linearised;
 use super::method::Stage;
 use super::pack::{PACK, Pack, multiply_add, packs};
 use super::segment::Segment;
 use super::transition::Transition;
-use crate::model::Model;
+use crate::model::{BLOCK, Model};
 
 /// Packs of a row that go along together: as many as stay in registers whatever the model.
 const MOST_PACKS: usize = 4;

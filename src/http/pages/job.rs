@@ -7,9 +7,10 @@ use serde::de::DeserializeOwned;
 use uuid::Uuid;
 
 use crate::dashboard::{JobView, NamedModel, UsedManeuver, job_page};
+use crate::http::handlers::jobs::job;
 use crate::http::problem::Problem;
-use crate::http::query::{JobId, unknown_job};
-use crate::http::{Server, Service, jobs};
+use crate::http::request::query::{JobId, unknown_job};
+use crate::http::service::{Server, Service};
 use crate::job::{EventBody, JobSpec};
 use crate::store::Part;
 
@@ -24,7 +25,7 @@ async fn get_job_page(service: Service, JobId(id): JobId) -> Result<Html<String>
 
 /// All that there is to say of a job, but the time histories.
 pub(super) async fn view(service: &Service, id: Uuid) -> Result<JobView, Problem> {
-    let job = jobs::find(service, id).await?;
+    let job = job::find(service, id).await?;
     let spec = service.store.job_spec(id).await?;
     let spec: JobSpec = serde_json::from_str(&spec.ok_or_else(|| unknown_job(id))?)?;
     let maneuvers = (1..)

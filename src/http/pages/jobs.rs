@@ -8,8 +8,8 @@ use serde::Deserialize;
 use crate::dashboard::{Chosen, JobRow, JobsView, jobs_page};
 use crate::http::code::Code;
 use crate::http::problem::Problem;
-use crate::http::query::{Parameters, bad_cursor};
-use crate::http::{Server, Service};
+use crate::http::request::query::{Parameters, bad_cursor};
+use crate::http::service::{Server, Service};
 use crate::job::{EventBody, JobKind, Status};
 use crate::store::{Clock, JobFilter, JobRecord};
 

@@ -5,10 +5,10 @@ use axum::response::Html;
 use axum::routing::get;
 
 use crate::dashboard::{ManeuverView, maneuver_page};
-use crate::http::maneuvers::unknown_maneuver;
+use crate::http::handlers::maneuvers::unknown_maneuver;
 use crate::http::problem::Problem;
-use crate::http::query::Id;
-use crate::http::{Server, Service};
+use crate::http::request::query::Id;
+use crate::http::service::{Server, Service};
 
 pub(super) fn router() -> Router<Server> {
     Router::new().route("/maneuvers/{id}", get(get_maneuver_page))

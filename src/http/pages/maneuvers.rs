@@ -6,9 +6,10 @@ use axum::routing::get;
 use serde::Deserialize;
 
 use crate::dashboard::{ManeuverRow, ManeuversView, maneuvers_page};
+use crate::http::handlers::mappings;
 use crate::http::problem::Problem;
-use crate::http::query::{Parameters, bad_cursor};
-use crate::http::{Server, Service, mappings};
+use crate::http::request::query::{Parameters, bad_cursor};
+use crate::http::service::{Server, Service};
 use crate::store::ManeuverRecord;
 
 pub(super) fn router() -> Router<Server> {

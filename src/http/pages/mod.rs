@@ -16,11 +16,11 @@ use axum::http::{HeaderMap, HeaderValue};
 use axum::response::Response;
 use axum::routing::get;
 
-use super::Server;
-use super::format::cacheable_as;
-use super::problem::{Problem, unknown_route};
-use super::query::Id;
 use crate::dashboard::asset;
+use crate::http::answer::format::cacheable_as;
+use crate::http::problem::{Problem, unknown_route};
+use crate::http::request::query::Id;
+use crate::http::service::Server;
 
 pub(super) fn router() -> Router<Server> {
     Router::new()

@@ -8,10 +8,12 @@ use uuid::Uuid;
 
 use crate::dashboard::{Comparison, ModelView, OtherModel, model_page};
 use crate::diagnose::difference;
-use crate::http::models::{find, page, unknown_model};
+use crate::http::handlers::jobs::job;
+use crate::http::handlers::jobs::results;
+use crate::http::handlers::models::{find, page, unknown_model};
 use crate::http::problem::Problem;
-use crate::http::query::{Id, LONGEST_PAGE, Parameters, bad_cursor, unknown_job};
-use crate::http::{Server, Service, jobs, results};
+use crate::http::request::query::{Id, LONGEST_PAGE, Parameters, bad_cursor, unknown_job};
+use crate::http::service::{Server, Service};
 use crate::model::ModelDocument;
 use crate::store::Part;
 
@@ -72,7 +74,7 @@ async fn other(service: &Service, reference: &str) -> Result<Comparison, Problem
     let (document, name, address): (ModelDocument, _, _) =
         if let Some(job) = reference.strip_prefix(OF_A_JOB) {
             let id = Uuid::parse_str(job).map_err(|_| unknown_job(job))?;
-            let record = jobs::find(service, id).await?;
+            let record = job::find(service, id).await?;
             let text = results::part(service, id, Part::Model).await?;
             let name = if record.name.is_empty() {
                 id.to_string()

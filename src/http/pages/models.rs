@@ -6,10 +6,10 @@ use axum::routing::get;
 use serde::Deserialize;
 
 use crate::dashboard::{Draft, ModelRow, ModelsView, models_page};
-use crate::http::models::{Listed, find, page, unknown_model};
+use crate::http::handlers::models::{Listed, find, page, unknown_model};
 use crate::http::problem::Problem;
-use crate::http::query::{Parameters, bad_cursor};
-use crate::http::{Server, Service};
+use crate::http::request::query::{Parameters, bad_cursor};
+use crate::http::service::{Server, Service};
 use crate::model::catalog;
 
 pub(super) fn router() -> Router<Server> {

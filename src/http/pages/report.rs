@@ -10,8 +10,8 @@ use crate::dashboard::{ReportView, report};
 use crate::diagnose::analyse;
 use crate::estimate::Role;
 use crate::http::problem::Problem;
-use crate::http::query::JobId;
-use crate::http::{Server, Service};
+use crate::http::request::query::JobId;
+use crate::http::service::{Server, Service};
 use crate::store::Part;
 
 pub(super) fn router() -> Router<Server> {

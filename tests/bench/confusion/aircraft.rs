@@ -3,14 +3,16 @@
 use std::sync::LazyLock;
 
 use indexmap::IndexMap;
-use trimtab::diagnose::{Case, Effect, EffectKind, Flight, Treatment, candidates};
-use trimtab::estimate::{Options, Role};
-use trimtab::flight::Maneuver;
-use trimtab::model::{EditKind, Model, ModelDocument, catalog};
-use trimtab::simulate::{InputDesign, NoiseColour, Scenario, ScenarioEffect, ScenarioInput, Steps};
+use trimtab_core::diagnose::{Case, Effect, EffectKind, Flight, Treatment, candidates};
+use trimtab_core::estimate::{Options, Role};
+use trimtab_core::flight::Maneuver;
+use trimtab_core::model::{EditKind, Model, ModelDocument, catalog};
+use trimtab_core::simulate::{
+    InputDesign, NoiseColour, Scenario, ScenarioEffect, ScenarioInput, Steps,
+};
 
 /// An aircraft with its flights: a declared model, and scenarios by role.
-pub struct Aircraft {
+pub(crate) struct Aircraft {
     pub name: &'static str,
     pub model: Model,
     pub document: ModelDocument,
@@ -84,7 +86,7 @@ fn lateral() -> Aircraft {
     )
 }
 
-pub fn aircraft() -> Vec<Aircraft> {
+pub(crate) fn aircraft() -> Vec<Aircraft> {
     vec![short_period(), lateral()]
 }
 
@@ -103,7 +105,7 @@ impl Aircraft {
     }
 
     /// Effects of the catalogue that can be put into these flights.
-    pub fn effects(&self) -> Vec<Effect> {
+    pub(crate) fn effects(&self) -> Vec<Effect> {
         let Some(case) = self.case(&[], None, 0) else {
             return Vec::new();
         };
@@ -116,22 +118,22 @@ impl Aircraft {
     }
 
     /// Variances of the white noise at the truth, SI, in the order of the outputs.
-    pub fn variances(&self) -> Vec<f64> {
+    pub(crate) fn variances(&self) -> Vec<f64> {
         let scenario = &self.flights[0].2;
-        let of = |output: &trimtab::model::Quantity| {
+        let of = |output: &trimtab_core::model::Quantity| {
             let recorded = &scenario.outputs[&output.name];
-            let unit = trimtab::flight::Unit::parse(&recorded.unit).unwrap();
+            let unit = trimtab_core::flight::Unit::parse(&recorded.unit).unwrap();
             (recorded.noise * unit.scale).powi(2)
         };
         self.model.outputs.iter().map(of).collect()
     }
 
-    pub fn step(&self) -> f64 {
+    pub(crate) fn step(&self) -> f64 {
         self.flights[0].2.step
     }
 
     /// Flies it. Without a colour there is no noise.
-    pub fn case(
+    pub(crate) fn case(
         &self,
         effects: &[(&Effect, f64)],
         colour: Option<&NoiseColour>,
@@ -141,7 +143,7 @@ impl Aircraft {
     }
 
     /// The same, with what was true of it.
-    pub fn flown(
+    pub(crate) fn flown(
         &self,
         effects: &[(&Effect, f64)],
         colour: Option<&NoiseColour>,
@@ -182,6 +184,8 @@ impl Aircraft {
             flights,
             options: Options::default(),
             candidates: Vec::new(),
+            knowledge: Default::default(),
+            consumed: Vec::new(),
         };
         Some(Flown { case, truth })
     }
@@ -194,6 +198,8 @@ impl Aircraft {
             term: None,
             parameter: None,
             unit: None,
+            channels: IndexMap::new(),
+            about: IndexMap::new(),
             value,
             values,
         };
@@ -228,7 +234,7 @@ impl Aircraft {
 const SPIKE: f64 = 10.0;
 
 /// A case and what was true in it.
-pub struct Flown {
+pub(crate) struct Flown {
     pub case: Case,
     /// Parameters, in their own units, by flight.
     pub truth: IndexMap<String, IndexMap<String, f64>>,

@@ -4,8 +4,8 @@
 use std::ops::ControlFlow;
 
 use indexmap::IndexMap;
-use trimtab::diagnose::{Case, Diagnosis, Effect};
-use trimtab::estimate::{Role, output_error, predict};
+use trimtab_core::diagnose::{Case, Diagnosis, Effect};
+use trimtab_core::estimate::{Role, output_error, predict};
 
 use crate::aircraft::{Aircraft, Flown};
 
@@ -13,7 +13,7 @@ use crate::aircraft::{Aircraft, Flown};
 const UNBIASED: f64 = 3.0;
 
 #[derive(Clone, Debug, Default)]
-pub struct Reached {
+pub(crate) struct Reached {
     /// Error of the prediction, over that of the true model fitted to the same flights.
     pub error_ratio: Option<f64>,
     /// Declared parameters that are further from the truth than three standard errors, and how far.
@@ -21,7 +21,7 @@ pub struct Reached {
 }
 
 impl Reached {
-    pub fn of(
+    pub(crate) fn of(
         aircraft: &Aircraft,
         flown: &Flown,
         effects: &[(&Effect, f64)],
@@ -52,25 +52,24 @@ fn best_possible(aircraft: &Aircraft, case: &Case, effects: &[(&Effect, f64)]) -
     let mut values = IndexMap::new();
     for (effect, size) in effects {
         let edited = effect.apply(&document).ok()?;
-        let added = (edited.parameters.iter())
-            .find(|(name, p)| !p.fixed && !document.parameters.contains_key(*name));
-        if let Some((name, _)) = added {
-            values.insert((name.clone(), None), *size);
+        let is_free = |name: &str| !edited.document.parameters[name].fixed;
+        if let Some(added) = edited.added.iter().find(|added| is_free(&added.name)) {
+            values.insert((added.name.clone(), None), *size);
         }
-        document = edited;
+        document = edited.document;
     }
     let problem = case.problem(&document, &values).ok()?;
     let solution = output_error(&problem, &mut |_| ControlFlow::Continue(())).ok()?;
     let mut rms = Vec::new();
     for validation in case.held_out(Role::Validation, &problem).ok()? {
-        let (prediction, _) = predict(&problem, &solution.estimate, &validation);
+        let (prediction, _) = predict(&problem, &solution.theta, &solution.covariance, &validation);
         rms.extend(prediction.outputs.iter().map(|output| output.rms));
     }
     Some(rms)
 }
 
 fn biased(flown: &Flown, diagnosis: &Diagnosis) -> Vec<(String, f64)> {
-    let of = |change: &trimtab::diagnose::ParameterChange| {
+    let of = |change: &trimtab_core::diagnose::ParameterChange| {
         let truth = match &change.segment {
             Some(label) => flown.truth.get(label)?,
             None => flown.truth.first()?.1,

@@ -2,17 +2,17 @@
 
 use std::ops::ControlFlow;
 
-use trimtab::diagnose::{Effect, EffectKind, Treatment};
-use trimtab::estimate::{
+use trimtab_core::diagnose::{Effect, EffectKind, Treatment};
+use trimtab_core::estimate::{
     ErrorBoundsKind, Estimator, Noise, OutputFit, ProcessNoise, filter_error, output_error,
 };
-use trimtab::model::{EditKind, ModelDocument};
-use trimtab::simulate::NoiseColour;
+use trimtab_core::model::{EditKind, ModelDocument};
+use trimtab_core::simulate::NoiseColour;
 
 use crate::aircraft::Aircraft;
 
 /// Sizes that are worth these likelihood ratios; none where the physical range ends before.
-pub fn sizes(
+pub(crate) fn sizes(
     aircraft: &Aircraft,
     effect: &Effect,
     colour: &NoiseColour,
@@ -156,14 +156,11 @@ fn in_range(aircraft: &Aircraft, effect: &Effect, size: f64) -> bool {
     if effect.edits.is_empty() {
         return true;
     }
-    let Ok(document) = effect.apply(&aircraft.document) else {
+    let Ok(edited) = effect.apply(&aircraft.document) else {
         return false;
     };
-    let added = document
-        .parameters
-        .iter()
-        .find(|(name, _)| !aircraft.document.parameters.contains_key(*name));
-    added.is_some_and(|(_, parameter)| {
+    edited.added.first().is_some_and(|added| {
+        let parameter = &edited.document.parameters[&added.name];
         let lower = parameter.lower.unwrap_or(f64::NEG_INFINITY);
         let upper = parameter.upper.unwrap_or(f64::INFINITY);
         let is_lag = matches!(

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use trimtab::diagnose::{Diagnosis, Effect};
+use trimtab_core::diagnose::{Diagnosis, Effect};
 
 use crate::aircraft::Aircraft;
 use crate::reached::Reached;
@@ -11,7 +11,7 @@ use crate::reached::Reached;
 const AS_GOOD: f64 = 1.05;
 
 /// What one diagnosis answered.
-pub struct Answer {
+pub(crate) struct Answer {
     aircraft: &'static str,
     colour: String,
     strength: String,
@@ -32,7 +32,7 @@ pub struct Answer {
 }
 
 impl Answer {
-    pub fn of(
+    pub(crate) fn of(
         aircraft: &Aircraft,
         colour: &str,
         strength: &str,
@@ -72,7 +72,7 @@ impl Answer {
 }
 
 /// What a diagnosis answered to two effects at once.
-pub struct Both {
+pub(crate) struct Both {
     pub aircraft: &'static str,
     pub truths: [Effect; 2],
     pub named: Vec<String>,
@@ -80,7 +80,11 @@ pub struct Both {
 }
 
 impl Both {
-    pub fn of(aircraft: &Aircraft, truths: [Effect; 2], diagnosis: Option<&Diagnosis>) -> Self {
+    pub(crate) fn of(
+        aircraft: &Aircraft,
+        truths: [Effect; 2],
+        diagnosis: Option<&Diagnosis>,
+    ) -> Self {
         let effects = diagnosis.map(|d| d.effects.as_slice()).unwrap_or_default();
         let is_found = |truth: &&Effect| {
             effects
@@ -95,7 +99,7 @@ impl Both {
         }
     }
 
-    pub fn print(all: &[Self]) {
+    pub(crate) fn print(all: &[Self]) {
         let mut names: Vec<&str> = all.iter().map(|both| both.aircraft).collect();
         names.dedup();
         for both in all.iter().filter(|both| both.found < 2) {
@@ -135,14 +139,14 @@ fn unbiased(answers: &[&Answer]) -> String {
 }
 
 #[derive(Default)]
-pub struct Tally(Vec<Answer>);
+pub(crate) struct Tally(Vec<Answer>);
 
 impl Tally {
-    pub fn extend(&mut self, answers: Vec<Answer>) {
+    pub(crate) fn extend(&mut self, answers: Vec<Answer>) {
         self.0.extend(answers);
     }
 
-    pub fn print(&self) {
+    pub(crate) fn print(&self) {
         println!("truth and what was named first, where that was wrong:");
         let mut wrong: BTreeMap<(String, String, String, String), usize> = BTreeMap::new();
         for answer in self.0.iter().filter(|a| {

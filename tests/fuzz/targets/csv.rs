@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use trimtab::ingest::{self, Format};
+use trimtab_core::ingest::{self, Format};
 
 #[path = "common/recording.rs"]
 mod recording;

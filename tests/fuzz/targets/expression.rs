@@ -3,9 +3,9 @@
 
 use indexmap::IndexMap;
 use libfuzzer_sys::fuzz_target;
-use trimtab::flight::Dimension;
-use trimtab::model::expression::{self, LONGEST};
-use trimtab::model::{ChannelFormula, Model, ModelDocument, Output, Recorded};
+use trimtab_core::flight::Dimension;
+use trimtab_core::model::expression::{self, LONGEST};
+use trimtab_core::model::{ChannelFormula, Model, ModelDocument, Output, Recorded};
 
 #[path = "common/evaluate.rs"]
 mod evaluate;
@@ -43,10 +43,8 @@ fn document(equation: &str) -> ModelDocument {
     document.outputs = IndexMap::from([(
         "y".to_string(),
         Output {
-            unit: String::new(),
             equation,
-            delay: None,
-            description: String::new(),
+            ..Default::default()
         },
     )]);
     document

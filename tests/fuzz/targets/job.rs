@@ -4,10 +4,10 @@
 use std::sync::{Arc, LazyLock};
 
 use libfuzzer_sys::fuzz_target;
-use trimtab::flight::Maneuver;
-use trimtab::ingest::{self, Format, Limits};
-use trimtab::job::{self, JobSpec, MOST_MANEUVERS, ModelSource};
-use trimtab::model::{ModelDocument, catalog};
+use trimtab_core::flight::Maneuver;
+use trimtab_core::ingest::{self, Format, Limits};
+use trimtab_core::job::{self, JobSpec, MOST_MANEUVERS, ModelSource};
+use trimtab_core::model::{ModelDocument, catalog};
 
 /// One without a fault; one with a gap in time and with missing values.
 static MANEUVERS: LazyLock<[Arc<Maneuver>; 2]> = LazyLock::new(|| {

@@ -4,12 +4,12 @@
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
-use trimtab::ingest::{self, Format, Mapping};
+use trimtab_core::ingest::{self, Format, Mapping};
 
 #[path = "common/recording.rs"]
 mod recording;
 
-/// The names are those of the files in `tests/ingest`.
+/// The names are those of the files in `tests/ingest/recordings`.
 static MAPPINGS: LazyLock<[Mapping; 4]> = LazyLock::new(|| {
     [
         r#"{"time": {"from": "t", "unit": "s"},

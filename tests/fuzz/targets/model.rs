@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use trimtab::model::{Model, ModelDocument};
+use trimtab_core::model::{Model, ModelDocument};
 
 #[path = "common/evaluate.rs"]
 mod evaluate;

@@ -1,6 +1,6 @@
 //! Where a force may act that the model does not have: the equations that carry aerodynamics, and the outputs.
 
-use crate::diagnose::terms;
+use crate::diagnose::candidates::Ingredients;
 use crate::flight::{Dimension, Unit};
 use crate::model::ModelDocument;
 
@@ -54,7 +54,7 @@ pub(super) fn of(document: &ModelDocument) -> Vec<Equation> {
         gives: Gives::Output,
         unit: Unit::si_name(&output.unit),
     });
-    aerodynamic.chain(outputs).collect()
+    motion.chain(outputs).collect()
 }
 
 /// The unit of a rate, as an engineer writes it: `rad/s^2` for `rad/s`.
@@ -73,12 +73,22 @@ fn per_second(unit: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::{Case, Knowledge};
+    use crate::estimate::Options;
     use crate::model::catalog;
 
     #[test]
     fn a_force_may_act_in_equations_of_motion_and_in_outputs() {
         let document = catalog::find("short-period").unwrap();
-        let found: Vec<(String, String)> = (of(&document).into_iter())
+        let case = Case {
+            document: document.clone(),
+            flights: Vec::new(),
+            options: Options::default(),
+            candidates: Vec::new(),
+            knowledge: Knowledge::default(),
+            consumed: Vec::new(),
+        };
+        let found: Vec<(String, String)> = (of(&Ingredients::new(&case, &document), &document).into_iter())
             .map(|equation| (equation.words(), equation.unit))
             .collect();
         let expected = [

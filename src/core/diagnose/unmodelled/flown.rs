@@ -4,10 +4,11 @@ use std::ops::Range;
 
 use nalgebra::DMatrix;
 
-use crate::diagnose::case::{Case, Values};
+use crate::diagnose::case::Case;
 use crate::diagnose::fitted::Fitted;
 use crate::diagnose::stack::{Layout, sensitivities};
 use crate::estimate::{ErrorBoundsKind, Problem, Role, Unknowns, predict};
+use crate::model::Per;
 
 /// Residuals and their sensitivities: what a metric is made from.
 #[derive(Clone)]
@@ -36,7 +37,12 @@ impl Flown {
     pub(super) fn fitted(fitted: &Fitted) -> Option<Self> {
         let flights = fitted.problem.segments.len();
         let residual = fitted.residual.clone();
-        Self::at(fitted.problem.clone(), fitted.theta(), residual, flights)
+        Self::at(
+            fitted.problem.clone(),
+            fitted.theta.clone(),
+            residual,
+            flights,
+        )
     }
 
     /// The flights that a model was fitted to, and those held out to validate it.
@@ -46,27 +52,31 @@ impl Flown {
         let mut predicting = problem.clone();
         predicting.options.error_bounds = ErrorBoundsKind::Conventional;
         predicting.options.max_iterations = ITERATIONS;
-        let mut values: Values = fitted.values.clone();
+        let mut known: Vec<Vec<f64>> = (0..problem.segments.len())
+            .map(|segment| parameters(problem, &fitted.theta, segment))
+            .collect();
         let mut residual = fitted.residual.clone();
         let mut segments = problem.segments.clone();
         for flight in held_out {
-            let (prediction, history) = predict(&predicting, &fitted.estimate, &flight);
-            for row in &prediction.parameters {
-                let mut parameters = problem.model.parameters.iter();
-                let info = parameters.find(|info| info.name == row.name)?;
-                let value = info.unit.to_si(row.estimate);
-                values.insert((row.name.clone(), row.segment.clone()), value);
+            let (theta, covariance) = (&fitted.theta, &fitted.covariance);
+            let (prediction, history) = predict(&predicting, theta, covariance, &flight);
+            let mut values = Vec::new();
+            let own = &flight.unknowns;
+            own.parameters(0, &own.start(), &mut values);
+            for (parameter, info) in problem.model.parameters.iter().enumerate() {
+                let mut rows = prediction.parameters.iter();
+                if info.document.per == Per::Job {
+                    values[parameter] = known[0][parameter];
+                } else if let Some(row) = rows.find(|row| row.name == info.name) {
+                    values[parameter] = info.unit.to_si(row.estimate);
+                }
             }
+            known.push(values);
             let outputs = history?.outputs;
             residual.extend(outputs.iter().flat_map(|output| &output.residual));
             segments.push(flight.segment);
         }
-        let start = |parameter: usize, segment: usize| {
-            let name = &problem.model.parameters[parameter].name;
-            let own = (name.clone(), Some(segments[segment].label.clone()));
-            let shared = || values.get(&(name.clone(), None));
-            values.get(&own).or_else(shared).copied().ok_or(())
-        };
+        let start = |parameter: usize, segment: usize| Ok::<f64, ()>(known[segment][parameter]);
         let unknowns = Unknowns::new(&problem.model, segments.len(), start).ok()?;
         let theta = unknowns.start();
         let options = problem.options.clone();
@@ -97,10 +107,7 @@ impl Flown {
 
     /// All parameters of the model along a segment.
     pub(super) fn parameters(&self, segment: usize) -> Vec<f64> {
-        let mut values = Vec::new();
-        let unknowns = &self.problem.unknowns;
-        unknowns.parameters(segment, &self.theta, &mut values);
-        values
+        parameters(&self.problem, &self.theta, segment)
     }
 
     /// The rows of a segment in a column.
@@ -111,4 +118,10 @@ impl Flown {
         let last = series.next_back();
         first.start..last.map_or(first.end, |last| last.range.end)
     }
+}
+
+fn parameters(problem: &Problem, theta: &[f64], segment: usize) -> Vec<f64> {
+    let mut values = Vec::new();
+    problem.unknowns.parameters(segment, theta, &mut values);
+    values
 }

@@ -8,6 +8,8 @@ use super::flown::Flown;
 use super::responses::Responses;
 use super::shapes::Shapes;
 use super::smoothness::Smoothness;
+use crate::diagnose::candidates::Ingredients;
+use crate::diagnose::case::Case;
 use crate::diagnose::fitted::Fitted;
 use crate::diagnose::screen::critical;
 
@@ -45,16 +47,16 @@ impl LeftOver {
 
 /// What a model fitted by output error leaves of its flights: the equation in which a force explains most of it. `None`
 /// where the simulation leaves the range of numbers, or the model has no room for a force.
-pub(in crate::diagnose) fn left_over(fitted: &Fitted) -> Option<LeftOver> {
-    all(fitted)?
+pub(in crate::diagnose) fn left_over(case: &Case, fitted: &Fitted) -> Option<LeftOver> {
+    all(case, fitted)?
         .into_iter()
         .max_by(|a, b| a.likelihood_ratio.total_cmp(&b.likelihood_ratio))
 }
 
 /// By equation.
-pub(in crate::diagnose) fn all(fitted: &Fitted) -> Option<Vec<LeftOver>> {
+pub(in crate::diagnose) fn all(case: &Case, fitted: &Fitted) -> Option<Vec<LeftOver>> {
     let flown = Flown::fitted(fitted)?;
-    let equations = equations::of(&fitted.document);
+    let equations = equations::of(&Ingredients::new(case, &fitted.document), &fitted.document);
     let shapes: Vec<Shapes> = (flown.problem.segments.iter())
         .map(|segment| Shapes::over(segment.elapsed(), SPACING, MOST_INTERVALS))
         .collect();

@@ -8,6 +8,8 @@
 //!
 //! are all that the data say of the force's sizes c: e − S c fits as |e⊥|² − 2 bᵀc + cᵀG c.
 
+use std::borrow::Cow;
+
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -25,7 +27,7 @@ const PAIRS: usize = 3;
 
 /// Flights in the metric of a colour.
 pub(super) struct Metric<'f> {
-    from: &'f Samples,
+    from: Cow<'f, Samples>,
     pub colour: Colour,
     /// ln|W| - ½ ln|(W A)ᵀ W A|, less the price of the colour's orders.
     pub ln_whitening: f64,
@@ -56,7 +58,7 @@ pub(super) struct Normal {
 
 impl<'f> Metric<'f> {
     /// `None` where something is not a number.
-    pub(super) fn new(from: &'f Samples, colour: Colour) -> Option<Self> {
+    pub(super) fn new(from: Cow<'f, Samples>, colour: Colour) -> Option<Self> {
         let (layout, residual) = (&from.layout, &from.residual);
         let whitened = DVector::from_vec(colour.whiten(layout, residual, residual));
         let ln_whitening = colour.ln_likelihood(layout, residual) + 0.5 * whitened.norm_squared()
@@ -95,7 +97,7 @@ impl<'f> Metric<'f> {
     }
 
     /// What the flights say of a force with these responses.
-    pub(super) fn normal(&self, responses: &[Response]) -> Normal {
+    pub(super) fn normal(&self, responses: &[&Response]) -> Normal {
         let count: usize = responses.iter().map(|r| r.columns.ncols()).sum();
         let mut gram = DMatrix::zeros(count, count);
         let mut moment = DVector::zeros(count);
@@ -155,7 +157,7 @@ impl<'f> Metric<'f> {
     pub(super) fn draws(
         &self,
         noise: f64,
-        force: Option<(&Normal, &[Response], &Posterior)>,
+        force: Option<(&Normal, &[&Response], &Posterior)>,
         chance: &mut ChaCha8Rng,
     ) -> Vec<Vec<f64>> {
         let none = DVector::zeros(0);
@@ -184,7 +186,7 @@ impl<'f> Metric<'f> {
         draws
     }
 
-    fn less(&self, theta: &DVector<f64>, responses: &[Response], sizes: &DVector<f64>) -> Vec<f64> {
+    fn less(&self, theta: &DVector<f64>, responses: &[&Response], sizes: &DVector<f64>) -> Vec<f64> {
         let response = self.response(theta, responses, sizes);
         let residual = self.from.residual.iter();
         residual.zip(&response).map(|(e, y)| e - y).collect()
@@ -194,7 +196,7 @@ impl<'f> Metric<'f> {
     fn response(
         &self,
         theta: &DVector<f64>,
-        responses: &[Response],
+        responses: &[&Response],
         sizes: &DVector<f64>,
     ) -> Vec<f64> {
         let mut outputs = &self.from.declared * theta;

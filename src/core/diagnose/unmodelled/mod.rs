@@ -14,6 +14,7 @@ mod metric;
 mod responses;
 mod shapes;
 mod smoothness;
+mod splines;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

@@ -187,6 +187,7 @@ fn forced<'e>(
         fixed,
         per: Per::Job,
         prior: None,
+        quantity: None,
         description: String::new(),
     };
     let mut sum = Vec::new();
@@ -195,8 +196,7 @@ fn forced<'e>(
             shape(index),
             Input {
                 unit: "-".to_string(),
-                delay: None,
-                description: String::new(),
+                ..Input::default()
             },
         );
         document
@@ -209,6 +209,7 @@ fn forced<'e>(
         Definition {
             unit: "-".to_string(),
             equation: sum.join(" + "),
+            quantity: None,
             description: String::new(),
         },
     );

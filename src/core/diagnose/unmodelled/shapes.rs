@@ -1,9 +1,13 @@
-//! Shapes of a force over the time of a flight: cubic B-splines, evenly spaced.
+//! Shapes of a force over the time of a flight.
 
-/// The splines of one flight.
-#[derive(Clone, PartialEq, Debug)]
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+use super::splines::Splines;
+
+/// The splines in time of one flight.
+#[derive(Clone, Debug)]
 pub(super) struct Shapes {
-    spacing: f64,
+    splines: Splines,
     pub count: usize,
     /// Seconds from the flight's first sample to each.
     pub elapsed: Vec<f64>,
@@ -12,56 +16,85 @@ pub(super) struct Shapes {
 /// Samples between two knots, at least: what is quicker cannot be told from noise.
 const FEWEST_SAMPLES: f64 = 3.0;
 
+/// Of shapes that hardly any sample sees.
+const RIDGE: f64 = 1e-9;
+
 impl Shapes {
-    /// Splines with knots `spacing` seconds apart, or so far that there are `most` intervals.
+    /// Knots are `spacing` seconds apart, or so far that there are `most` intervals.
     pub(super) fn over(elapsed: Vec<f64>, spacing: f64, most: usize) -> Self {
         let duration = elapsed.last().copied().unwrap_or(0.0);
         let step = duration / elapsed.len().max(2).saturating_sub(1) as f64;
         let spacing = spacing.max(FEWEST_SAMPLES * step);
         let intervals = ((duration / spacing).ceil() as usize).clamp(1, most);
+        let splines = Splines::between(0.0, duration, intervals);
         Self {
-            spacing: (duration / intervals as f64).max(f64::MIN_POSITIVE),
-            count: intervals + 3,
+            count: splines.count,
+            splines,
             elapsed,
         }
     }
 
-    /// The four shapes that are not zero at a time: the index of the first, and their values.
-    pub(super) fn at(&self, seconds: f64) -> (usize, [f64; 4]) {
-        let at = (seconds / self.spacing).max(0.0);
-        let interval = (at.floor() as usize).min(self.count - 4);
-        let u = at - interval as f64;
-        let v = 1.0 - u;
-        let values = [
-            v * v * v / 6.0,
-            (3.0 * u * u * u - 6.0 * u * u + 4.0) / 6.0,
-            (3.0 * v * v * v - 6.0 * v * v + 4.0) / 6.0,
-            u * u * u / 6.0,
-        ];
-        (interval, values)
-    }
-
     /// One shape, sample by sample.
     pub(super) fn shape(&self, index: usize) -> Vec<f64> {
+        let of = |seconds: &f64| self.splines.value(index, *seconds);
+        self.elapsed.iter().map(of).collect()
+    }
+
+    /// The force at each sample.
+    pub(super) fn force(&self, sizes: &[f64]) -> Vec<f64> {
         let of = |seconds: &f64| {
-            let (first, values) = self.at(*seconds);
-            index
-                .checked_sub(first)
-                .and_then(|place| values.get(place))
-                .copied()
-                .unwrap_or(0.0)
+            let (first, values) = self.splines.at(*seconds);
+            let pairs = sizes[first..].iter().zip(values);
+            pairs.map(|(size, value)| size * value).sum()
         };
         self.elapsed.iter().map(of).collect()
     }
 
-    /// The sum of all shapes, each with its size, at a time.
-    pub(super) fn sum(&self, sizes: &[f64], seconds: f64) -> f64 {
-        let (first, values) = self.at(seconds);
-        sizes[first..]
-            .iter()
-            .zip(values)
-            .map(|(size, value)| size * value)
-            .sum()
+    /// Variance of the force at each sample, from the sizes' covariance.
+    pub(super) fn variance(&self, covariance: &DMatrix<f64>) -> Vec<f64> {
+        let of = |seconds: &f64| {
+            let (first, values) = self.splines.at(*seconds);
+            let values = DVector::from_column_slice(&values);
+            let block = covariance.view((first, first), (4, 4));
+            (block * &values).dot(&values).max(0.0)
+        };
+        self.elapsed.iter().map(of).collect()
+    }
+
+    /// What finds the sizes whose force follows a time history best.
+    pub(super) fn fit(&self) -> Option<Fit<'_>> {
+        let mut gram = DMatrix::identity(self.count, self.count) * RIDGE;
+        for &seconds in &self.elapsed {
+            let (first, values) = self.splines.at(seconds);
+            for (i, a) in values.iter().enumerate() {
+                for (j, b) in values.iter().enumerate() {
+                    gram[(first + i, first + j)] += a * b;
+                }
+            }
+        }
+        Some(Fit {
+            shapes: self,
+            factor: Cholesky::new(gram)?,
+        })
+    }
+}
+
+/// See [`Shapes::fit`].
+pub(super) struct Fit<'s> {
+    shapes: &'s Shapes,
+    factor: Cholesky<f64, Dyn>,
+}
+
+impl Fit<'_> {
+    pub(super) fn sizes(&self, force: &[f64]) -> DVector<f64> {
+        let mut moment = DVector::zeros(self.shapes.count);
+        for (&seconds, force) in self.shapes.elapsed.iter().zip(force) {
+            let (first, values) = self.shapes.splines.at(seconds);
+            for (i, value) in values.iter().enumerate() {
+                moment[first + i] += value * force;
+            }
+        }
+        self.factor.solve(&moment)
     }
 }
 
@@ -69,25 +102,26 @@ impl Shapes {
 mod tests {
     use super::*;
 
-    #[test]
-    fn shapes_add_up_to_one_and_follow_a_line() {
-        let elapsed: Vec<f64> = (0..101).map(|k| f64::from(k) * 0.02).collect();
-        let shapes = Shapes::over(elapsed, 0.5, 100);
-        assert_eq!(shapes.count, 7);
-        let ones = vec![1.0; shapes.count];
-        let line: Vec<f64> = (0..7).map(|j| 0.5 * (f64::from(j) - 1.0)).collect();
-        for &seconds in &shapes.elapsed {
-            assert!((shapes.sum(&ones, seconds) - 1.0).abs() < 1e-12);
-            assert!((shapes.sum(&line, seconds) - seconds).abs() < 1e-12);
-        }
-        let third = shapes.shape(3);
-        assert!((third[50] - 4.0 / 6.0).abs() < 1e-12);
-        assert_eq!((third[0], third[100]), (0.0, 0.0));
+    fn elapsed(samples: u32) -> Vec<f64> {
+        (0..samples).map(|k| f64::from(k) * 0.02).collect()
     }
 
     #[test]
     fn a_short_flight_has_fewer_shapes_than_samples() {
-        let elapsed: Vec<f64> = (0..10).map(|k| f64::from(k) * 0.02).collect();
-        assert!(Shapes::over(elapsed, 0.01, 100).count <= 6);
+        assert!(Shapes::over(elapsed(10), 0.01, 100).count <= 6);
+        assert_eq!(Shapes::over(elapsed(101), 0.5, 100).count, 7);
+    }
+
+    #[test]
+    fn a_smooth_history_comes_back() {
+        let shapes = Shapes::over(elapsed(301), 0.25, 100);
+        let history: Vec<f64> = shapes.elapsed.iter().map(|t| (2.0 * t).sin()).collect();
+        let sizes = shapes.fit().unwrap().sizes(&history);
+        let back = shapes.force(sizes.as_slice());
+        let off = history.iter().zip(&back).map(|(a, b)| (a - b).abs());
+        assert!(off.fold(0.0, f64::max) < 1e-3);
+        let covariance = DMatrix::identity(shapes.count, shapes.count);
+        let at_a_knot = shapes.variance(&covariance)[0];
+        assert!((at_a_knot - 0.5).abs() < 1e-9, "{at_a_knot}");
     }
 }

@@ -4,7 +4,8 @@ use std::ops::ControlFlow;
 
 use super::left_over::{LeftOver, all};
 use super::truth::{Noise, Truth, steps};
-use crate::diagnose::{Case, Fitted, declared};
+use crate::diagnose::declared::Declared;
+use crate::diagnose::{Case, Fitted};
 use crate::estimate::Role;
 use crate::model::catalog;
 
@@ -79,14 +80,14 @@ fn flown(undeclared: Undeclared, noise: f64, colour: f64, roles: &[Role], seed: 
 }
 
 fn fitted(case: &Case) -> Fitted {
-    let Ok((fitted, _)) = declared(case, &mut |_| ControlFlow::Continue(())) else {
+    let Ok(declared) = Declared::of(case, &mut |_| ControlFlow::Continue(())) else {
         panic!("the declared model is not fitted");
     };
-    fitted
+    declared.fitted
 }
 
 fn best_first(case: &Case) -> Vec<LeftOver> {
-    let mut found = all(&fitted(case)).unwrap();
+    let mut found = all(case, &fitted(case)).unwrap();
     found.sort_by(|a, b| b.likelihood_ratio.total_cmp(&a.likelihood_ratio));
     found
 }

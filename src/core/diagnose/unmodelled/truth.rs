@@ -3,7 +3,7 @@
 
 use indexmap::IndexMap;
 
-use crate::diagnose::{Case, Flight};
+use crate::diagnose::{Case, Flight, Knowledge};
 use crate::estimate::{Options, Role};
 use crate::flight::Unit;
 use crate::model::ModelDocument;
@@ -65,6 +65,8 @@ impl Truth<'_> {
                 .collect(),
             options: Options::default(),
             candidates: Vec::new(),
+            knowledge: Knowledge::default(),
+            consumed: Vec::new(),
         }
     }
 

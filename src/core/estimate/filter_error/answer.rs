@@ -2,19 +2,20 @@
 
 use nalgebra::{DMatrix, Schur};
 
-use super::super::answer::{Solution, rows, table};
-use super::super::coloured_residuals::Colour;
-use super::super::error_bounds::ErrorBounds;
-use super::super::fit::{fits, histories_of};
-use super::super::modes::modes;
-use super::super::problem::Problem;
-use super::super::report::Estimate;
-use super::super::stopped::Stopped;
 use super::evaluation::FilterEvaluator;
 use super::gain::Gain;
 use super::iterate::Iterate;
 use super::layout::Layout;
-use super::report::{FilterEstimate, Pole, ProcessNoiseEstimate, SegmentGain};
+use crate::estimate::accuracy::coloured_residuals::Colour;
+use crate::estimate::accuracy::error_bounds::ErrorBounds;
+use crate::estimate::accuracy::fit::{fits, histories_of};
+use crate::estimate::accuracy::modes::modes;
+use crate::estimate::answer::table::{Accuracy, table};
+use crate::estimate::answer::{Solution, rows};
+use crate::estimate::descent::stopped::Stopped;
+use crate::estimate::problem::Problem;
+use crate::estimate::report::estimate::Estimate;
+use crate::estimate::report::filter::{FilterEstimate, Pole, ProcessNoiseEstimate, SegmentGain};
 
 pub(super) fn answer(
     evaluator: &mut FilterEvaluator<'_>,
@@ -45,6 +46,7 @@ pub(super) fn answer(
     let collinear = bounds.collinear(name);
     let (outcome, reason) = stopped.say(problem.options.method, iterations, &held, &collinear);
     let theta = &at.z[..layout.parameters];
+    let accuracy = Accuracy::new(&problem.unknowns, &at.information, &at.held, bounds);
     let estimate = Estimate {
         outcome,
         reason,
@@ -55,7 +57,7 @@ pub(super) fn answer(
         det_r: at.weighting.det(),
         noise_covariance: rows(&at.weighting.covariance),
         outputs: fits(problem, &histories, &Colour::of(&histories)),
-        parameters: table(problem, theta, (&at.information, &at.held), bounds),
+        parameters: table(problem, theta, &accuracy),
         error_bounds: bounds.kind,
         correlation: bounds.correlation.clone(),
         collinear,
@@ -70,6 +72,8 @@ pub(super) fn answer(
         }),
     };
     Solution {
+        theta: theta.to_vec(),
+        covariance: at.weighting.covariance.clone(),
         estimate,
         histories,
     }

@@ -2,16 +2,17 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::super::evaluation::Unusable;
-use super::super::likelihood::Weighting;
-use super::super::options::Noise;
-use super::super::priors;
-use super::super::problem::Problem;
-use super::super::report::{Bound, Iteration};
-use super::super::step::Newton;
 use super::evaluation::FilterEvaluator;
 use super::limit::Limit;
-use crate::estimate::iterate::Taken;
+use crate::estimate::descent::iterate::Taken;
+use crate::estimate::descent::step::Newton;
+use crate::estimate::likelihood::priors;
+use crate::estimate::likelihood::weighting::Weighting;
+use crate::estimate::options::Noise;
+use crate::estimate::problem::Problem;
+use crate::estimate::problem::unusable::Unusable;
+use crate::estimate::report::iteration::Iteration;
+use crate::estimate::report::parameter::Bound;
 
 /// R as it stands in the gain: that of an earlier iterate.
 #[derive(Clone)]

@@ -1,6 +1,6 @@
 //! Where the unknowns of a filter-error problem stand: the parameters' θ first, then the free intensities.
 
-use super::super::problem::Problem;
+use crate::estimate::problem::Problem;
 
 /// What an unknown is to one segment.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

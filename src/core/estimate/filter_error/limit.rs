@@ -7,9 +7,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::super::evaluation::Unusable;
 use super::evaluation::{FilterEvaluator, Share};
 use super::layout::Layout;
+use crate::estimate::problem::unusable::Unusable;
 
 /// A share nearer to 1 than this is at the limit.
 const NEAR: f64 = 1e-8;

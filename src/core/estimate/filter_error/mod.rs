@@ -19,31 +19,25 @@ mod limit;
 mod lyapunov;
 mod predictor;
 mod relaxation;
-mod report;
 mod riccati;
+mod search;
 mod start;
 
-use nalgebra::DVector;
-
-use super::answer::Solution;
-use super::error_bounds::ErrorBounds;
-use super::evaluation::Unusable;
-use super::iterate::Taken;
-use super::likelihood::Weighting;
-use super::options::Method;
-use super::output_error::Observer;
-use super::problem::Problem;
-use super::search::{
-    DAMPING_EASED, DAMPING_NONE, DAMPING_RAISED, DAMPING_START, MOST_TRIALS, ROUNDING,
-};
-use super::step::length;
-use super::stopped::Stopped;
+use crate::estimate::accuracy::error_bounds::ErrorBounds;
+use crate::estimate::answer::Solution;
+use crate::estimate::descent::iterate::Taken;
+use crate::estimate::descent::search::{DAMPING_EASED, DAMPING_NONE, DAMPING_START};
+use crate::estimate::descent::stopped::Stopped;
+use crate::estimate::options::Method;
+use crate::estimate::problem::Problem;
+use crate::estimate::problem::unusable::Unusable;
+use crate::estimate::report::progress::Observer;
 use iterate::{GainNoise, Iterate};
 use limit::restore;
 use relaxation::relaxed;
+use search::{Nothing, Trial, search};
 
 pub use evaluation::{FilterEquations, FilterEvaluator};
-pub use report::{FilterEstimate, Pole, ProcessNoiseEstimate, SegmentGain};
 
 /// Names of the free intensities, in the order in which they follow the parameters.
 pub fn process_noise_names(problem: &Problem) -> Vec<String> {
@@ -122,73 +116,4 @@ pub fn filter_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
         iteration,
         &stopped,
     ))
-}
-
-/// Unknowns of lower cost with the same R in the gain.
-struct Trial {
-    z: Vec<f64>,
-    weighting: Weighting,
-}
-
-/// No unknowns of lower cost were found; were there any that could be predicted with?
-struct Nothing {
-    in_range: bool,
-}
-
-/// Looks for unknowns of lower cost: by halving the step (Gauss-Newton) or by damping it more (Levenberg-Marquardt).
-fn search(
-    evaluator: &mut FilterEvaluator<'_>,
-    current: &Iterate,
-    start_damping: f64,
-) -> Result<(Trial, Taken), Nothing> {
-    let Some(newton) = &current.newton else {
-        return Err(Nothing { in_range: true });
-    };
-    let problem = evaluator.problem;
-    let most = current.weighting.cost + ROUNDING * (1.0 + current.weighting.cost.abs());
-    let (mut damping, mut share) = (start_damping, 1.0);
-    let mut in_range = false;
-    for halvings in 0..MOST_TRIALS {
-        let step = current.step(evaluator, newton, damping) * share;
-        if let Ok(trial) = trial(evaluator, current, &step) {
-            in_range = true;
-            if trial.weighting.cost <= most {
-                let moved = trial.z.iter().zip(&current.z).map(|(a, b)| a - b);
-                let mut moved = DVector::from_iterator(step.len(), moved);
-                // these follow from the others, and count with them
-                current.limit.places.iter().for_each(|&i| moved[i] = 0.0);
-                let length = length(&moved, &current.information);
-                let taken = Taken {
-                    length,
-                    damping,
-                    halvings,
-                };
-                return Ok((trial, taken));
-            }
-        }
-        match problem.options.method {
-            Method::GaussNewton => share *= 0.5,
-            Method::LevenbergMarquardt => damping = (damping * DAMPING_RAISED).max(DAMPING_START),
-        }
-    }
-    Err(Nothing { in_range })
-}
-
-/// The cost behind a step, brought back into the bounds and to the limit of the gain.
-fn trial(
-    evaluator: &mut FilterEvaluator<'_>,
-    current: &Iterate,
-    step: &DVector<f64>,
-) -> Result<Trial, Unusable> {
-    let problem = evaluator.problem;
-    let moved = |(place, &value): (usize, &f64)| {
-        let (lower, upper) = evaluator.layout.limits(problem, place);
-        (value + step[place]).clamp(lower, upper)
-    };
-    let mut z: Vec<f64> = current.z.iter().enumerate().map(moved).collect();
-    let weight = &current.gain_noise.inverse;
-    restore(evaluator, &mut z, weight, &current.limit.places)?;
-    let innovations = evaluator.innovations(&z, weight, |_, _, _| {})?;
-    let weighting = Weighting::at(problem, &z, &innovations)?;
-    Ok(Trial { z, weighting })
 }

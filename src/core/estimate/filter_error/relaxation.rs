@@ -2,12 +2,12 @@
 
 use nalgebra::DMatrix;
 
-use super::super::evaluation::Unusable;
-use super::Trial;
 use super::evaluation::FilterEvaluator;
 use super::iterate::{GainNoise, Iterate};
 use super::limit::restore;
+use super::search::Trial;
 use crate::estimate::options::Noise;
+use crate::estimate::problem::unusable::Unusable;
 
 /// Shares of the way that R is taken, the largest first; less where it leads out of the range of numbers.
 const SHARES: [f64; 3] = [1.0, 0.5, 0.25];

@@ -2,11 +2,11 @@
 
 use nalgebra::DMatrix;
 
-use super::super::evaluation::Unusable;
-use super::super::likelihood::Weighting;
-use super::super::options::{Noise, NoiseStructure};
-use super::super::problem::Problem;
 use super::gain::{Gain, Setting};
+use crate::estimate::likelihood::weighting::Weighting;
+use crate::estimate::options::{Noise, NoiseStructure};
+use crate::estimate::problem::Problem;
+use crate::estimate::problem::unusable::Unusable;
 
 /// The share of a state's prediction error that a sample is to take away to begin with.
 const START_SHARE: f64 = 0.3;

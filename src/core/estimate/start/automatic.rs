@@ -1,18 +1,20 @@
 //! The start that needs no choice: the better of the document's values and those of equation error.
 
-use super::method::INTERVAL;
-use super::report::{StartKind, StartReport};
-use super::{Start, cost_of_constants, unobserved};
-use crate::estimate::equation_error::equation_error_start;
-use crate::estimate::estimator::{Progress, Watcher};
-use crate::estimate::evaluation::{Evaluator, Unusable};
-use crate::estimate::likelihood::Weighting;
+use super::equation_error::equation_error_start;
+use super::found::Start;
+use super::shooting::multiple_shooting;
+use crate::estimate::evaluation::evaluator::Evaluator;
+use crate::estimate::likelihood::constants::cost_of_constants;
+use crate::estimate::likelihood::weighting::Weighting;
+use crate::estimate::options::start::INTERVAL;
 use crate::estimate::problem::Problem;
-use crate::estimate::shooting::multiple_shooting;
+use crate::estimate::problem::unusable::Unusable;
+use crate::estimate::report::progress::{Progress, Watcher, unobserved};
+use crate::estimate::report::start::{StartKind, StartReport};
 
 /// # Errors
 /// What is wrong with the document's start values, where nothing else gives a cost either.
-pub(super) fn automatic(problem: &Problem, watcher: &mut Watcher<'_>) -> Result<Start, Unusable> {
+pub(crate) fn automatic(problem: &Problem, watcher: &mut Watcher<'_>) -> Result<Start, Unusable> {
     let mut evaluator = Evaluator::new(problem);
     let document = problem.unknowns.start();
     let of_document = startable(&mut evaluator, &document);

@@ -1,40 +1,28 @@
-//! Where output error starts: values of the document, or values found before the first iteration.
+//! Where output error starts: values of the document, or values found before the first iteration. A start lies within
+//! the bounds and gives a cost; how good it is only the iteration from it tells.
 
 mod automatic;
-mod method;
+mod equation_error;
+pub(super) mod found;
 mod multi_start;
 mod nelder_mead;
-mod report;
+pub(super) mod shooting;
 
-use std::ops::ControlFlow;
-
-use nalgebra::DMatrix;
-
-use super::equation_error::equation_error_start;
-use super::estimator::{Progress, Watcher};
-use super::evaluation::{Evaluator, Unusable};
-use super::likelihood::Weighting;
-use super::problem::Problem;
-use super::shooting::multiple_shooting;
-pub(super) use method::INTERVAL;
-pub use method::StartMethod;
-pub use report::{StartKind, StartReport};
-
-/// A start for the iteration.
-pub(super) struct Start {
-    /// SI, within bounds.
-    pub theta: Vec<f64>,
-    /// Somebody asked to stop on the way.
-    pub stopped: bool,
-    /// Multiple shooting has not been tried, and may be where the iteration from here fails.
-    pub may_shoot: bool,
-}
+use crate::estimate::evaluation::evaluator::Evaluator;
+use crate::estimate::options::start::StartMethod;
+use crate::estimate::problem::Problem;
+use crate::estimate::problem::unusable::Unusable;
+use crate::estimate::report::progress::{Progress, Watcher, unobserved};
+use crate::estimate::report::start::{StartKind, StartReport};
+use equation_error::equation_error_start;
+use found::Start;
+use shooting::multiple_shooting;
 
 /// Finds the start that the options ask for.
 ///
 /// # Errors
 /// The method asked for finds no θ that gives a cost.
-pub(super) fn find_start(problem: &Problem, watcher: &mut Watcher<'_>) -> Result<Start, Unusable> {
+pub(crate) fn find_start(problem: &Problem, watcher: &mut Watcher<'_>) -> Result<Start, Unusable> {
     let theta = problem.unknowns.start();
     let found = |theta, stopped| Start {
         theta,
@@ -46,7 +34,7 @@ pub(super) fn find_start(problem: &Problem, watcher: &mut Watcher<'_>) -> Result
         StartMethod::Automatic {} => automatic::automatic(problem, watcher),
         StartMethod::EquationError {} => {
             let (theta, evaluations) = equation_error_start(problem, &mut unobserved)?;
-            let cost = cost(&mut Evaluator::new(problem), &theta).ok();
+            let cost = Evaluator::new(problem).cost(&theta).ok();
             let report = StartReport {
                 method: StartKind::EquationError,
                 evaluations,
@@ -65,52 +53,9 @@ pub(super) fn find_start(problem: &Problem, watcher: &mut Watcher<'_>) -> Result
             spread,
         } => multi_start::multi_start(problem, *starts, *seed, *spread, watcher),
         StartMethod::MultipleShooting { interval } => {
-            multiple_shooting(problem, theta, *interval, &mut |report| {
-                watcher(Progress::Start(report))
-            })
+            let mut told = |report: &StartReport| watcher(Progress::Start(report));
+            let shot = multiple_shooting(problem, theta, *interval, &mut told)?;
+            Ok(found(shot.theta, shot.stopped))
         }
     }
-}
-
-/// For iterations that are nobody's business.
-pub(super) fn unobserved(_: &super::report::Iteration) -> ControlFlow<()> {
-    ControlFlow::Continue(())
-}
-
-/// -ln L at a θ, R concentrated.
-///
-/// # Errors
-/// The θ gives no cost.
-pub(super) fn cost(evaluator: &mut Evaluator<'_>, theta: &[f64]) -> Result<f64, Unusable> {
-    let residuals = evaluator.residuals(theta)?;
-    let problem = evaluator.problem();
-    Weighting::at(problem, theta, &residuals).map(|weighting| weighting.cost)
-}
-
-/// -ln L of outputs that stay at their means: a start that is worse explains nothing.
-pub(super) fn cost_of_constants(problem: &Problem) -> Option<f64> {
-    let outputs = problem.model.outputs.len();
-    let mut sums = DMatrix::zeros(outputs, outputs);
-    for segment in &problem.segments {
-        let centred: Vec<Vec<f64>> = segment.measured.iter().map(|z| centred(z)).collect();
-        for i in 0..outputs {
-            for j in 0..outputs {
-                sums[(i, j)] += centred[i]
-                    .iter()
-                    .zip(&centred[j])
-                    .map(|(a, b)| a * b)
-                    .sum::<f64>();
-            }
-        }
-    }
-    let weighting = Weighting::new(&problem.options.noise, &sums, &problem.counts).ok()?;
-    Some(weighting.cost)
-}
-
-/// Values less their mean; those that are no numbers count nothing.
-fn centred(values: &[f64]) -> Vec<f64> {
-    let numbers: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    let mean = numbers.iter().sum::<f64>() / numbers.len().max(1) as f64;
-    let less = |&value: &f64| if value.is_finite() { value - mean } else { 0.0 };
-    values.iter().map(less).collect()
 }

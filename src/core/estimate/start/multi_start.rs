@@ -8,12 +8,12 @@ use std::sync::mpsc;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::Start;
-use super::report::{StartKind, StartReport};
-use crate::estimate::estimator::{Progress, Watcher};
-use crate::estimate::evaluation::Unusable;
-use crate::estimate::output_error::descend;
+use super::found::Start;
+use crate::estimate::descent::gauss_newton::descend;
 use crate::estimate::problem::Problem;
+use crate::estimate::problem::unusable::Unusable;
+use crate::estimate::report::progress::{Progress, Watcher};
+use crate::estimate::report::start::{StartKind, StartReport};
 
 /// Costs that differ by less than this are of one optimum: a seventh of a standard error away, at most.
 const SAME_OPTIMUM: f64 = 0.01;
@@ -28,7 +28,7 @@ struct Run {
 
 /// # Errors
 /// None of the starts could be simulated.
-pub(super) fn multi_start(
+pub(crate) fn multi_start(
     problem: &Problem,
     starts: usize,
     seed: u64,
@@ -114,10 +114,11 @@ fn random_start(problem: &Problem, number: usize, seed: u64, spread: f64) -> Vec
 }
 
 fn run(problem: &Problem, number: usize, theta: Vec<f64>, stop: &AtomicBool) -> Run {
-    let mut asked = |_: &crate::estimate::report::Iteration| match stop.load(Ordering::Relaxed) {
-        true => ControlFlow::Break(()),
-        false => ControlFlow::Continue(()),
-    };
+    let mut asked =
+        |_: &crate::estimate::report::iteration::Iteration| match stop.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        };
     match descend(problem, theta, &mut asked) {
         Ok(descent) => Run {
             number,

@@ -1,12 +1,13 @@
 //! Simplex search by the cost alone, R concentrated (Nelder and Mead 1965), with coefficients that suit the number of
 //! parameters (Gao and Han 2012): needs no derivatives, and walks over ripples in which a gradient is caught.
 
-use super::report::{StartKind, StartReport};
-use super::{Start, cost};
-use crate::estimate::estimator::{Progress, Watcher};
-use crate::estimate::evaluation::{Evaluator, Unusable};
-use crate::estimate::likelihood::NormalEquations;
+use super::found::Start;
+use crate::estimate::evaluation::evaluator::Evaluator;
+use crate::estimate::evaluation::normal_equations::NormalEquations;
 use crate::estimate::problem::Problem;
+use crate::estimate::problem::unusable::Unusable;
+use crate::estimate::report::progress::{Progress, Watcher};
+use crate::estimate::report::start::{StartKind, StartReport};
 
 /// The first simplex reaches this share of each parameter's start, ...
 const REACH: f64 = 0.1;
@@ -23,7 +24,7 @@ const REPORT_EVERY: usize = 100;
 
 /// # Errors
 /// No corner of the first simplex gives a cost.
-pub(super) fn nelder_mead(
+pub(crate) fn nelder_mead(
     problem: &Problem,
     theta: Vec<f64>,
     most: usize,
@@ -55,7 +56,10 @@ pub(super) fn nelder_mead(
             may_shoot: false,
         }),
         // says what is wrong there
-        false => cost(&mut search.evaluator, &best.theta).and(Err(Unusable::NotFinite)),
+        false => search
+            .evaluator
+            .cost(&best.theta)
+            .and(Err(Unusable::NotFinite)),
     }
 }
 
@@ -89,7 +93,7 @@ impl<'p> Search<'p> {
             *value = value.clamp(unknown.lower, unknown.upper);
         }
         self.evaluations += 1;
-        let cost = cost(&mut self.evaluator, &theta).unwrap_or(f64::INFINITY);
+        let cost = self.evaluator.cost(&theta).unwrap_or(f64::INFINITY);
         Corner { theta, cost }
     }
 

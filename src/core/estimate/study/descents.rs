@@ -5,9 +5,14 @@
 
 use std::ops::ControlFlow;
 
-use super::super::derivatives::Scaling;
-use super::super::quasi_newton::{Descent, Update, initial_inverse};
-use super::{CostAndGradient, Derivatives, DescentResult, Evaluator, NoStudy, Study, operations};
+use super::operations::operations;
+use super::report::DescentResult;
+use super::underway::{NoStudy, Study};
+use crate::estimate::descent::quasi_newton::optimiser::{Optimiser, Update};
+use crate::estimate::descent::quasi_newton::solve::initial_inverse;
+use crate::estimate::evaluation::derivatives::adjoint::CostAndGradient;
+use crate::estimate::evaluation::evaluator::Evaluator;
+use crate::estimate::options::technique::{Derivatives, Scaling};
 use crate::estimate::output_error::output_error;
 
 /// Half the square of 0.01 standard errors: so much higher than the minimum counts as there.
@@ -100,30 +105,30 @@ impl Study<'_, '_> {
         let (inverse, unscaled) = initial_inverse(&mut evaluator, scaling, &self.theta)?;
         let bounds = (0..unknowns.len()).map(|i| (unknowns.at(i).lower, unknowns.at(i).upper));
         let start = (self.theta.clone(), cost, gradient);
-        let mut descent = Descent::new(start, bounds.unzip(), inverse, unscaled, update);
+        let mut optimiser = Optimiser::new(start, bounds.unzip(), inverse, unscaled, update);
         let mut iterations = 0;
-        while descent.cost > minimum + THERE
+        while optimiser.cost > minimum + THERE
             && iterations < MOST_ITERATIONS
             && adjoint.gradients < most_gradients
         {
             self.go_on()?;
-            let moved = descent.step(&mut |theta: &[f64]| adjoint.at(theta).ok());
+            let moved = optimiser.step(&mut |theta: &[f64]| adjoint.at(theta).ok());
             if moved.is_err() {
                 break;
             }
             iterations += 1;
         }
-        let optimiser = match update {
+        let name = match update {
             Update::Bfgs => "BFGS",
             Update::None => "steepest descent",
         };
         Ok(DescentResult {
-            optimiser: optimiser.to_string(),
+            optimiser: name.to_string(),
             scaling: Some(scaling),
             iterations,
             gradients: adjoint.gradients,
-            reached: descent.cost <= minimum + THERE,
-            cost_excess: descent.cost - minimum,
+            reached: optimiser.cost <= minimum + THERE,
+            cost_excess: optimiser.cost - minimum,
         })
     }
 }

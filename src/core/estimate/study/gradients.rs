@@ -2,13 +2,15 @@
 
 use nalgebra::DVector;
 
-use crate::estimate::derivatives::{
-    CentralDifference, ComplexStep, CostAndGradient, Derivatives, ForwardDifference, Perturbation,
-    columns,
-};
-use crate::estimate::evaluation::Unusable;
-use crate::estimate::likelihood::Weighting;
+use crate::estimate::evaluation::derivatives::adjoint::CostAndGradient;
+use crate::estimate::evaluation::derivatives::central_difference::CentralDifference;
+use crate::estimate::evaluation::derivatives::complex_step::ComplexStep;
+use crate::estimate::evaluation::derivatives::forward_difference::ForwardDifference;
+use crate::estimate::evaluation::derivatives::perturbation::{Perturbation, columns};
+use crate::estimate::likelihood::weighting::Weighting;
+use crate::estimate::options::technique::Derivatives;
 use crate::estimate::problem::Problem;
+use crate::estimate::problem::unusable::Unusable;
 use crate::simulate::Sensitivities;
 
 /// ∂J/∂θ at some places of θ. The adjoint makes R anew from the same residuals, as it always does.

@@ -8,10 +8,18 @@ mod descents;
 mod gradients;
 mod operations;
 mod report;
+mod underway;
 
-use std::ops::ControlFlow;
-
-use nalgebra::DVector;
+use crate::estimate::evaluation::derivatives::adjoint::CostAndGradient;
+use crate::estimate::evaluation::evaluator::Evaluator;
+use crate::estimate::evaluation::normal_equations::NormalEquations;
+use crate::estimate::options::technique::Derivatives;
+use crate::estimate::output_error::output_error;
+use crate::estimate::problem::Problem;
+use crate::estimate::problem::unknowns::Unknowns;
+use crate::estimate::problem::unusable::Unusable;
+use clock::{Times, least, once};
+use underway::Study;
 
 pub use clock::Clock;
 pub use operations::{formula, operations, simulations};
@@ -19,48 +27,13 @@ pub use report::{
     CostPoint, DerivativeStudy, DescentResult, ErrorCurve, ErrorPoint, FormulaOperations,
     ProblemSize, StudyStep, TechniqueResult,
 };
-
-use super::derivatives::{CostAndGradient, Derivatives};
-use super::evaluation::{Evaluator, Unusable};
-use super::likelihood::{NormalEquations, Weighting};
-use super::output_error::output_error;
-use super::problem::Problem;
-use super::unknowns::Unknowns;
-use clock::{Times, least, once};
-
-/// Told of each finding, and of nothing new from time to time; may stop the study.
-pub type Listener<'o> = dyn FnMut(Option<&StudyStep>) -> ControlFlow<()> + 'o;
-
-/// Why a study comes to no end.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub enum NoStudy {
-    Stopped,
-    Unusable(Unusable),
-}
-
-impl From<Unusable> for NoStudy {
-    fn from(why: Unusable) -> Self {
-        Self::Unusable(why)
-    }
-}
+pub use underway::{Listener, NoStudy};
 
 /// Unknowns of which the error is followed over all steps; of more, as many spread over all.
 const MOST_FOLLOWED: usize = 24;
 
 /// Most operations that a central-difference gradient may take, for a study of the problem to be made.
 pub const MOST_OPERATIONS: u64 = 20_000_000_000;
-
-struct Study<'a, 'o> {
-    problem: Problem,
-    theta: Vec<f64>,
-    weighting: Weighting,
-    /// What each unknown's standard error would be if it were the only one.
-    errors: DVector<f64>,
-    reference: DVector<f64>,
-    clock: &'a dyn Clock,
-    listener: &'a mut Listener<'o>,
-    number: usize,
-}
 
 /// Findings of a study: curves, techniques, costs and descents.
 const FINDINGS: usize = 3 + 5 + 1 + descents::ALL.len();
@@ -92,7 +65,8 @@ pub fn study(
         problem,
         clock,
         listener,
-        number: 0,
+        told: 0,
+        findings: FINDINGS,
     };
     let size = study.size();
     let error_curves = study.error_curves()?;
@@ -117,64 +91,6 @@ fn with(problem: &Problem, derivatives: Derivatives) -> Problem {
 }
 
 impl Study<'_, '_> {
-    fn size(&self) -> ProblemSize {
-        ProblemSize {
-            samples: self.problem.samples(),
-            states: self.problem.model.states.len(),
-            outputs: self.problem.model.outputs.len(),
-            unknowns: self.problem.unknowns.len(),
-            stages: self.problem.options.integrator.stage_count(),
-        }
-    }
-
-    fn tell(&mut self, finding: String) -> Result<(), NoStudy> {
-        self.number += 1;
-        let step = StudyStep {
-            number: self.number,
-            of: FINDINGS,
-            finding,
-        };
-        match (self.listener)(Some(&step)) {
-            ControlFlow::Continue(()) => Ok(()),
-            ControlFlow::Break(()) => Err(NoStudy::Stopped),
-        }
-    }
-
-    fn go_on(&mut self) -> Result<(), NoStudy> {
-        match (self.listener)(None) {
-            ControlFlow::Continue(()) => Ok(()),
-            ControlFlow::Break(()) => Err(NoStudy::Stopped),
-        }
-    }
-
-    /// Error of some components of the gradient, relative to the same components of the reference.
-    fn error(&self, found: &DVector<f64>, places: &[usize]) -> Option<f64> {
-        let errors = self.errors.select_rows(places);
-        let reference = self.reference.select_rows(places);
-        let error = (found - &reference).component_mul(&errors).norm();
-        // at a minimum there is no gradient to be relative to, but standard errors still are
-        let size = reference.component_mul(&errors).norm().max(1.0);
-        Some(error / size).filter(|error| error.is_finite())
-    }
-
-    fn gradient(
-        &self,
-        technique: &Derivatives,
-        places: &[usize],
-    ) -> Result<DVector<f64>, Unusable> {
-        gradients::gradient(
-            &self.problem,
-            technique,
-            &self.theta,
-            places,
-            &self.weighting,
-        )
-    }
-
-    fn all_places(&self) -> Vec<usize> {
-        (0..self.theta.len()).collect()
-    }
-
     fn error_curves(&mut self) -> Result<Vec<ErrorCurve>, NoStudy> {
         let count = self.theta.len();
         let followed = count.min(MOST_FOLLOWED);
@@ -333,7 +249,7 @@ fn restricted(problem: &Problem, count: usize) -> Problem {
         left -= usize::from(free);
     }
     let start = |parameter: usize, segment: usize| -> Result<f64, std::convert::Infallible> {
-        let own = |u: &&super::Unknown| {
+        let own = |u: &&crate::estimate::problem::unknowns::Unknown| {
             u.parameter == parameter && u.segment.is_none_or(|own| own == segment)
         };
         let unknown = problem.unknowns.all.iter().find(own);
@@ -346,12 +262,4 @@ fn restricted(problem: &Problem, count: usize) -> Problem {
         unknowns,
         problem.options.clone(),
     )
-}
-
-impl ErrorCurve {
-    /// Step and error of the best point.
-    pub fn best(&self) -> Option<(f64, f64)> {
-        let found = self.points.iter().filter_map(|p| Some((p.step, p.error?)));
-        found.min_by(|a, b| a.1.total_cmp(&b.1))
-    }
 }

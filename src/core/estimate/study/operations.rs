@@ -1,8 +1,10 @@
 //! What a gradient costs in operations and memory: by formula, and counted on the compiled model.
 
 use super::report::{FormulaOperations, ProblemSize};
-use crate::estimate::derivatives::{Derivatives, STRETCH};
+use crate::estimate::evaluation::derivatives::perturbation::STRETCH;
+use crate::estimate::options::technique::Derivatives;
 use crate::estimate::problem::Problem;
+use crate::simulate::{March, Segment};
 
 /// Operations on real numbers that one on complex numbers takes: two for a sum, six for a product.
 const COMPLEX: u64 = 4;
@@ -62,7 +64,8 @@ impl Counts {
         let states = count(model.states.len());
         let (f, g) = (&model.dynamics_jacobian, &model.observation_jacobian);
         let is_free = |p: usize| {
-            let own = |u: &&crate::estimate::Unknown| u.parameter == p && !u.fixed;
+            let own =
+                |u: &&crate::estimate::problem::unknowns::Unknown| u.parameter == p && !u.fixed;
             problem.unknowns.all.iter().any(|u| own(&u))
         };
         let moves_states = |p: &usize| {
@@ -144,7 +147,9 @@ pub(super) fn perturbation_bytes(problem: &Problem, technique: &Derivatives) -> 
         _ => (1, 8),
     };
     let unknowns = problem.unknowns.len();
-    let samples = STRETCH.min(problem.samples());
+    let segments = problem.segments.iter();
+    let stretch = |s: &Segment| March::<f64>::stretch(&problem.model, s, STRETCH).min(s.len());
+    let samples = segments.map(stretch).max().unwrap_or(0);
     let columns = 8 * samples * outputs * (unknowns + 1) + number * runs * samples * outputs;
     columns + number * runs * unknowns * problem.model.states.len()
 }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::super::derivatives::Scaling;
+use crate::estimate::options::technique::Scaling;
 
 /// Derivative techniques compared on one problem, at its start values.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
@@ -128,4 +128,12 @@ pub struct StudyStep {
         example = "complex_step: gradient error at most 2.1e-14 for steps from 1e-300 to 1e-8"
     )]
     pub finding: String,
+}
+
+impl ErrorCurve {
+    /// Step and error of the best point.
+    pub fn best(&self) -> Option<(f64, f64)> {
+        let found = self.points.iter().filter_map(|p| Some((p.step, p.error?)));
+        found.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
 }

@@ -6,17 +6,20 @@
 
 mod decimal;
 mod delimiter;
+mod dialect;
 mod mapped;
 mod rows;
 mod unit_row;
 
 use crate::flight::{Fault, Maneuver};
 
+use dialect::Dialect;
+
 use super::{
     IngestError, Limits,
     cell::{Decimal, number, unquote},
     code,
-    fault::{of_file, pointer},
+    fault::of_file,
     header::{Header, Titles},
     lines::{Line, Lines},
     mapping::Mapping,
@@ -94,40 +97,6 @@ fn no_header(line: Line) -> Fault {
         line.number
     );
     of_file(code::NO_TIME_COLUMN, message)
-}
-
-/// How a file is written.
-struct Dialect {
-    delimiter: char,
-    /// The header has a delimiter behind its last cell: so may rows.
-    ends_with_delimiter: bool,
-    decimal: Decimal,
-}
-
-impl Dialect {
-    fn cells<'a>(&self, line: &'a str) -> impl Iterator<Item = &'a str> {
-        self.without_end(line).split(self.delimiter)
-    }
-
-    fn without_end<'a>(&self, line: &'a str) -> &'a str {
-        let shorter = line.trim_end_matches(' ').strip_suffix(self.delimiter);
-        shorter.filter(|_| self.ends_with_delimiter).unwrap_or(line)
-    }
-
-    /// The cells of the first row, if there are as many as the header has.
-    fn first_row<'a>(&self, mut rows: Lines<'a>, width: usize) -> Vec<&'a str> {
-        let row = rows.next().filter(|row| self.count(row.text) == width);
-        row.map_or(Vec::new(), |row| {
-            self.cells(row.text).map(unquote).collect()
-        })
-    }
-
-    fn count(&self, line: &str) -> usize {
-        // all delimiters are of one byte, and these are counted fast
-        let is_delimiter = |&byte: &u8| char::from(byte) == self.delimiter;
-        let bytes = self.without_end(line).bytes();
-        1 + bytes.filter(is_delimiter).count()
-    }
 }
 
 /// How much there is, before anything is built from it.

@@ -9,13 +9,13 @@ use super::super::{
     axis::{TimeAxis, code_of},
     cell::{is_missing, number, unquote},
     code,
-    fault::{CELLS_LISTED, of_file},
+    fault::{CELLS_LISTED, of_file, pointer},
     header::{Column, Header},
     lines::{Line, Lines},
     stamp::{Stamp, Stopwatch},
     text::quoted,
 };
-use super::{Dialect, pointer};
+use super::dialect::Dialect;
 
 /// Reads all rows; `capacity` is about how many there are.
 ///

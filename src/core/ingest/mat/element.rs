@@ -1,7 +1,15 @@
 //! Data elements of a MAT file: a tag of kind and length, bytes, padding to eight.
 
+use super::super::{code, fault::of_file};
+use crate::flight::Fault;
+
 /// What is not as the format has it.
 pub(super) type Damage = &'static str;
+
+pub(super) fn damaged(why: Damage) -> Fault {
+    let message = format!("the MAT file is damaged: {why}; save it or upload it again");
+    of_file(code::DAMAGED_FILE, message)
+}
 
 /// Which byte of a number comes first.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

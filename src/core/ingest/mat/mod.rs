@@ -19,7 +19,7 @@ use super::{
     text::{quoted, short_message},
 };
 use array::{Fields, Head};
-use element::{Damage, Elements, Order};
+use element::{Damage, Elements, Order, damaged};
 use variables::Variables;
 
 const HEADER: usize = 128;
@@ -82,11 +82,6 @@ fn byte_order(bytes: &[u8]) -> Result<Order, Fault> {
             Err(of_file(code::NOT_A_MAT_FILE, message))
         }
     }
-}
-
-fn damaged(why: Damage) -> Fault {
-    let message = format!("the MAT file is damaged: {why}; save it or upload it again");
-    of_file(code::DAMAGED_FILE, message)
 }
 
 struct File<'a> {

@@ -7,8 +7,7 @@ use flate2::read::ZlibDecoder;
 
 use super::super::{Limits, code, fault::of_file};
 use super::array::Head;
-use super::damaged;
-use super::element::{Damage, Element, Elements, Order, kind};
+use super::element::{Damage, Element, Elements, Order, damaged, kind};
 use crate::flight::Fault;
 
 /// Room for the head of an array: flags, dimensions, and a name of up to 63 characters.

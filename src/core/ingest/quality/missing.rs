@@ -2,7 +2,7 @@
 
 use crate::flight::{Finding, Severity};
 
-use super::finding;
+use super::finding::finding;
 
 pub(super) fn missing(name: &str, values: &[f64]) -> Option<Finding> {
     let rows: Vec<usize> = (0..values.len())

@@ -3,13 +3,14 @@
 //! The tests are conservative. A control step, a quantised signal and a steady stretch before the
 //! maneuver are ordinary, and an alarm that is usually false is not read.
 
+mod finding;
 mod missing;
 mod repeats;
 mod spikes;
 mod time;
 mod wraps;
 
-use crate::flight::{Finding, Maneuver, Severity};
+use crate::flight::{Finding, Maneuver};
 
 /// Everything odd about a maneuver: first the time axis, then channel by channel.
 pub fn quality(maneuver: &Maneuver) -> Vec<Finding> {
@@ -34,36 +35,12 @@ pub fn quality(maneuver: &Maneuver) -> Vec<Finding> {
     findings
 }
 
-/// A finding at `rows` (indices from 0).
-fn finding(
-    code: &str,
-    severity: Severity,
-    channel: Option<&str>,
-    rows: &[usize],
-    message: String,
-    remedy: &str,
-) -> Finding {
-    Finding {
-        code: code.to_string(),
-        severity,
-        channel: channel.map(str::to_string),
-        rows: rows
-            .iter()
-            .take(Finding::ROWS_LISTED)
-            .map(|row| row + 1)
-            .collect(),
-        count: rows.len(),
-        message,
-        remedy: remedy.to_string(),
-    }
-}
-
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
     use indexmap::IndexMap;
 
-    use crate::flight::{Channel, Unit};
+    use crate::flight::{Channel, Severity, Unit};
 
     /// A maneuver at 25 Hz of channels in degrees.
     pub(super) fn maneuver(channels: &[(&str, Vec<f64>)]) -> Maneuver {

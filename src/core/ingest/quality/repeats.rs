@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::flight::{Finding, Maneuver, Severity};
 
-use super::finding;
+use super::finding::finding;
 
 /// A stretch of equal values is long from here on.
 const LONG: usize = 25;

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use crate::flight::{Finding, Severity};
 
-use super::finding;
+use super::finding::finding;
 
 /// Heights beyond this many standard deviations of the second difference are spikes. Set on recorded
 /// maneuvers: control inputs and turbulence in them stay below, what is known to be false is above.

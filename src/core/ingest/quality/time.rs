@@ -2,7 +2,7 @@
 
 use crate::flight::{Finding, Maneuver, Severity};
 
-use super::finding;
+use super::finding::finding;
 
 /// As in `flight::Sampling`: smaller differences are rounding of the time column.
 const EVEN_WITHIN: f64 = 0.02;

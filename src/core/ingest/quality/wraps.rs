@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::flight::{Channel, Finding, Severity};
 
-use super::{super::units::is_angle, finding};
+use super::{super::units::is_angle, finding::finding};
 
 /// No aircraft turns by this between two samples of a useful rate (500 deg/s at 25 Hz).
 const LARGE_STEP: f64 = 20.0 * PI / 180.0;

@@ -1,15 +1,17 @@
 //! Edits: an effect is a function from a model document to a model document with a few parameters more,
 //! which at their values of no effect is the model before.
 //!
-//! The added parameters carry units, start values and their physical range. At its start a bias, scale, drift, delay,
-//! missing term, gust, wind, initial state or structural mode is without effect; a lag, a rate limit, a backlash
-//! or a stall starts at a usual value and tends to the model before with its time to 0, its limit or its angle to
-//! the largest. A time constant must stay above about 0.4 of the time between samples: what is faster than that
-//! an explicit integrator cannot follow.
+//! The added parameters carry units, start values and their physical range. Every effect contains its own absence:
+//! [`Edit::absence`] says at which values the edited model is the model before. Lags, rate limits, play and delays are
+//! elements in the path of a signal (see [`super::Element`]). The time constants of the effects that are states must
+//! stay above about 0.4 of the time between samples: what is faster than that an explicit integrator cannot follow.
 
+mod absence;
 mod dynamics;
+mod edited;
 mod error;
 mod inputs;
+mod lookup;
 mod position;
 mod pressure;
 mod sensors;
@@ -18,12 +20,14 @@ mod stall;
 mod text;
 mod wind;
 
+pub use edited::{Added, AddedRole, Edited};
 pub use error::EditError;
 
+use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::document::ModelDocument;
+use super::document::{Input, ModelDocument};
 use super::expression::{LONGEST, LONGEST_NAME};
 use sheet::Sheet;
 
@@ -35,7 +39,7 @@ const LONGEST_TARGET: usize = 1024;
 #[serde(deny_unknown_fields)]
 pub struct Edit {
     pub kind: EditKind,
-    /// An output for `sensor_*` (or an input that is measured, as the accelerometers of a reconstruction), an input
+    /// A fixed parameter for `fixed_parameter`, an output for `sensor_*` (or an input that is measured, as the accelerometers of a reconstruction), an input
     /// for `input_*`, `actuator_*` and `backlash`, a state or definition (its equation) for the others. Several
     /// joined by `+` for `sensor_delay` and `stall_hysteresis`; `all` for the `missing_term` `qbar`.
     #[schema(example = "q")]
@@ -55,11 +59,31 @@ pub struct Edit {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "rad")]
     pub unit: Option<String>,
+    /// Recorded channels that a `missing_term` may name though the model does not use them, and from which other effects
+    /// take a speed or a rotational acceleration that the model does not have: as the model's inputs would be written.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schema(example = json!({"TAS": {"unit": "m/s", "quantity": "airspeed"}}))]
+    pub channels: IndexMap<String, Input>,
+    /// Names in a `missing_term` that are taken as differences, and from what: a number in the unit of the name, or an
+    /// expression in parameters and constants.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schema(example = json!({"alpha": "alpha_eq"}))]
+    pub about: IndexMap<String, Reference>,
+}
+
+/// From what a difference is taken.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(untagged)]
+pub enum Reference {
+    Value(f64),
+    Expression(String),
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum EditKind {
+    /// A parameter that the document holds fixed becomes free
+    FixedParameter,
     /// y + b
     SensorBias,
     /// (1 + k) y
@@ -68,7 +92,7 @@ pub enum EditKind {
     SensorDrift,
     /// y(t - τ)
     SensorDelay,
-    /// T ẏ_m = y - y_m
+    /// T ẏ_m = y - y_m, y_m what is recorded
     SensorLag,
     /// The lever arm of a vane or an accelerometer: α - x q/V + y p/V, β + x r/V - z p/V, a + ω̇ × r + ω × (ω × r)
     SensorPosition,
@@ -80,9 +104,9 @@ pub enum EditKind {
     InputDelay,
     /// T δ̇ = u - δ
     ActuatorLag,
-    /// δ̇ = r tanh((u - δ)/(r T))
+    /// δ goes to u, but abs(δ̇) ≤ r
     ActuatorRateLimit,
-    /// T δ̇ = max(0, u - b - δ) + min(0, u + b - δ)
+    /// δ stays where it is, but u - b ≤ δ ≤ u + b
     Backlash,
     /// ψ u2, a recorded channel that the model does not use
     UnrecordedInput,
@@ -103,7 +127,8 @@ pub enum EditKind {
 }
 
 impl EditKind {
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
+        Self::FixedParameter,
         Self::SensorBias,
         Self::SensorScale,
         Self::SensorDrift,
@@ -129,6 +154,7 @@ impl EditKind {
     /// The word of the catalogue.
     pub fn name(self) -> &'static str {
         match self {
+            Self::FixedParameter => "fixed_parameter",
             Self::SensorBias => "sensor_bias",
             Self::SensorScale => "sensor_scale",
             Self::SensorDrift => "sensor_drift",
@@ -157,31 +183,19 @@ impl EditKind {
     }
 }
 
-/// What an edited document has that the one before had not, by name.
-#[derive(Clone, PartialEq, Eq, Debug, Default)]
-pub struct Added {
-    /// The effect's size comes first. Fixed ones among them are held or read off the data.
-    pub parameters: Vec<String>,
-    /// Channels that a recording must have besides.
-    pub inputs: Vec<String>,
-    pub states: Vec<String>,
-}
-
-impl Added {
-    pub fn between(before: &ModelDocument, after: &ModelDocument) -> Self {
-        fn new<'n>(
-            after: impl Iterator<Item = &'n String>,
-            is_old: impl Fn(&str) -> bool,
-        ) -> Vec<String> {
-            after.filter(|name| !is_old(name)).cloned().collect()
+/// A parameter that was fixed, at what would be no effect, is to be estimated.
+fn freed(sheet: &mut Sheet) -> Result<(), EditError> {
+    let target = sheet.target();
+    let is_fixed = |(_, parameter): &(&String, &super::document::Parameter)| parameter.fixed;
+    let known = sheet.document.parameters.iter().filter(is_fixed);
+    let missing = sheet.no_target("fixed parameter", target, known.map(|(name, _)| name));
+    match sheet.document.parameters.get_mut(target) {
+        Some(parameter) if parameter.fixed => {
+            parameter.fixed = false;
+            sheet.frees(target);
+            Ok(())
         }
-        Self {
-            parameters: new(after.parameters.keys(), |name| {
-                before.parameters.contains_key(name)
-            }),
-            inputs: new(after.inputs.keys(), |name| before.inputs.contains_key(name)),
-            states: new(after.states.keys(), |name| before.states.contains_key(name)),
-        }
+        _ => Err(missing),
     }
 }
 
@@ -194,6 +208,8 @@ impl Edit {
             term: None,
             parameter: None,
             unit: None,
+            channels: IndexMap::new(),
+            about: IndexMap::new(),
         }
     }
 
@@ -205,15 +221,16 @@ impl Edit {
         }
     }
 
-    /// The document with the effect in it. What it has more: [`Added::between`].
+    /// The document with the effect in it, and what it has more.
     ///
     /// # Errors
     /// The target is not in the model or not fit for the kind, the term cannot be read, the parameter's name is taken,
     /// or one of them is too long.
-    pub fn apply(&self, document: &ModelDocument) -> Result<ModelDocument, EditError> {
+    pub fn apply(&self, document: &ModelDocument) -> Result<Edited, EditError> {
         self.check_lengths()?;
         let mut sheet = Sheet::new(self, document);
         match self.kind {
+            EditKind::FixedParameter => freed(&mut sheet),
             EditKind::SensorBias => sensors::bias(&mut sheet),
             EditKind::SensorScale => sensors::scale(&mut sheet),
             EditKind::SensorDrift => sensors::drift(&mut sheet),
@@ -236,7 +253,11 @@ impl Edit {
             EditKind::InitialState => dynamics::initial_state(&mut sheet),
             EditKind::StructuralMode => sensors::structural_mode(&mut sheet),
         }?;
-        Ok(sheet.document)
+        Ok(Edited {
+            document: sheet.document,
+            added: sheet.added,
+            inputs: sheet.inputs,
+        })
     }
 
     /// What is written here comes back many times in the document.

@@ -3,16 +3,15 @@
 //! The target is an output, or an input that is measured: there the model sees the recorded value less the error.
 
 use super::EditError;
+use super::edited::AddedRole;
 use super::sheet::{Sheet, dimension, of_a_difference, per_second, unknown};
-use crate::flight::Dimension;
+use crate::flight::{Dimension, PhysicalQuantity};
 use crate::model::document::Parameter;
 
-/// Usual bounds of a scale factor, less one, and of a delay, s.
+/// Usual bounds of a scale factor, less one, of a delay and of the time constant of a lag, s.
 pub(super) const SCALE: (f64, f64) = (-0.9, 2.0);
 pub(super) const DELAY: (f64, f64) = (-0.2, 0.5);
-/// Start and bounds of a first-order lag, s.
-pub(super) const LAG: f64 = 0.05;
-pub(super) const LAGS: (f64, f64) = (0.005, 2.0);
+pub(super) const LAG: (f64, f64) = (0.0, 2.0);
 
 /// A sensor: how a document has it.
 pub(super) enum Sensor {
@@ -41,6 +40,14 @@ impl Sensor {
         }
     }
 
+    pub(super) fn quantity(&self, sheet: &Sheet, target: &str) -> Option<PhysicalQuantity> {
+        let quantities = sheet.quantities();
+        match self {
+            Self::Output { .. } => quantities.output(target),
+            Self::Input { .. } => quantities.get(target),
+        }
+    }
+
     /// Adds an error to what is recorded; `error` can stand behind a plus sign, or a minus sign in brackets.
     pub(super) fn add(&self, sheet: &mut Sheet, target: &str, error: &str) {
         match self {
@@ -64,7 +71,11 @@ pub(super) fn bias(sheet: &mut Sheet) -> Result<(), EditError> {
     let name = sheet.name(&format!("{target}_bias"))?;
     sensor.add(sheet, target, &name);
     let unit = of_a_difference(sensor.unit());
-    sheet.add(&name, unknown(unit, 0.0, None, format!("bias of {target}")));
+    sheet.add(
+        &name,
+        AddedRole::Size,
+        unknown(unit, 0.0, None, format!("bias of {target}")),
+    );
     Ok(())
 }
 
@@ -79,7 +90,11 @@ pub(super) fn scale(sheet: &mut Sheet) -> Result<(), EditError> {
         }
     }
     let words = format!("scale factor, less one, of {target}");
-    sheet.add(&name, unknown("-", 0.0, Some(SCALE), words));
+    sheet.add(
+        &name,
+        AddedRole::Size,
+        unknown("-", 0.0, Some(SCALE), words),
+    );
     Ok(())
 }
 
@@ -91,6 +106,7 @@ pub(super) fn drift(sheet: &mut Sheet) -> Result<(), EditError> {
     let unit = per_second(sensor.unit());
     sheet.add(
         &name,
+        AddedRole::Size,
         unknown(unit, 0.0, None, format!("drift of {target}")),
     );
     Ok(())
@@ -103,45 +119,51 @@ pub(super) fn delay(sheet: &mut Sheet) -> Result<(), EditError> {
         match Sensor::find(sheet, target)? {
             Sensor::Output { .. } => {
                 if let Some(output) = sheet.document.outputs.get_mut(target) {
-                    later(&mut output.delay, &name);
+                    add_to(&mut output.delay, &name);
                 }
             }
             // the value that was recorded late is the one to be used earlier
             Sensor::Input { .. } => {
                 if let Some(input) = sheet.document.inputs.get_mut(target) {
-                    later(&mut input.delay, &format!("-{name}"));
+                    add_to(&mut input.delay, &format!("-{name}"));
                 }
             }
         }
     }
     let words = format!("time delay of {}", sheet.edit.target);
-    sheet.add(&name, unknown("s", 0.0, Some(DELAY), words));
+    sheet.add(
+        &name,
+        AddedRole::Delay,
+        unknown("s", 0.0, Some(DELAY), words),
+    );
     Ok(())
 }
 
-/// Adds a term to a delay.
-pub(super) fn later(delay: &mut Option<String>, term: &str) {
-    *delay = Some(match delay {
+/// Adds a term to the size of an element of a path.
+pub(super) fn add_to(size: &mut Option<String>, term: &str) {
+    *size = Some(match size {
         Some(before) => format!("{before} + ({term})"),
         None => term.to_string(),
     });
 }
 
+/// Joins a lag that is there already, as that of an actuator does. Of a measured input it would have to be undone, which
+/// the noise of the recording does not allow: only outputs have one.
 pub(super) fn lag(sheet: &mut Sheet) -> Result<(), EditError> {
     let target = sheet.target();
-    let Some(output) = sheet.document.outputs.get(target) else {
+    if !sheet.document.outputs.contains_key(target) {
         return Err(sheet.no_target("output", target, sheet.document.outputs.keys()));
-    };
-    let (equation, unit) = (output.equation.clone(), output.unit.clone());
+    }
     let name = sheet.name(&format!("{target}_lag"))?;
+    if let Some(output) = sheet.document.outputs.get_mut(target) {
+        add_to(&mut output.lag, &name);
+    }
     let words = format!("time constant of the sensor of {target}");
-    sheet.add(&name, unknown("s", LAG, Some(LAGS), words));
-    let state = sheet.free(&format!("{target}_lagged"));
-    let initial = sheet.at_start(&equation, &unit, target);
-    let derivative = format!("({equation} - {state})/{name}");
-    let words = format!("{target} behind its sensor's lag");
-    sheet.add_state(&state, &unit, initial, derivative, words);
-    observe(sheet, target, |_| state.clone());
+    sheet.add(
+        &name,
+        AddedRole::TimeConstant,
+        unknown("s", 0.0, Some(LAG), words),
+    );
     Ok(())
 }
 
@@ -161,13 +183,25 @@ pub(super) fn structural_mode(sheet: &mut Sheet) -> Result<(), EditError> {
     let of_gain = dimension(&unit).over(dimension(&sheet.input(driver)?));
     let gain = sheet.name(&format!("{target}_mode_gain"))?;
     let words = format!("static gain of the structural mode from {driver} to {target}");
-    sheet.add(&gain, unknown(of_gain.to_string(), 0.0, None, words));
+    sheet.add(
+        &gain,
+        AddedRole::Size,
+        unknown(of_gain.to_string(), 0.0, None, words),
+    );
     let frequency = sheet.free(&format!("{target}_mode_frequency"));
     let words = "natural frequency of the structural mode".to_string();
-    sheet.add(&frequency, unknown("rad/s", 12.0, Some((3.0, 60.0)), words));
+    sheet.add(
+        &frequency,
+        AddedRole::Frequency,
+        unknown("rad/s", 12.0, Some((3.0, 60.0)), words),
+    );
     let damping = sheet.free(&format!("{target}_mode_damping"));
     let words = "damping ratio of the structural mode".to_string();
-    sheet.add(&damping, unknown("-", 0.02, Some((0.001, 0.3)), words));
+    sheet.add(
+        &damping,
+        AddedRole::Damping,
+        unknown("-", 0.02, Some((0.001, 0.3)), words),
+    );
     let first = sheet.first_of(driver);
     let eta = sheet.free(&format!("{target}_mode"));
     let rate = sheet.free(&format!("{target}_mode_rate"));

@@ -2,6 +2,7 @@
 
 use super::EditError;
 use super::dynamics::angle;
+use super::edited::AddedRole;
 use super::sheet::{Sheet, dimension, unknown};
 use super::text::replace_name;
 use crate::flight::Dimension;
@@ -18,13 +19,26 @@ pub(super) fn hysteresis(sheet: &mut Sheet) -> Result<(), EditError> {
     let separation = sheet.free("X");
     let name = sheet.name(&format!("{angle}_stall"))?;
     let words = format!("{angle} at which half the flow has separated");
-    sheet.add(&name, unknown("deg", 15.0, Some((5.0, 25.0)), words));
+    // at the upper bound none has, whatever the angle that is flown: the separation is 1 to the last bit
+    sheet.add(
+        &name,
+        AddedRole::Limit,
+        unknown("deg", 15.0, Some((5.0, 90.0)), words),
+    );
     let steepness = sheet.free(&format!("{angle}_stall_steepness"));
     let words = "steepness of the separation, a1".to_string();
-    sheet.add(&steepness, unknown("-", 20.0, Some((5.0, 80.0)), words));
+    sheet.add(
+        &steepness,
+        AddedRole::Steepness,
+        unknown("-", 20.0, Some((5.0, 80.0)), words),
+    );
     let time = sheet.free(&format!("{angle}_stall_time"));
     let words = "time constant of the separation, tau1".to_string();
-    sheet.add(&time, unknown("s", 0.2, Some((0.01, 2.0)), words));
+    sheet.add(
+        &time,
+        AddedRole::TimeConstant,
+        unknown("s", 0.2, Some((0.01, 2.0)), words),
+    );
     let rate = match (sheet.document.states.get(angle), format!("{angle}dot")) {
         (_, name) if sheet.document.definitions.contains_key(&name) => Some(name),
         (_, name) if sheet.document.inputs.contains_key(&name) => Some(name),
@@ -39,7 +53,11 @@ pub(super) fn hysteresis(sheet: &mut Sheet) -> Result<(), EditError> {
             let (_, measures) = sheet.law(target)?;
             let share = sheet.free(&format!("{target}_{separation}"));
             let words = format!("effect on {target} of the separation of the flow");
-            sheet.add(&share, unknown(measures.to_string(), 0.0, None, words));
+            sheet.add(
+                &share,
+                AddedRole::Size,
+                unknown(measures.to_string(), 0.0, None, words),
+            );
             let (equation, _) = sheet.law(target)?;
             *equation = format!("{equation} + {share}*(1 - {separation})");
         } else {
@@ -71,7 +89,11 @@ pub(super) fn hysteresis(sheet: &mut Sheet) -> Result<(), EditError> {
             };
             let memory = sheet.free(&format!("{angle}_stall_delay"));
             let words = "delay of the stall in pitching up, tau2".to_string();
-            sheet.add(&memory, unknown("s", 0.0, Some((-0.2, 2.0)), words));
+            sheet.add(
+                &memory,
+                AddedRole::Delay,
+                unknown("s", 0.0, Some((-0.2, 2.0)), words),
+            );
             format!(" - {memory}*{rate}")
         }
     };

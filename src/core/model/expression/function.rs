@@ -1,6 +1,6 @@
 //! The functions that equations may call.
 
-/// A function by name. `first`, `mean` and `interpolated` look at a whole recording: they are allowed only in
+/// A function by name. `first`, `mean`, `largest_rate` and `interpolated` look at a whole recording: they are allowed only in
 /// channel formulas and where a parameter's start value is worked out.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Function {
@@ -22,10 +22,11 @@ pub enum Function {
     If,
     First,
     Mean,
+    LargestRate,
     Interpolated,
 }
 
-const ALL: [(&str, Function, usize); 19] = [
+const ALL: [(&str, Function, usize); 20] = [
     ("sin", Function::Sin, 1),
     ("cos", Function::Cos, 1),
     ("tan", Function::Tan, 1),
@@ -44,6 +45,7 @@ const ALL: [(&str, Function, usize); 19] = [
     ("if", Function::If, 3),
     ("first", Function::First, 1),
     ("mean", Function::Mean, 2),
+    ("largest_rate", Function::LargestRate, 1),
     ("interpolated", Function::Interpolated, 1),
 ];
 

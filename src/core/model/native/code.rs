@@ -9,24 +9,9 @@ use cranelift_frontend::FunctionBuilderContext;
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Linkage, Module, default_libcall_names};
 
-use super::Stretch;
 use super::emit;
+use super::handed::{Handed, Stretch};
 use crate::model::program::Program;
-
-/// What compiled code is handed, by address.
-#[repr(C)]
-pub(super) struct Handed {
-    pub registers: *const f64,
-    pub stages: *const [f64; 2],
-    pub stages_end: *const [f64; 2],
-    pub lengths: *const f64,
-    /// How many, times the size of a number.
-    pub lengths_size: usize,
-    pub inputs: *const f64,
-    pub times: *const f64,
-    pub stage_states: *mut f64,
-    pub state: *mut f64,
-}
 
 type Entry = unsafe extern "C" fn(*const Handed);
 

@@ -15,9 +15,10 @@ use cranelift_codegen::isa::TargetFrontendConfig;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_module::Module;
 
-use super::code::Handed;
 use super::functions;
-use crate::model::instruction::{Instruction, Operation};
+use super::handed::Handed;
+use crate::model::instruction::Instruction;
+use crate::model::operation::Operation;
 use crate::model::program::Program;
 use crate::model::scalar::BLOCK;
 

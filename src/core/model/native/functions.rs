@@ -2,7 +2,7 @@
 
 use multiversion::multiversion;
 
-use crate::model::instruction::Operation;
+use crate::model::operation::Operation;
 use crate::model::scalar::{self, Scalar};
 
 /// Angles whose sines and cosines one call gives.

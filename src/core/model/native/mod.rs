@@ -8,6 +8,9 @@
 mod code;
 mod emit;
 mod functions;
+mod handed;
+
+pub use handed::Stretch;
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -63,22 +66,6 @@ pub struct NativeSteps {
     registers: usize,
     states: usize,
     inputs: usize,
-}
-
-/// Some steps to take, and where the states go.
-pub struct Stretch<'a> {
-    /// By stage: its weight, and how far the next one goes, as shares of the step.
-    pub stages: &'a [[f64; 2]],
-    /// Length of each step, s: at most as many as there are samples in a block.
-    pub lengths: &'a [f64],
-    /// By stage, then input: values over the block.
-    pub inputs: &'a [[f64; BLOCK]],
-    /// By stage: times over the block.
-    pub times: &'a [[f64; BLOCK]],
-    /// By stage, then state: values over the block, to be filled in.
-    pub stage_states: &'a mut [[f64; BLOCK]],
-    /// At the first sample; afterwards behind the last step.
-    pub state: &'a mut [f64],
 }
 
 impl NativeSteps {

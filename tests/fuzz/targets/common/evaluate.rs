@@ -1,6 +1,6 @@
 //! One evaluation of everything that a model compiles to.
 
-use trimtab::model::{Model, Program};
+use trimtab_core::model::{Model, Program};
 
 pub fn once(model: &Model) {
     for program in [

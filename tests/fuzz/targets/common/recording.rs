@@ -1,7 +1,7 @@
 //! What happens to every recording once it is read.
 
-use trimtab::flight::Maneuver;
-use trimtab::ingest::{self, Format, IngestError, Limits};
+use trimtab_core::flight::Maneuver;
+use trimtab_core::ingest::{self, Format, IngestError, Limits};
 
 /// Small, so that they are reached.
 pub const LIMITS: Limits = Limits {

@@ -1,0 +1,136 @@
+//! Names do not matter: what quantities are is declared, or told by the equations.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{BESIDE, beside, case, names, offered};
+use crate::diagnose::candidates::taken_for;
+use crate::diagnose::effect::Effect;
+use crate::flight::PhysicalQuantity;
+use crate::model::{ModelDocument, Quantities, catalog};
+
+/// Each name in a text by another.
+fn renamed(text: &str, by: &BTreeMap<String, String>) -> String {
+    let mut result = String::new();
+    let mut word = String::new();
+    for c in text.chars().chain([' ']) {
+        if c.is_ascii_alphanumeric() || c == '_' {
+            word.push(c);
+            continue;
+        }
+        result.push_str(by.get(&word).unwrap_or(&word));
+        word.clear();
+        result.push(c);
+    }
+    result.trim_end().to_string()
+}
+
+fn with_other_names(document: &ModelDocument, by: &BTreeMap<String, String>) -> ModelDocument {
+    let mut value = serde_json::to_value(document).unwrap();
+    for section in [
+        "constants",
+        "inputs",
+        "parameters",
+        "definitions",
+        "states",
+        "outputs",
+    ] {
+        let Some(entries) = value.get(section).and_then(|v| v.as_object()).cloned() else {
+            continue;
+        };
+        let rename = |(name, mut entry): (String, serde_json::Value)| {
+            for field in ["equation", "derivative", "initial", "delay", "start"] {
+                if let Some(text) = entry.get(field).and_then(|text| text.as_str()) {
+                    entry[field] = renamed(text, by).into();
+                }
+            }
+            (renamed(&name, by), entry)
+        };
+        value[section] = entries
+            .into_iter()
+            .map(rename)
+            .collect::<serde_json::Map<_, _>>()
+            .into();
+    }
+    serde_json::from_value(value).unwrap()
+}
+
+/// Every name of a document and of what is recorded beside it, by one that says nothing.
+fn opaque_names(document: &ModelDocument) -> BTreeMap<String, String> {
+    let all = (document.constants.keys())
+        .chain(document.inputs.keys())
+        .chain(document.parameters.keys())
+        .chain(document.definitions.keys())
+        .chain(document.states.keys())
+        .chain(document.outputs.keys())
+        .cloned()
+        .chain(BESIDE.map(|(name, ..)| name.to_string()));
+    let all: BTreeSet<String> = all.collect();
+    all.into_iter()
+        .enumerate()
+        .map(|(i, name)| (name, format!("n{i}")))
+        .collect()
+}
+
+#[test]
+fn names_do_not_matter() {
+    for document in catalog::all() {
+        let by = opaque_names(&document);
+        let other = with_other_names(&document, &by);
+        let renamed_beside: Vec<_> = (beside().into_iter())
+            .map(|(name, unit, is)| (by[&name].clone(), unit, is))
+            .collect();
+        let wanted: BTreeSet<String> = (offered(&case(&document, &beside())).iter())
+            .map(|effect| format!("{} {:?}", renamed(&effect.name(), &by), effect.plausible))
+            .collect();
+        let found: BTreeSet<String> = (offered(&case(&other, &renamed_beside)).iter())
+            .map(|effect| format!("{} {:?}", effect.name(), effect.plausible))
+            .collect();
+        // products are written in the order of quantities, sensors in that of the document
+        let missing: Vec<&String> = wanted.difference(&found).collect();
+        let new: Vec<&String> = found.difference(&wanted).collect();
+        assert!(
+            missing.is_empty() && new.is_empty(),
+            "{}: {missing:#?} {new:#?}",
+            document.name
+        );
+    }
+}
+
+/// Only the flow angle is declared; all else by equations.
+#[test]
+fn structure_tells_what_names_do_not() {
+    let mut document = catalog::find("short-period").unwrap();
+    let by = opaque_names(&document);
+    for state in document.states.values_mut() {
+        state.quantity = state.quantity.filter(|quantity| quantity.is_flow_angle());
+    }
+    document
+        .inputs
+        .values_mut()
+        .for_each(|input| input.quantity = None);
+    document
+        .outputs
+        .values_mut()
+        .for_each(|output| output.quantity = None);
+    let found = names(&offered(&case(&with_other_names(&document, &by), &[])));
+    let declared = catalog::find("short-period").unwrap();
+    let wanted = names(&offered(&case(&declared, &[])));
+    let wanted: BTreeSet<String> = wanted.iter().map(|name| renamed(name, &by)).collect();
+    assert_eq!(found, wanted);
+}
+
+#[test]
+fn the_answer_says_what_was_taken_for_what() {
+    let mut document = catalog::find("short-period").unwrap();
+    document
+        .outputs
+        .values_mut()
+        .for_each(|output| output.quantity = None);
+    let quantities = Quantities::of(&document);
+    assert_eq!(quantities.output("q"), Some(PhysicalQuantity::PitchRate));
+    let told = taken_for(&case(&document, &beside()));
+    let of = |name: &str| told.iter().find(|taken| taken.name == name).unwrap();
+    assert_eq!(of("de").quantity, PhysicalQuantity::Elevator);
+    assert_eq!(of("de").reason, "the model says so");
+    assert_eq!(of("V").reason, "the job says so");
+}

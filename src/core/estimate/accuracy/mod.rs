@@ -1,0 +1,12 @@
+//! What the estimate is worth: error bounds, the colour of residuals, identifiability, modes, the fit of each output.
+//! Nothing here moves θ.
+
+pub(super) mod absorbed;
+pub(super) mod autoregression;
+pub(super) mod coloured_residuals;
+pub(super) mod error_bounds;
+pub(super) mod fit;
+pub(super) mod identifiability;
+pub(super) mod modes;
+pub(super) mod prior_shares;
+pub(super) mod state_matrix;

@@ -1,0 +1,57 @@
+//! Gauss-Newton or Levenberg-Marquardt on the likelihood concentrated in R.
+
+use super::Descent;
+use super::iterate::{Iterate, Taken};
+use super::search::{Nothing, Search};
+use super::stopped::Stopped;
+use crate::estimate::evaluation::evaluator::Evaluator;
+use crate::estimate::problem::Problem;
+use crate::estimate::problem::unusable::Unusable;
+use crate::estimate::report::progress::Observer;
+
+/// Goes down from a θ until there is a reason to stop.
+///
+/// # Errors
+/// This θ gives no cost.
+pub(crate) fn descend<'p>(
+    problem: &'p Problem,
+    theta: Vec<f64>,
+    observer: &mut Observer<'_>,
+) -> Result<Descent<'p>, Unusable> {
+    let mut evaluator = Evaluator::on_all_cores(problem);
+    let mut current = Iterate::at(problem, &mut evaluator, theta)?;
+    let first_information = Some(current.information.clone());
+    let mut search = Search::new(problem);
+    let mut taken = Taken::default();
+    let mut iteration = 0;
+    let stopped = loop {
+        if observer(&current.report(problem, iteration, &taken)).is_break() {
+            break Stopped::OnRequest;
+        }
+        let Some(newton) = &current.newton else {
+            break Stopped::NoDirection;
+        };
+        let distance = newton.distance();
+        if distance < problem.options.tolerance {
+            break Stopped::Minimum { distance };
+        }
+        if iteration == problem.options.max_iterations {
+            break Stopped::Budget { distance };
+        }
+        match search.onward(&mut evaluator, &current, newton) {
+            Ok(found) => {
+                (current, taken) = *found;
+                iteration += 1;
+            }
+            Err(Nothing { in_range: true }) => break Stopped::Stalled { distance },
+            Err(Nothing { in_range: false }) => break Stopped::Diverged,
+        }
+    };
+    Ok(Descent {
+        evaluator,
+        first_information,
+        last: current,
+        iterations: iteration,
+        stopped,
+    })
+}

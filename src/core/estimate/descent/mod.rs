@@ -1,0 +1,26 @@
+//! From one θ to the next until there is a reason to stop. The cost never rises from one iterate to the next, but for
+//! rounding.
+
+pub(super) mod acceleration;
+pub(super) mod gauss_newton;
+pub(super) mod iterate;
+pub mod quasi_newton;
+pub(super) mod search;
+pub(super) mod step;
+pub(super) mod stopped;
+
+use nalgebra::DMatrix;
+
+use crate::estimate::evaluation::evaluator::Evaluator;
+use iterate::Iterate;
+use stopped::Stopped;
+
+/// Where an iteration ended, and why.
+pub(crate) struct Descent<'p> {
+    pub evaluator: Evaluator<'p>,
+    /// The information matrix at the start; none where the iteration looks at gradients alone.
+    pub first_information: Option<DMatrix<f64>>,
+    pub last: Iterate,
+    pub iterations: usize,
+    pub stopped: Stopped,
+}

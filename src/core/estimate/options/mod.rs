@@ -1,0 +1,117 @@
+//! What a user may choose about an estimation. Choices alone: who carries them out is of no concern here.
+
+pub(super) mod error_bounds;
+pub(super) mod estimator;
+pub(super) mod process_noise;
+pub(super) mod role;
+pub(super) mod start;
+pub(super) mod technique;
+
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::simulate::{InputInterpolation, Integrator};
+use error_bounds::ErrorBoundsKind;
+use estimator::Estimator;
+use process_noise::ProcessNoise;
+use start::StartMethod;
+use technique::Derivatives;
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Options {
+    pub estimator: Estimator,
+    /// Where output error starts from.
+    pub start: StartMethod,
+    pub method: Method,
+    pub integrator: Integrator,
+    pub input_interpolation: InputInterpolation,
+    pub noise: Noise,
+    pub error_bounds: ErrorBoundsKind,
+    pub derivatives: Derivatives,
+    /// By state, for the filter-error estimator; a state that is not named has noise whose intensity is estimated from
+    /// a start value of its own.
+    #[serde(
+        deserialize_with = "crate::model::unique",
+        skip_serializing_if = "IndexMap::is_empty"
+    )]
+    #[schema(example = json!({"theta": {"start": 0.0, "fixed": true}}))]
+    pub process_noise: IndexMap<String, ProcessNoise>,
+    /// Converged when a full step would move the estimate by less than this many standard errors:
+    /// √(gᵀ H⁻¹ g), g the gradient and H the Hessian of the cost that the step is made with.
+    #[schema(example = 1e-5, exclusive_minimum = 0.0)]
+    pub tolerance: f64,
+    /// The budget of iterations. With 0 nothing is estimated: the answer is what the data can tell of the parameters
+    /// at the start values, see `identifiability`.
+    #[schema(example = 50)]
+    pub max_iterations: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            estimator: Estimator::default(),
+            start: StartMethod::default(),
+            method: Method::default(),
+            integrator: Integrator::default(),
+            input_interpolation: InputInterpolation::default(),
+            noise: Noise::default(),
+            error_bounds: ErrorBoundsKind::default(),
+            derivatives: Derivatives::default(),
+            process_noise: IndexMap::new(),
+            tolerance: 1e-5,
+            max_iterations: 50,
+        }
+    }
+}
+
+/// How a step is made from gradient and information matrix.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// Damped step by singular value decomposition of the scaled, symmetric Hessian (Góes, Hemerly, Maciel
+    /// eq. 36-37): directions that the data do not see are left out.
+    #[default]
+    LevenbergMarquardt,
+    /// Full step, halved while the cost rises.
+    GaussNewton,
+}
+
+/// The covariance R of the measurement noise.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case", tag = "kind", deny_unknown_fields)]
+pub enum Noise {
+    /// R is estimated from the residuals along with θ (relaxation; the likelihood is concentrated in R).
+    Estimated {
+        /// `diagonal`: outputs' noises are independent; `full`: correlated.
+        #[serde(default)]
+        structure: NoiseStructure,
+    },
+    /// R is known: the variance of each output, in SI units squared, in the order of the model's outputs.
+    Given { variance: Vec<f64> },
+}
+
+impl Noise {
+    /// Whether the noises of the outputs are correlated, so that all pairs of outputs count.
+    pub fn is_full(&self) -> bool {
+        let full = NoiseStructure::Full;
+        matches!(self, Self::Estimated { structure } if *structure == full)
+    }
+}
+
+impl Default for Noise {
+    fn default() -> Self {
+        Self::Estimated {
+            structure: NoiseStructure::default(),
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum NoiseStructure {
+    #[default]
+    Diagonal,
+    Full,
+}

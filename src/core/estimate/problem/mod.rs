@@ -1,0 +1,115 @@
+//! An estimation problem: a model, its data, its unknowns, and how to go about it. Built once, then only read.
+
+pub(super) mod unknowns;
+pub(super) mod unusable;
+
+use crate::estimate::options::Options;
+use crate::flight::Unit;
+use crate::model::{Model, ParameterInfo};
+use crate::simulate::{Columns, Segment, path_out_of_bounds};
+use unknowns::Unknowns;
+use unusable::Unusable;
+
+/// Everything an estimation needs; built once, then only read.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    pub model: Model,
+    pub segments: Vec<Segment>,
+    pub unknowns: Unknowns,
+    pub options: Options,
+    pub(crate) columns: Columns,
+    /// By output: samples that have a value, over all segments.
+    pub(crate) counts: Vec<usize>,
+}
+
+impl Problem {
+    pub fn new(model: Model, segments: Vec<Segment>, unknowns: Unknowns, options: Options) -> Self {
+        let is_free = |parameter: &usize| {
+            unknowns
+                .all
+                .iter()
+                .any(|u| u.parameter == *parameter && !u.fixed)
+        };
+        let free: Vec<usize> = (0..model.parameters.len()).filter(is_free).collect();
+        let columns = Columns::new(&model, &free);
+        let counts = counts(model.outputs.len(), &segments);
+        Self {
+            model,
+            segments,
+            unknowns,
+            options,
+            columns,
+            counts,
+        }
+    }
+
+    /// Samples over all segments.
+    pub fn samples(&self) -> usize {
+        self.segments.iter().map(Segment::len).sum()
+    }
+
+    /// What an unknown is called: the parameter's name, with the segment where each has its own.
+    pub fn name(&self, place: usize) -> String {
+        let unknown = self.unknowns.at(place);
+        let name = &self.model.parameters[unknown.parameter].name;
+        match unknown.segment {
+            Some(segment) if self.segments.len() > 1 => {
+                format!("{name}[{}]", self.segments[segment].label)
+            }
+            _ => name.clone(),
+        }
+    }
+
+    /// As [`Self::name`], with the SI value of the unknown's unit.
+    pub(crate) fn name_and_scale(&self, place: usize) -> (String, f64) {
+        (self.name(place), self.unit(place).scale)
+    }
+
+    /// The parameter of the model at a place of θ.
+    pub fn parameter(&self, place: usize) -> &ParameterInfo {
+        &self.model.parameters[self.unknowns.at(place).parameter]
+    }
+
+    /// The unit of the unknown at a place of θ.
+    pub fn unit(&self, place: usize) -> Unit {
+        self.parameter(place).unit
+    }
+
+    /// θ in the parameters' own units.
+    pub fn in_own_units(&self, theta: &[f64]) -> Vec<f64> {
+        theta
+            .iter()
+            .enumerate()
+            .map(|(place, &value)| self.unit(place).from_si(value))
+            .collect()
+    }
+}
+
+/// All parameters of the model for a segment, SI.
+///
+/// # Errors
+/// An element of a path has a size that it cannot have.
+pub(crate) fn set_parameters(
+    problem: &Problem,
+    segment: usize,
+    theta: &[f64],
+    parameters: &mut Vec<f64>,
+) -> Result<(), Unusable> {
+    (problem.unknowns).parameters(segment, theta, parameters);
+    match path_out_of_bounds(&problem.model, &problem.segments[segment], parameters) {
+        Some(place) => Err(Unusable::Path { segment, place }),
+        None => Ok(()),
+    }
+}
+
+/// How many samples of each output have a value, over all segments.
+fn counts(outputs: usize, segments: &[Segment]) -> Vec<usize> {
+    let present = |output: usize| {
+        segments
+            .iter()
+            .flat_map(|segment| &segment.measured[output])
+            .filter(|z| !z.is_nan())
+            .count()
+    };
+    (0..outputs).map(present).collect()
+}

@@ -1,0 +1,139 @@
+//! The unknowns of a problem: parameters of the model, one for all segments or one for each.
+
+use crate::model::{Model, Per, Prior};
+
+/// One unknown, SI.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Unknown {
+    /// Index of the model's parameter.
+    pub parameter: usize,
+    /// The segment it belongs to, where each has its own.
+    pub segment: Option<usize>,
+    pub start: f64,
+    pub lower: f64,
+    pub upper: f64,
+    pub fixed: bool,
+    /// What was known of it before the data, SI.
+    pub prior: Option<Prior>,
+}
+
+/// All unknowns, and where each segment finds its parameters.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Unknowns {
+    pub all: Vec<Unknown>,
+    /// Indices into `all` of those that are free; θ has them in this order.
+    pub free: Vec<usize>,
+    /// By segment, then parameter of the model: index into `all`.
+    places: Vec<Vec<usize>>,
+    /// By index into `all`: place in θ.
+    place_in_theta: Vec<Option<usize>>,
+}
+
+impl Unknowns {
+    /// Lays out the parameters of `model` over `segments`; `start(parameter, segment)` gives start values in SI.
+    pub fn new<E>(
+        model: &Model,
+        segments: usize,
+        mut start: impl FnMut(usize, usize) -> Result<f64, E>,
+    ) -> Result<Self, E> {
+        let mut all = Vec::new();
+        let mut places = vec![vec![0; model.parameters.len()]; segments];
+        for (parameter, info) in model.parameters.iter().enumerate() {
+            let bound =
+                |value: Option<f64>, open: f64| value.map_or(open, |value| info.unit.to_si(value));
+            let lower = bound(info.document.lower, f64::NEG_INFINITY);
+            let upper = bound(info.document.upper, f64::INFINITY);
+            let fixed = info.document.fixed;
+            let prior = info.document.prior.map(|prior| prior.in_si(&info.unit));
+            let own = info.document.per == Per::Maneuver;
+            for (segment, places) in places.iter_mut().enumerate() {
+                if segment == 0 || own {
+                    let start = start(parameter, segment)?.clamp(lower, upper);
+                    let segment = own.then_some(segment);
+                    all.push(Unknown {
+                        parameter,
+                        segment,
+                        start,
+                        lower,
+                        upper,
+                        fixed,
+                        prior,
+                    });
+                }
+                places[parameter] = all.len() - 1;
+            }
+        }
+        Ok(Self::of(all, places))
+    }
+
+    fn of(all: Vec<Unknown>, places: Vec<Vec<usize>>) -> Self {
+        let free: Vec<usize> = (0..all.len()).filter(|&i| !all[i].fixed).collect();
+        let mut place_in_theta = vec![None; all.len()];
+        free.iter()
+            .enumerate()
+            .for_each(|(place, &i)| place_in_theta[i] = Some(place));
+        Self {
+            all,
+            free,
+            places,
+            place_in_theta,
+        }
+    }
+
+    /// The same, with parameters that `value` knows held there.
+    pub fn with_shared_held(&self, value: impl Fn(usize) -> Option<f64>) -> Self {
+        let hold = |unknown: &Unknown| match value(unknown.parameter) {
+            Some(value) => Unknown {
+                start: value,
+                fixed: true,
+                ..unknown.clone()
+            },
+            None => unknown.clone(),
+        };
+        Self::of(self.all.iter().map(hold).collect(), self.places.clone())
+    }
+
+    /// Unknowns that `is_meant` picks are no less than `least`, and start no lower.
+    pub fn raise_lower(&mut self, least: f64, is_meant: impl Fn(&Unknown) -> bool) {
+        for unknown in self.all.iter_mut().filter(|unknown| is_meant(unknown)) {
+            unknown.lower = unknown.lower.max(least);
+            unknown.start = unknown.start.max(unknown.lower);
+        }
+    }
+
+    /// Start values of the free unknowns.
+    pub fn start(&self) -> Vec<f64> {
+        self.free.iter().map(|&i| self.all[i].start).collect()
+    }
+
+    /// All parameters of the model as `segment` sees them for θ.
+    pub fn parameters(&self, segment: usize, theta: &[f64], to: &mut Vec<f64>) {
+        to.clear();
+        to.extend(
+            self.places[segment]
+                .iter()
+                .map(|&i| match self.place_in_theta[i] {
+                    Some(place) => theta[place],
+                    None => self.all[i].start,
+                }),
+        );
+    }
+
+    /// Where `segment`'s value of a parameter of the model stands in θ; `None` when fixed.
+    pub fn place(&self, segment: usize, parameter: usize) -> Option<usize> {
+        self.place_in_theta[self.places[segment][parameter]]
+    }
+
+    /// The unknown at a place of θ.
+    pub fn at(&self, place: usize) -> &Unknown {
+        &self.all[self.free[place]]
+    }
+
+    pub fn len(&self) -> usize {
+        self.free.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.free.is_empty()
+    }
+}

@@ -1,0 +1,109 @@
+//! What an estimation answers: the outcome, the parameter table, the fit of each output.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::collinear::CollinearSet;
+use super::filter::FilterEstimate;
+use super::fit::OutputFit;
+use super::identifiability::Identifiability;
+use super::iteration::Outcome;
+use super::mode::Mode;
+use super::number::null_as_nan;
+use super::parameter::{Bound, ParameterEstimate};
+use super::prediction::Prediction;
+use crate::estimate::options::error_bounds::ErrorBoundsKind;
+
+/// The answer of an estimation job.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct Estimate {
+    pub outcome: Outcome,
+    /// The outcome in a sentence.
+    #[schema(
+        example = "converged: a further step would move the estimate by 3.1e-7 standard errors"
+    )]
+    pub reason: String,
+    /// The number of the iteration that this is.
+    pub iterations: usize,
+    /// Simulations with sensitivities, and simulations alone.
+    pub evaluations: usize,
+    pub simulations: usize,
+    /// -ln L at the estimate, plus ½ Σ ((θ - mean)/sd)² of the parameters' priors.
+    pub cost: f64,
+    #[serde(deserialize_with = "null_as_nan")]
+    pub det_r: f64,
+    /// R, rows by outputs, SI units squared.
+    pub noise_covariance: Vec<Vec<f64>>,
+    pub outputs: Vec<OutputFit>,
+    pub parameters: Vec<ParameterEstimate>,
+    /// What `standard_error` and `correlation` are made from. `null` where they are left out because they would
+    /// mean nothing: the model reproduces an output to rounding, which noise is not part of.
+    #[serde(default = "conventional")]
+    pub error_bounds: Option<ErrorBoundsKind>,
+    /// Correlation of the free parameters' errors, in the order of the iterations' `parameters`. Empty when singular.
+    pub correlation: Vec<Vec<f64>>,
+    /// Sets of parameters that the data cannot tell apart, or cannot see.
+    pub collinear: Vec<CollinearSet>,
+    /// What the data can tell of the parameters, before and after.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub identifiability: Option<Identifiability>,
+    /// Of segments that took no part in the estimation.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub prediction: Vec<Prediction>,
+    /// Samples used, over all segments.
+    pub samples: usize,
+    /// What the filter-error estimator adds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub filter: Option<FilterEstimate>,
+    /// Modes of the motion, fastest first; none for reconstruction models.
+    #[serde(default)]
+    pub modes: Vec<Mode>,
+}
+
+/// What estimates were kept with before there was a choice.
+fn conventional() -> Option<ErrorBoundsKind> {
+    Some(ErrorBoundsKind::Conventional)
+}
+
+impl Estimate {
+    /// What a reader of the tables should know beside them.
+    pub fn remarks(&self) -> Vec<String> {
+        let mut remarks = Vec::new();
+        if self.error_bounds.is_none() {
+            remarks.push(
+                "an output is reproduced to rounding, as data without noise are: error bounds would mean nothing and are left out".to_string(),
+            );
+        }
+        let identifiability = self.identifiability.as_ref();
+        let Some(seen) = identifiability.map(|both| both.after.as_ref().unwrap_or(&both.before))
+        else {
+            return remarks;
+        };
+        for set in &seen.redundant {
+            let names = set.parameters.join(" + ");
+            remarks.push(format!("the data cannot tell apart: {names}"));
+        }
+        if !seen.unseen.is_empty() {
+            remarks.push(format!("the data cannot see: {}", seen.unseen.join(", ")));
+        }
+        for set in &seen.nearly_collinear {
+            remarks.push(format!(
+                "the data hardly tell apart: {} (condition index {:.0})",
+                set.parameters.join(" + "),
+                set.condition_index
+            ));
+        }
+        remarks
+    }
+
+    /// What a reader should know about a row of the parameter table, in words; mostly nothing.
+    pub fn remark(&self, row: &ParameterEstimate) -> &'static str {
+        match (row.fixed, row.at_bound, row.standard_error) {
+            (true, ..) => "fixed",
+            (_, Some(Bound::Lower), _) => "at its lower bound",
+            (_, Some(Bound::Upper), _) => "at its upper bound",
+            (_, _, None) if self.error_bounds.is_some() => "not determined by the data",
+            _ => "",
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! How well an output is reproduced.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::number::null_as_nan;
+
+/// How well one output is reproduced, over all segments.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct OutputFit {
+    #[schema(example = "alpha")]
+    pub name: String,
+    /// SI unit of `rms` and `bias`.
+    #[schema(example = "rad")]
+    pub unit: String,
+    /// Root mean square of the residual.
+    pub rms: f64,
+    /// Mean of the residual.
+    pub bias: f64,
+    /// Coefficient of determination R².
+    #[serde(deserialize_with = "null_as_nan")]
+    pub r_squared: f64,
+    /// Theil's inequality coefficient: 0 perfect, 1 useless.
+    #[serde(deserialize_with = "null_as_nan")]
+    pub theil: f64,
+    /// What the mean squared residual is made of.
+    #[serde(default)]
+    pub theil_shares: TheilShares,
+    /// Autocorrelation of the residual at lag 1: near 0 where it is white.
+    #[serde(default)]
+    #[schema(example = 0.31)]
+    pub autocorrelation: f64,
+    /// How many independent values would tell as much of a mean as the residual's samples do.
+    #[serde(default)]
+    #[schema(example = 310.5)]
+    pub effective_samples: f64,
+    /// Samples that have a measured value; the others do not count.
+    #[serde(default)]
+    #[schema(example = 626)]
+    pub samples: usize,
+}
+
+/// Theil's decomposition of the mean squared residual, shares that add up to 1 (all 0 where there is no residual).
+#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
+pub struct TheilShares {
+    /// From different means.
+    #[schema(example = 0.01)]
+    pub bias: f64,
+    /// From different variances: motion that the model has too much or too little of.
+    #[schema(example = 0.04)]
+    pub variance: f64,
+    /// From imperfect correlation; near 1 where only noise is left.
+    #[schema(example = 0.95)]
+    pub covariance: f64,
+}

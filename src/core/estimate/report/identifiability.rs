@@ -1,0 +1,56 @@
+//! What the data can tell of the parameters.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::collinear::CollinearSet;
+use super::number::null_as_nan;
+
+/// What the data tell of the parameters, before and after.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct Identifiability {
+    /// At the start values.
+    pub before: DataInformation,
+    /// At the estimate; absent where none was asked for (`max_iterations` 0).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub after: Option<DataInformation>,
+}
+
+/// What the sensitivities at one θ say of the free parameters.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct DataInformation {
+    /// Of the scaled sensitivities, largest first; as many as there are free parameters.
+    pub singular_values: Vec<f64>,
+    /// Largest over smallest singular value; `null` where one is zero.
+    #[schema(example = 12.7)]
+    #[serde(deserialize_with = "null_as_nan")]
+    pub condition_number: f64,
+    /// Parameters that no output depends on.
+    pub unseen: Vec<String>,
+    /// Sets of which the data see only some combinations, exactly: fix one parameter of each.
+    pub redundant: Vec<CollinearSet>,
+    /// Sets that are nearly so: estimated, but with errors many times what each alone would have.
+    pub nearly_collinear: Vec<NearlyCollinearSet>,
+    /// Pairs whose errors are correlated by more than 0.99 (white residuals taken for granted).
+    pub highly_correlated: Vec<CorrelatedPair>,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct NearlyCollinearSet {
+    #[schema(example = json!(["b_az", "K_az"]))]
+    pub parameters: Vec<String>,
+    /// Largest singular value over that of this set: how much the set's errors are magnified.
+    #[schema(example = 65.0)]
+    pub condition_index: f64,
+    /// Of each parameter's variance, the share that is owed to this near dependency.
+    #[schema(example = json!([0.99, 0.98]))]
+    pub variance_proportions: Vec<f64>,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct CorrelatedPair {
+    #[schema(example = json!(["b_az", "K_az"]))]
+    pub parameters: [String; 2],
+    #[schema(example = -0.997)]
+    pub correlation: f64,
+}

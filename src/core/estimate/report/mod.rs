@@ -1,0 +1,16 @@
+//! What an estimation answers, and what it tells on its way: types alone, in the parameters' own units, nothing is
+//! worked out from them.
+
+pub(super) mod collinear;
+pub(super) mod estimate;
+pub(super) mod filter;
+pub(super) mod fit;
+pub(super) mod history;
+pub(super) mod identifiability;
+pub(super) mod iteration;
+pub(super) mod mode;
+mod number;
+pub(super) mod parameter;
+pub(super) mod prediction;
+pub(super) mod progress;
+pub(super) mod start;

@@ -1,0 +1,88 @@
+//! Modes of the motion, in the words of flight mechanics.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::flight::five_digits;
+
+/// A number with the standard error that it has from the estimate.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct Measure {
+    #[schema(example = 2.3851)]
+    pub value: f64,
+    /// Absent where the covariance of the estimate is not known, or a linear bound would not hold: see the remark.
+    #[schema(example = 0.0127)]
+    pub standard_error: Option<f64>,
+}
+
+impl std::fmt::Display for Measure {
+    /// For a table: `2.3851 ± 0.0127`.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}", five_digits(self.value))?;
+        match self.standard_error {
+            Some(error) => write!(f, " ± {}", five_digits(error)),
+            None => Ok(()),
+        }
+    }
+}
+
+/// One mode of the motion: an eigenvalue that is real, or a pair.
+///
+/// Linear models have one set of modes; of others, each segment has its own, about its start. States that
+/// nothing feeds back from (heading, altitude) are left out, and reconstruction models have no modes: their
+/// motion is recorded.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct Mode {
+    /// The segment at whose start the model was linearised; absent where the state matrix is the same everywhere.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub segment: Option<String>,
+    /// States that take most part in it, by participation factor, the first most.
+    #[schema(example = json!(["alpha", "q"]))]
+    pub states: Vec<String>,
+    /// Re λ, 1/s.
+    pub real: Measure,
+    /// Im λ, rad/s; zero for an aperiodic mode, else the positive one of the pair.
+    pub imaginary: Measure,
+    /// |λ|, rad/s; of an oscillation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub natural_frequency: Option<Measure>,
+    /// -Re λ/|λ|; of an oscillation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub damping_ratio: Option<Measure>,
+    /// 2π/Im λ, s; of an oscillation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub period: Option<Measure>,
+    /// 1/|λ|, s; of an aperiodic mode.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_constant: Option<Measure>,
+    /// ln 2/-Re λ, s; where the mode dies away.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_to_half: Option<Measure>,
+    /// ln 2/Re λ, s; where the mode grows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_to_double: Option<Measure>,
+    /// What the reader should know, mostly nothing.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub remark: String,
+}
+
+impl Mode {
+    /// What to call it in a table: the states that take most part.
+    pub fn label(&self) -> String {
+        let states = self.states.join(", ");
+        match &self.segment {
+            Some(segment) => format!("{states} [{segment}]"),
+            None => states,
+        }
+    }
+
+    /// λ for a table.
+    pub fn eigenvalue(&self) -> String {
+        let real = five_digits(self.real.value);
+        if self.imaginary.value == 0.0 {
+            real
+        } else {
+            format!("{real} ± {}i", five_digits(self.imaginary.value))
+        }
+    }
+}

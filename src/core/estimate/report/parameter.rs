@@ -1,0 +1,42 @@
+//! A row of the parameter table.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct ParameterEstimate {
+    #[schema(example = "Malpha")]
+    pub name: String,
+    #[schema(example = "1/s^2")]
+    pub unit: String,
+    /// Which segment a per-maneuver parameter belongs to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub segment: Option<String>,
+    pub start: f64,
+    #[schema(example = -4.9176)]
+    pub estimate: f64,
+    /// Standard deviation of the estimate, corrected for coloured residuals unless the job asked otherwise; absent
+    /// for fixed parameters, those at a bound, and those the data cannot see.
+    #[schema(example = 0.0271)]
+    pub standard_error: Option<f64>,
+    /// The Cramér-Rao bound: what the standard deviation would be if residuals were white.
+    #[schema(example = 0.0200)]
+    #[serde(default)]
+    pub conventional_standard_error: Option<f64>,
+    /// How much of the squared bound stems from the priors, from 0 (all from the data) to 1; absent in a job
+    /// without priors.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = 0.04)]
+    pub prior_share: Option<f64>,
+    pub fixed: bool,
+    /// The bound at which the parameter is held.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub at_bound: Option<Bound>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Bound {
+    Lower,
+    Upper,
+}

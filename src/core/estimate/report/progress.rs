@@ -1,0 +1,26 @@
+//! What an estimation tells on its way, and who is told.
+
+use std::ops::ControlFlow;
+
+use super::iteration::Iteration;
+use super::start::StartReport;
+
+/// What an estimation tells on its way.
+#[derive(Clone, Copy, Debug)]
+pub enum Progress<'a> {
+    /// The search for start values.
+    Start(&'a StartReport),
+    /// An iteration of the estimator.
+    Iteration(&'a Iteration),
+}
+
+/// Told of all progress; may stop the estimation.
+pub type Watcher<'o> = dyn FnMut(Progress<'_>) -> ControlFlow<()> + 'o;
+
+/// Told of each iteration; may stop the solver.
+pub type Observer<'o> = dyn FnMut(&Iteration) -> ControlFlow<()> + 'o;
+
+/// For iterations that nobody follows.
+pub(crate) fn unobserved(_: &Iteration) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}

@@ -1,0 +1,18 @@
+//! What a job comes to before it runs.
+
+use super::event::Prepared;
+use crate::diagnose::Case;
+use crate::estimate::{Problem, Validation};
+use crate::model::ModelDocument;
+
+/// A job whose model is compiled and whose data are resolved: nothing left that bad input could break.
+pub struct Plan {
+    pub prepared: Prepared,
+    /// The model as estimated: the declared one with the job's edits and parameter overrides in it.
+    pub model: ModelDocument,
+    pub problem: Problem,
+    /// What is predicted with the estimate.
+    pub validation: Vec<Validation>,
+    /// Of a diagnosis: all that it is made from.
+    pub case: Option<Case>,
+}

@@ -1,0 +1,120 @@
+//! What a spec's options and names must be, beyond their types.
+
+use super::unknown_name::unknown_name;
+use crate::estimate::{Estimator, Noise, Options, Problem, Role, StartMethod, has_equation_error};
+use crate::flight::Fault;
+use crate::job::no_start::no_measured_state;
+use crate::job::spec::{JobSpec, ModelSource};
+use crate::model::Model;
+
+/// Variances of noise that leave the likelihood a number.
+const VARIANCES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
+
+/// Most maneuvers in one job.
+pub const MOST_MANEUVERS: usize = 256;
+
+/// Most edits of a model, in one job or one candidate.
+pub(super) const MOST_EDITS: usize = 64;
+
+/// Most iterations that a job may ask for.
+pub(super) const MOST_ITERATIONS: usize = 1_000;
+
+pub(super) fn check_shape(spec: &JobSpec, maneuvers: usize, faults: &mut Vec<Fault>) {
+    if maneuvers == 0 {
+        faults.push(Fault::new(
+            "/maneuvers",
+            "no_maneuvers",
+            "a job needs at least one maneuver",
+        ));
+    }
+    let uses = &spec.maneuvers;
+    if !uses.is_empty() && uses.iter().all(|usage| usage.role == Role::Validation) {
+        let message = "all maneuvers are there for validation; at least one must have the role \"estimation\"";
+        faults.push(Fault::new("/maneuvers", "no_maneuvers", message));
+    }
+    if maneuvers > MOST_MANEUVERS {
+        let message =
+            format!("{maneuvers} maneuvers; at most {MOST_MANEUVERS} are allowed in one job");
+        faults.push(Fault::new("/maneuvers", "too_many_maneuvers", message));
+    }
+    if spec.edits.len() > MOST_EDITS {
+        faults.push(too_many_edits("/edits", spec.edits.len()));
+    }
+    if let ModelSource::Reference(name) = &spec.model
+        && name.is_empty()
+    {
+        faults.push(Fault::new(
+            "/model",
+            "unknown_model",
+            "name a model of the catalog, or send a document",
+        ));
+    }
+}
+
+pub(super) fn too_many_edits(pointer: &str, count: usize) -> Fault {
+    let message = format!(
+        "{count} edits are more than {MOST_EDITS}; write a model document with the effects in it"
+    );
+    Fault::new(pointer, "too_many_edits", message)
+}
+
+pub(super) fn check_options(options: &Options, model: &Model, faults: &mut Vec<Fault>) {
+    if !(options.tolerance > 0.0 && options.tolerance <= 1.0) {
+        faults.push(Fault::new(
+            "/options/tolerance",
+            "bad_option",
+            "tolerance must be above 0 and at most 1 standard error",
+        ));
+    }
+    if options.max_iterations > MOST_ITERATIONS {
+        let message = format!("max_iterations must be from 0 to {MOST_ITERATIONS}");
+        faults.push(Fault::new("/options/max_iterations", "bad_option", message));
+    }
+    if let Some(message) = options.derivatives.fault() {
+        let pointer = "/options/derivatives/step";
+        faults.push(Fault::new(pointer, "bad_option", message));
+    }
+    if let Some((field, message)) = options.start.unfit() {
+        faults.push(Fault::new(
+            format!("/options/start/{field}"),
+            "bad_option",
+            message,
+        ));
+    }
+    if let Noise::Given { variance } = &options.noise {
+        let outputs: Vec<&str> = model
+            .outputs
+            .iter()
+            .map(|output| output.name.as_str())
+            .collect();
+        if variance.len() != outputs.len() || variance.iter().any(|v| !VARIANCES.contains(v)) {
+            let message = format!(
+                "give one variance from 1e-60 to 1e60 for each output, in this order: {}",
+                outputs.join(", ")
+            );
+            faults.push(Fault::new("/options/noise/variance", "bad_option", message));
+        }
+    }
+}
+
+pub(super) fn check_names(spec: &JobSpec, model: &Model, faults: &mut Vec<Fault>) {
+    for name in spec.channels.keys() {
+        let quantities = model.inputs.iter().chain(&model.outputs);
+        let known = quantities.map(|quantity| quantity.name.as_str());
+        if !known.clone().any(|known| known == name) {
+            let what = ("input or output", name.as_str());
+            unknown_name("/channels", "unknown_channel", what, known, faults);
+        }
+    }
+}
+
+/// Equation error needs states that are measured.
+pub(super) fn check_estimator(problem: &Problem) -> Result<(), Vec<Fault>> {
+    let options = &problem.options;
+    let asked = options.estimator == Estimator::EquationError
+        || options.start == StartMethod::EquationError {};
+    if asked && !has_equation_error(problem) {
+        return Err(vec![no_measured_state(problem)]);
+    }
+    Ok(())
+}

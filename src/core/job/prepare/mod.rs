@@ -1,0 +1,178 @@
+//! From a spec and its data to a plan: all that bad input could break is found here.
+
+mod bounds;
+mod checks;
+mod diagnosis;
+mod document;
+mod filter;
+mod knowledge;
+mod missing;
+mod plausible;
+mod resolve;
+mod start;
+mod study;
+mod unknown_name;
+
+pub use checks::MOST_MANEUVERS;
+
+use std::sync::Arc;
+
+use resolve::Stretch;
+
+use super::event::Prepared;
+use super::plan::Plan;
+use super::spec::{JobKind, JobSpec};
+use crate::diagnose::Flight;
+use crate::estimate::{Options, Problem, Role, Unknowns, Validation};
+use crate::flight::{Fault, Finding, Maneuver};
+use crate::model::{Model, ModelDocument};
+use crate::simulate::Segment;
+
+/// Compiles the model, applies edits and overrides, makes inputs and outputs from recorded channels,
+/// checks units. `maneuvers` are in the order of `spec.maneuvers`; `declared` is the spec's model, looked up.
+///
+/// # Errors
+/// Every fault that would prevent the start, each with its JSON pointer into the spec.
+pub fn prepare(
+    spec: &JobSpec,
+    declared: &ModelDocument,
+    maneuvers: &[Arc<Maneuver>],
+) -> Result<Plan, Vec<Fault>> {
+    let (mut faults, mut findings) = (Vec::new(), Vec::new());
+    let document = document::edited(spec, declared, &mut faults);
+    checks::check_shape(spec, maneuvers.len(), &mut faults);
+    let model = document::compiled(&document, spec, declared, &mut faults)?;
+    check_settings(spec, &model, &mut faults);
+    let stretches = resolve::stretches(spec, maneuvers, &mut findings, &mut faults);
+    bounds::check_data(&model, &stretches, &mut faults)?;
+    let resolved = Resolved::of(spec, &model, &stretches, &mut faults);
+    refuse_if_any(faults)?;
+
+    let unknowns = start::unknowns(spec, &model, &resolved.fitted)?;
+    let segments = resolved.fitted.into_iter().map(|(segment, _)| segment);
+    let segments: Vec<Segment> = segments.collect();
+    check_samples(&model, &segments, &unknowns, &spec.options, &mut findings)?;
+    bounds::check_unknowns(&model, &segments, &unknowns, &spec.options)?;
+    let validation = resolved.predicted.into_iter();
+    let validation: Vec<Validation> = validation
+        .map(|held_out| to_predict(spec, &model, held_out))
+        .collect::<Result<_, _>>()?;
+    filter::check_data(&model, &segments, &unknowns, &spec.options)?;
+    findings.extend(plausible::findings(&model, &segments));
+
+    let problem = Problem::new(model, segments, unknowns, spec.options.clone());
+    if spec.kind == JobKind::DerivativeStudy {
+        study::check(&problem)?;
+    }
+    checks::check_estimator(&problem)?;
+    let case = match spec.kind {
+        JobKind::Diagnose => {
+            let flights = resolved.flights;
+            Some(diagnosis::case(spec, &document, &problem, flights)?)
+        }
+        JobKind::Estimate | JobKind::DerivativeStudy => None,
+    };
+    Ok(Plan {
+        prepared: prepared(&problem, &validation, findings),
+        model: document,
+        problem,
+        validation,
+        case,
+    })
+}
+
+/// Faults that were collected so far end the preparation: what comes next would only repeat them.
+fn refuse_if_any(faults: Vec<Fault>) -> Result<(), Vec<Fault>> {
+    if faults.is_empty() {
+        Ok(())
+    } else {
+        Err(faults)
+    }
+}
+
+fn check_settings(spec: &JobSpec, model: &Model, faults: &mut Vec<Fault>) {
+    checks::check_options(&spec.options, model, faults);
+    filter::check_options(&spec.options, model, faults);
+    checks::check_names(spec, model, faults);
+}
+
+/// What the stretches of the recordings become, by what is done with them.
+struct Resolved<'s, 'm> {
+    fitted: Vec<(Segment, &'s Stretch<'m>)>,
+    predicted: Vec<(Segment, &'s Stretch<'m>)>,
+    /// Of a diagnosis: all of them, with every channel that was recorded.
+    flights: Vec<Flight>,
+}
+
+impl<'s, 'm> Resolved<'s, 'm> {
+    fn of(
+        spec: &JobSpec,
+        model: &Model,
+        stretches: &'s [Vec<Stretch<'m>>],
+        faults: &mut Vec<Fault>,
+    ) -> Self {
+        let mut resolved = Self {
+            fitted: Vec::new(),
+            predicted: Vec::new(),
+            flights: Vec::new(),
+        };
+        for (index, stretches) in stretches.iter().enumerate() {
+            let role = spec.maneuvers[index].role;
+            for stretch in stretches {
+                let segment = resolve::segment(spec, model, stretch, index, faults);
+                if spec.kind == JobKind::Diagnose {
+                    let flight = diagnosis::flight(model, &segment, stretch, role);
+                    resolved.flights.push(flight);
+                }
+                match role {
+                    Role::Estimation => resolved.fitted.push((segment, stretch)),
+                    Role::Validation | Role::Final => resolved.predicted.push((segment, stretch)),
+                }
+            }
+        }
+        resolved
+    }
+}
+
+/// Whether the samples that have values are enough, and what is to be said of those that have none.
+fn check_samples(
+    model: &Model,
+    segments: &[Segment],
+    unknowns: &Unknowns,
+    options: &Options,
+    findings: &mut Vec<Finding>,
+) -> Result<(), Vec<Fault>> {
+    let mut faults = Vec::new();
+    missing::check_samples(model, segments, options, findings, &mut faults);
+    faults.extend(missing::check_counts(model, segments, unknowns, options));
+    refuse_if_any(faults)
+}
+
+/// A segment that is predicted with the estimate, and not fitted.
+fn to_predict(
+    spec: &JobSpec,
+    model: &Model,
+    held_out: (Segment, &Stretch<'_>),
+) -> Result<Validation, Vec<Fault>> {
+    let unknowns = start::unknowns(spec, model, std::slice::from_ref(&held_out))?;
+    let (segment, _) = held_out;
+    bounds::check_validation(model, &segment, &unknowns)?;
+    Ok(Validation { segment, unknowns })
+}
+
+/// What the job amounts to, in names and numbers.
+fn prepared(problem: &Problem, validation: &[Validation], findings: Vec<Finding>) -> Prepared {
+    let validation = validation.iter();
+    let (segments, outputs) = (problem.segments.iter(), problem.model.outputs.iter());
+    let parameters = (0..problem.unknowns.len()).map(|place| problem.name(place));
+    Prepared {
+        segments: segments.map(|segment| segment.label.clone()).collect(),
+        validation: validation
+            .map(|validation| validation.segment.label.clone())
+            .collect(),
+        samples: problem.samples(),
+        outputs: outputs.map(|output| output.name.clone()).collect(),
+        parameters: parameters.chain(filter::process_noise(problem)).collect(),
+        findings,
+    }
+}

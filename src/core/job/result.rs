@@ -1,0 +1,23 @@
+//! What a job has come to.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::diagnose::Diagnosis;
+use crate::estimate::study::DerivativeStudy;
+use crate::estimate::{Estimate, TimeHistory};
+use crate::model::ModelDocument;
+
+/// Everything a finished job answers.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct JobResult {
+    pub estimate: Estimate,
+    pub model: ModelDocument,
+    pub histories: Vec<TimeHistory>,
+    /// Of a derivative study.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub study: Option<DerivativeStudy>,
+    /// Of a diagnosis.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub diagnosis: Option<Diagnosis>,
+}

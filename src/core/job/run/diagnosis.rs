@@ -1,0 +1,48 @@
+//! A diagnosis: the declared model fitted, and what it lacks.
+
+use std::ops::ControlFlow;
+
+use super::run;
+use crate::diagnose::{Inconclusive, Step, diagnose};
+use crate::estimate::Outcome;
+use crate::flight::Fault;
+use crate::job::plan::Plan;
+use crate::job::result::JobResult;
+
+/// Runs the plan of a diagnosis; `watcher` is told of its steps and may stop it.
+///
+/// # Errors
+/// The declared model cannot be fitted.
+pub fn run_diagnosis(
+    plan: &Plan,
+    watcher: &mut dyn FnMut(Option<&Step>) -> ControlFlow<()>,
+) -> Result<JobResult, Vec<Fault>> {
+    let Some(case) = &plan.case else {
+        let message = "the job was not prepared as a diagnosis";
+        return Err(vec![Fault::new("/kind", "bad_option", message)]);
+    };
+    match diagnose(case, watcher) {
+        Ok(conclusion) => Ok(JobResult {
+            estimate: conclusion.estimate,
+            model: conclusion.diagnosis.model.clone(),
+            histories: conclusion.histories,
+            study: None,
+            diagnosis: Some(conclusion.diagnosis),
+        }),
+        Err(Inconclusive::Unfit(why)) => Err(vec![Fault::new(
+            "/parameters",
+            "diverged_at_start",
+            why.to_string(),
+        )]),
+        // what there is so far is where the declared model starts from
+        Err(Inconclusive::Stopped) => {
+            let mut result = run(plan, &mut |_| ControlFlow::Break(()))?;
+            result.estimate.outcome = Outcome::Cancelled;
+            result.estimate.reason = format!(
+                "the diagnosis was stopped on request; of the declared model: {}",
+                result.estimate.reason
+            );
+            Ok(result)
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! A derivative study: the estimation as ever, and then the techniques compared on the same problem.
+
+use std::ops::ControlFlow;
+
+use super::run;
+use crate::estimate::study::{self, Clock, NoStudy, StudyStep};
+use crate::estimate::{self, Outcome};
+use crate::flight::Fault;
+use crate::job::no_start::no_start;
+use crate::job::plan::Plan;
+use crate::job::result::JobResult;
+
+/// What a study tells as it goes.
+#[derive(Clone, Copy, Debug)]
+pub enum Progress<'a> {
+    Estimation(estimate::Progress<'a>),
+    Finding(&'a StudyStep),
+    /// Nothing new, but an occasion to stop it.
+    Underway,
+}
+
+/// Runs a plan and compares the techniques; `observer` may stop it. What there is of an estimate is then kept.
+///
+/// # Errors
+/// The start values lead nowhere.
+pub fn run_study(
+    plan: &Plan,
+    clock: &dyn Clock,
+    observer: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
+) -> Result<JobResult, Vec<Fault>> {
+    let mut result = run(plan, &mut |progress| {
+        observer(Progress::Estimation(progress))
+    })?;
+    if result.estimate.outcome == Outcome::Cancelled {
+        return Ok(result);
+    }
+    let mut listener =
+        |step: Option<&StudyStep>| observer(step.map_or(Progress::Underway, Progress::Finding));
+    match study::study(&plan.problem, clock, &mut listener) {
+        Ok(study) => result.study = Some(study),
+        Err(NoStudy::Unusable(why)) => return Err(vec![no_start(&plan.problem, why)]),
+        Err(NoStudy::Stopped) => {
+            result.estimate.outcome = Outcome::Cancelled;
+            result.estimate.reason = format!(
+                "the study was stopped on request; of the estimation: {}",
+                result.estimate.reason
+            );
+        }
+    }
+    Ok(result)
+}

@@ -1,0 +1,40 @@
+//! What an edit made of a document, and what each parameter that it added is there for.
+
+use crate::model::document::ModelDocument;
+
+/// A document with an effect in it.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Edited {
+    pub document: ModelDocument,
+    /// The parameters that were added; what the effect is called after comes first.
+    pub added: Vec<Added>,
+    /// Channels that a recording must have besides.
+    pub inputs: Vec<String>,
+}
+
+/// A parameter that an edit added.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Added {
+    pub name: String,
+    pub role: AddedRole,
+}
+
+/// What a parameter is to the effect that it belongs to.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum AddedRole {
+    /// How much there is of the effect: a bias, a scale, the factor of a term.
+    Size,
+    /// Where the effect sets in: the largest rate, the angle of separation.
+    Limit,
+    TimeConstant,
+    Delay,
+    /// When it begins, after the start of the maneuver.
+    Onset,
+    /// How long it takes to pass.
+    Duration,
+    Frequency,
+    Damping,
+    Steepness,
+    /// What something is at the start of the maneuver, or in its steady part: read off the recording.
+    Reference,
+}

@@ -1,0 +1,271 @@
+//! `/v1/jobs`: what became of them. Submitting is in `submit`, following in `events`.
+
+use axum::Json;
+use axum::http::{HeaderMap, StatusCode};
+use axum::response::{IntoResponse, Response};
+use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+use uuid::Uuid;
+
+use crate::estimate::Outcome;
+use crate::http::answer::format::{Format, cacheable};
+use crate::http::code::Code;
+use crate::http::problem::{Problem, ProblemDocument};
+use crate::http::request::query::{JobId, Parameters, bad_cursor, page_limit, unknown_job};
+use crate::http::service::{Server, Service};
+use crate::job::{EventBody, Fault, JobKind, JobSpec, Status};
+use crate::store::{CancelReply, Clock, JobFilter, JobRecord};
+
+pub(crate) fn router() -> OpenApiRouter<Server> {
+    OpenApiRouter::new()
+        .routes(routes!(list_jobs))
+        .routes(routes!(get_job))
+        .routes(routes!(get_job_spec))
+        .routes(routes!(cancel_job))
+}
+
+/// A job.
+#[derive(Serialize, ToSchema)]
+#[schema(as = Job)]
+pub(crate) struct JobResource {
+    #[schema(example = "0193518e-6b6f-7d3c-9c53-b1cbb2b7a1f4")]
+    id: Uuid,
+    #[schema(value_type = JobKind)]
+    kind: String,
+    #[schema(example = "ATTAS elevator 3-2-1-1, run 1")]
+    name: String,
+    #[schema(example = json!(["flight 12"]))]
+    tags: Vec<String>,
+    /// Of two that wait, the higher is taken first.
+    #[schema(example = 0)]
+    priority: i32,
+    status: Status,
+    #[schema(example = "2026-11-21T12:00:00.123Z")]
+    created: String,
+    /// When a worker first took it.
+    started: Option<String>,
+    /// When it was over.
+    finished: Option<String>,
+    /// How often a worker took it: more than once where one was lost or shut down.
+    #[schema(example = 1)]
+    attempt: u32,
+    /// Why the solver stopped, once it has: how good the result is, apart from how the job went.
+    outcome: Option<Outcome>,
+    /// The outcome in a sentence.
+    #[schema(
+        example = "converged: a further step would move the estimate by 3.1e-7 standard errors"
+    )]
+    reason: Option<String>,
+    /// Why it failed.
+    faults: Vec<Fault>,
+    /// Whether the result links lead to something.
+    has_result: bool,
+    links: JobLinks,
+}
+
+#[derive(Serialize, ToSchema)]
+struct JobLinks {
+    #[serde(rename = "self")]
+    this: String,
+    spec: String,
+    events: String,
+    iterations: String,
+    cancel: String,
+    estimate: String,
+    parameters: String,
+    residuals: String,
+    residual_analysis: String,
+    time_histories: String,
+    model: String,
+    /// Of a job of the kind `diagnose`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    diagnosis: Option<String>,
+}
+
+impl JobLinks {
+    fn of(id: Uuid, kind: &str) -> Self {
+        let this = format!("/v1/jobs/{id}");
+        let under = |name: &str| format!("{this}/{name}");
+        Self {
+            spec: under("spec"),
+            events: under("events"),
+            iterations: under("iterations"),
+            cancel: under("cancel"),
+            estimate: under("estimate"),
+            parameters: under("parameters"),
+            residuals: under("residuals"),
+            residual_analysis: under("residual-analysis"),
+            time_histories: under("time-histories"),
+            model: under("model"),
+            diagnosis: (kind == JobKind::Diagnose.name()).then(|| under("diagnosis")),
+            this,
+        }
+    }
+}
+
+impl JobResource {
+    pub(crate) fn of(job: JobRecord) -> Self {
+        let (mut outcome, mut reason, mut faults, mut has_result) = (None, None, Vec::new(), false);
+        match job.ending {
+            Some(EventBody::Succeeded {
+                outcome: of_solver,
+                reason: why,
+            }) => {
+                (outcome, reason, has_result) = (Some(of_solver), Some(why), true);
+            }
+            Some(EventBody::Cancelled { has_result: kept }) => {
+                (outcome, has_result) = (Some(Outcome::Cancelled), kept);
+            }
+            Some(EventBody::Failed { faults: why }) => faults = why,
+            _ => {}
+        }
+        Self {
+            links: JobLinks::of(job.id, &job.kind),
+            id: job.id,
+            kind: job.kind,
+            name: job.name,
+            tags: job.tags,
+            priority: job.priority,
+            status: job.status,
+            created: job.created,
+            started: job.started,
+            finished: job.finished,
+            attempt: job.attempt,
+            outcome,
+            reason,
+            faults,
+            has_result,
+        }
+    }
+
+    pub(crate) fn path(&self) -> String {
+        self.links.this.clone()
+    }
+}
+
+#[derive(Serialize, ToSchema)]
+pub(crate) struct JobPage {
+    jobs: Vec<JobResource>,
+    next_cursor: Option<String>,
+}
+
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+struct ListQuery {
+    /// `next_cursor` of the page before; absent: the first page.
+    cursor: Option<String>,
+    /// Jobs of the page, 1 to 200; 50 if absent.
+    #[param(minimum = 1, maximum = 200)]
+    limit: Option<usize>,
+    /// Only those of this status.
+    #[param(inline)]
+    status: Option<Status>,
+    /// Only those of this kind.
+    #[param(inline)]
+    kind: Option<JobKind>,
+    /// Only those that have this tag.
+    tag: Option<String>,
+    /// Only those submitted after this moment (RFC 3339).
+    #[param(format = DateTime, example = "2026-11-21T12:00:00Z")]
+    created_after: Option<String>,
+}
+
+/// List jobs, newest first.
+#[utoipa::path(get, path = "/v1/jobs", tag = "Jobs", operation_id = "listJobs",
+    params(ListQuery),
+    responses((status = 200, description = "A page.", body = JobPage)))]
+async fn list_jobs(
+    service: Service,
+    Parameters(query): Parameters<ListQuery>,
+) -> Result<Json<JobPage>, Problem> {
+    let limit = page_limit(query.limit)?;
+    let moment = |text: String| {
+        Clock::read(&text).ok_or_else(|| {
+            let detail =
+                format!("created_after: '{text}' is no moment; give it as 2026-11-21T12:00:00Z");
+            Problem::new(Code::InvalidQuery, detail)
+        })
+    };
+    let filter = JobFilter {
+        status: query.status,
+        kind: query.kind.map(|kind| kind.name().to_string()),
+        tag: query.tag,
+        created_after: query.created_after.map(moment).transpose()?,
+    };
+    let page = service
+        .store
+        .jobs(&filter, query.cursor.as_deref(), limit)
+        .await?;
+    let page = page.map_err(bad_cursor)?;
+    let jobs = page.entries.into_iter().map(JobResource::of).collect();
+    Ok(Json(JobPage {
+        jobs,
+        next_cursor: page.next_cursor,
+    }))
+}
+
+/// What became of a job.
+#[utoipa::path(get, path = "/v1/jobs/{id}", tag = "Jobs", operation_id = "getJob",
+    params(("id" = Uuid, Path)),
+    responses(
+        (status = 200, description = "The job.", body = JobResource),
+        (status = 404, description = "`unknown_job`", body = ProblemDocument, content_type = "application/problem+json"),
+    ))]
+async fn get_job(service: Service, JobId(id): JobId) -> Result<Json<JobResource>, Problem> {
+    Ok(Json(JobResource::of(find(&service, id).await?)))
+}
+
+pub(crate) async fn find(service: &Service, id: Uuid) -> Result<JobRecord, Problem> {
+    service.store.job(id).await?.ok_or_else(|| unknown_job(id))
+}
+
+/// The job as it was submitted.
+#[utoipa::path(get, path = "/v1/jobs/{id}/spec", tag = "Jobs", operation_id = "getJobSpec",
+    params(("id" = Uuid, Path)),
+    responses(
+        (status = 200, description = "The spec.", body = JobSpec),
+        (status = 304, description = "As the `ETag` in `If-None-Match`."),
+        (status = 404, description = "`unknown_job`", body = ProblemDocument, content_type = "application/problem+json"),
+    ))]
+async fn get_job_spec(
+    service: Service,
+    JobId(id): JobId,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let spec = service
+        .store
+        .job_spec(id)
+        .await?
+        .ok_or_else(|| unknown_job(id))?;
+    Ok(cacheable(&headers, Format::Json, spec))
+}
+
+/// Ask to stop a job.
+///
+/// A job that waits is cancelled at once. One that runs stops after the iteration under way; its
+/// best iterate is kept as the result. Asking twice is asking once.
+#[utoipa::path(post, path = "/v1/jobs/{id}/cancel", tag = "Jobs", operation_id = "cancelJob",
+    params(("id" = Uuid, Path)),
+    responses(
+        (status = 202, description = "It is asked.", body = JobResource),
+        (status = 404, description = "`unknown_job`", body = ProblemDocument, content_type = "application/problem+json"),
+        (status = 409, description = "`already_over`", body = ProblemDocument, content_type = "application/problem+json"),
+    ))]
+async fn cancel_job(service: Service, JobId(id): JobId) -> Result<Response, Problem> {
+    match service.store.cancel(id).await? {
+        CancelReply::Asked(job) => {
+            Ok((StatusCode::ACCEPTED, Json(JobResource::of(job))).into_response())
+        }
+        CancelReply::AlreadyOver(job) => {
+            let detail = format!(
+                "the job is {} already; there is nothing to cancel",
+                job.status.name()
+            );
+            Err(Problem::new(Code::AlreadyOver, detail))
+        }
+        CancelReply::Unknown => Err(unknown_job(id)),
+    }
+}

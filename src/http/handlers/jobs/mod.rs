@@ -1,0 +1,12 @@
+//! Jobs: submitting them, following them, and what they come to.
+
+pub(super) mod bulk;
+pub(super) mod coefficients;
+pub(super) mod events;
+pub(super) mod findings;
+pub(super) mod histories;
+pub(crate) mod job;
+pub(super) mod rerun;
+pub(super) mod residual_analysis;
+pub(crate) mod results;
+pub(super) mod submit;

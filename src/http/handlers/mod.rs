@@ -1,0 +1,41 @@
+//! What answers a request: a file for each resource. Those of jobs, which are many, have a folder.
+
+pub(super) mod jobs;
+pub(super) mod keys;
+pub(super) mod maneuvers;
+pub(super) mod mappings;
+pub(super) mod models;
+
+mod health;
+mod metrics;
+mod problems;
+mod retention;
+mod webhooks;
+
+use utoipa_axum::router::OpenApiRouter;
+
+use super::service::Server;
+
+/// All of them, in the order of the OpenAPI document.
+pub(super) fn api() -> OpenApiRouter<Server> {
+    OpenApiRouter::new()
+        .merge(maneuvers::router())
+        .merge(mappings::router())
+        .merge(models::router())
+        .merge(jobs::submit::router())
+        .merge(jobs::bulk::router())
+        .merge(jobs::rerun::router())
+        .merge(retention::router())
+        .merge(jobs::job::router())
+        .merge(jobs::events::router())
+        .merge(jobs::results::router())
+        .merge(jobs::findings::router())
+        .merge(jobs::coefficients::router())
+        .merge(jobs::histories::router())
+        .merge(jobs::residual_analysis::router())
+        .merge(problems::router())
+        .merge(keys::router())
+        .merge(webhooks::router())
+        .merge(metrics::router())
+        .merge(health::router())
+}

@@ -1,0 +1,10 @@
+//! Recordings that are read: `cargo test --test ingest`.
+
+#[path = "../common"]
+mod common {
+    pub(crate) mod flight_data;
+    pub(crate) mod repository;
+}
+
+mod flight_data;
+mod formats;

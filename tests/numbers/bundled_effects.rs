@@ -1,0 +1,195 @@
+//! What the bundled flights have in them and the model does not declare is named by a diagnosis.
+
+use std::ops::ControlFlow;
+
+use crate::common::recordings::maneuver;
+use crate::common::repository;
+use serde_json::{Value, json};
+use trimtab_core::diagnose::{Diagnosis, NamedEffect, Verdict};
+use trimtab_core::estimate::Role;
+use trimtab_core::job::{self, JobSpec};
+use trimtab_core::model::catalog;
+use trimtab_core::simulate::{Scenario, ScenarioEffect};
+
+fn read(name: &str) -> Vec<u8> {
+    std::fs::read(repository::path(&format!("data/effects/{name}"))).expect("a file")
+}
+
+fn scenario(name: &str) -> Scenario {
+    let text = String::from_utf8(read(&format!("{name}-fit.toml"))).expect("text");
+    toml::from_str(&text).expect("a scenario")
+}
+
+/// The diagnosis of the three recordings of that name, with these parameters changed.
+fn diagnosis(name: &str, parameters: Value) -> Diagnosis {
+    let roles = [
+        ("fit", "estimation"),
+        ("check", "validation"),
+        ("final", "final"),
+    ];
+    let files = roles.map(|(file, role)| (format!("{name}-{file}.csv"), role));
+    diagnosis_of(&scenario(name).model, &files, parameters)
+}
+
+fn diagnosis_of(model: &str, files: &[(String, &str)], parameters: Value) -> Diagnosis {
+    let (mut maneuvers, mut uses) = (Vec::new(), Vec::new());
+    for (file, role) in files {
+        let maneuver = maneuver(&read(file));
+        uses.push(json!({"id": maneuver.digest(), "label": file, "role": role}));
+        maneuvers.push(maneuver);
+    }
+    let spec =
+        json!({"kind": "diagnose", "model": model, "maneuvers": uses, "parameters": parameters});
+    let spec: JobSpec = serde_json::from_value(spec).expect("a spec");
+    let document = catalog::find(model).expect("a catalog model");
+    let plan = job::prepare(&spec, &document, &maneuvers).expect("a plan");
+    let result = job::run_diagnosis(&plan, &mut |_| ControlFlow::Continue(())).expect("a result");
+    result.diagnosis.expect("a diagnosis")
+}
+
+/// Whether the effect, or one that the data cannot tell from it, is this one.
+fn contains(named: &NamedEffect, truth: &ScenarioEffect) -> bool {
+    (named.group.iter()).any(|member| {
+        let effect = &member.effect;
+        (effect.word(), &effect.target) == (truth.kind.clone(), &truth.target)
+            && (effect.term.is_none() || effect.term == truth.term)
+    })
+}
+
+/// All effects of the scenario are named, nothing else is, and their size is right.
+#[track_caller]
+fn names_the_truth(name: &str, diagnosis: &Diagnosis) {
+    let truth = scenario(name).effects;
+    let said = &diagnosis.sentence;
+    assert!(
+        matches!(diagnosis.verdict, Verdict::Named | Verdict::NamedGroup),
+        "{name}: {said}"
+    );
+    assert_eq!(diagnosis.effects.len(), truth.len(), "{name}: {said}");
+    for effect in truth {
+        let named = diagnosis
+            .effects
+            .iter()
+            .find(|named| contains(named, &effect));
+        let named = named.unwrap_or_else(|| panic!("{name}, {effect:?}: {said}"));
+        if (named.effect.word(), &named.effect.target) != (effect.kind.clone(), &effect.target) {
+            continue;
+        }
+        let mut values = effect
+            .value
+            .into_iter()
+            .chain(effect.values.values().copied());
+        for parameter in &named.parameters {
+            let value = values.next().expect("as many values as parameters");
+            let error = parameter.standard_error.expect("an error bound");
+            let off = (parameter.estimate - value).abs() / error;
+            assert!(
+                off < 4.0,
+                "{name}, {parameter:?}: {off:.1} standard errors off"
+            );
+        }
+    }
+}
+
+/// RMS errors on the flight that no decision saw, after over before, by output.
+fn ratios(diagnosis: &Diagnosis) -> Vec<f64> {
+    let last = diagnosis.fits.iter().filter(|fit| fit.role == Role::Final);
+    last.map(|fit| fit.after.rms / fit.before.rms).collect()
+}
+
+/// Names the truth, and predicts the final flight better: one output clearly, and none noticeably worse.
+#[track_caller]
+fn closes_the_loop(name: &str) {
+    let diagnosis = diagnosis(name, json!({}));
+    names_the_truth(name, &diagnosis);
+    let ratios = ratios(&diagnosis);
+    let best = ratios.iter().copied().fold(f64::INFINITY, f64::min);
+    let worst = ratios.iter().copied().fold(0.0, f64::max);
+    assert!(best < 0.9 && worst < 1.05, "{name}: {ratios:?}");
+}
+
+#[test]
+fn a_lag_of_the_elevator() {
+    closes_the_loop("elevator-lag");
+}
+
+#[test]
+fn play_in_the_elevator() {
+    closes_the_loop("elevator-backlash");
+}
+
+#[test]
+fn a_curved_pitching_moment() {
+    closes_the_loop("pitch-curve");
+}
+
+#[test]
+fn an_aileron_that_is_recorded_off_its_place() {
+    closes_the_loop("aileron-bias");
+}
+
+#[test]
+fn a_wrong_scale_of_the_yaw_gyro() {
+    closes_the_loop("yaw-gyro-scale");
+}
+
+#[test]
+fn a_vane_on_a_boom() {
+    closes_the_loop("vane-arm");
+}
+
+#[test]
+fn a_late_sideslip_vane() {
+    closes_the_loop("beta-delay");
+}
+
+#[test]
+fn a_spoiler_that_the_model_does_not_have() {
+    closes_the_loop("spoiler");
+}
+
+#[test]
+fn two_effects_at_once() {
+    closes_the_loop("two-at-once");
+}
+
+/// A gust is of its flight alone: what another meets it does not predict.
+#[test]
+fn a_gust() {
+    names_the_truth("gust", &diagnosis("gust", json!({})));
+}
+
+/// With all derivatives free the short period imitates nearly all of a late vane; with Zq held it cannot.
+#[test]
+fn a_late_vane_shows_where_the_model_cannot_imitate_it() {
+    let free = diagnosis("alpha-delay", json!({}));
+    let truth = &scenario("alpha-delay").effects[0];
+    assert!(
+        free.effects.iter().all(|named| contains(named, truth)),
+        "{}",
+        free.sentence
+    );
+    let held = diagnosis("alpha-delay", json!({"Zq": {"start": 0.97, "fixed": true}}));
+    names_the_truth("alpha-delay", &held);
+}
+
+#[test]
+fn nothing_where_nothing_is_missing() {
+    for (model, names) in [
+        ("short-period", vec!["elevator"]),
+        ("lateral-directional-4", vec!["aileron", "rudder"]),
+    ] {
+        let files = names
+            .iter()
+            .map(|name| (format!("../{name}.csv"), "estimation"));
+        let files: Vec<_> = files.collect();
+        let diagnosis = diagnosis_of(model, &files, json!({}));
+        let said = &diagnosis.sentence;
+        assert_eq!(
+            diagnosis.verdict,
+            Verdict::NothingMissing,
+            "{model}: {said}"
+        );
+        assert!(diagnosis.effects.is_empty(), "{model}: {said}");
+    }
+}

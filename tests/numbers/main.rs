@@ -1,0 +1,41 @@
+//! What is computed, from models to diagnoses, held against truth, theory and publications: `cargo test --test numbers`,
+//! one subject by its name, `cargo test --test numbers delays::`.
+
+#[path = "../common"]
+mod common {
+    pub(crate) mod coloured;
+    pub(crate) mod coverage;
+    pub(crate) mod estimation;
+    pub(crate) mod flight_data;
+    pub(crate) mod plans;
+    pub(crate) mod preprocessing;
+    pub(crate) mod printed_adjoint;
+    pub(crate) mod published_cases;
+    pub(crate) mod random_starts;
+    pub(crate) mod reconstruction;
+    pub(crate) mod recordings;
+    pub(crate) mod repository;
+    pub(crate) mod study_problems;
+}
+
+mod accuracy;
+mod bundled_data;
+mod bundled_effects;
+mod catalog;
+mod catalog_published;
+mod coverage;
+mod delays;
+mod derivative_techniques;
+mod effects;
+mod estimation;
+mod filter_error;
+mod invisible_effects;
+mod likelihood;
+mod machine_code;
+mod missing_samples;
+mod model_documents;
+mod modes;
+mod one_step;
+mod priors;
+mod sensitivities;
+mod starts;

@@ -1,0 +1,381 @@
+//! The commands, run as a person would.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use crate::common::process::Process;
+use serde_json::Value;
+use trimtab::model::ModelDocument;
+
+fn trimtab(arguments: &[&str]) -> Output {
+    command(arguments).output().expect("the program runs")
+}
+
+fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_trimtab"));
+    let directory = Path::new(env!("CARGO_MANIFEST_DIR"));
+    command.args(arguments).current_dir(directory);
+    command
+}
+
+fn said(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).expect("text")
+}
+
+#[track_caller]
+fn succeeds(arguments: &[&str]) -> String {
+    let output = trimtab(arguments);
+    assert!(output.status.success(), "{}", said(&output.stderr));
+    said(&output.stdout)
+}
+
+#[track_caller]
+fn fails(arguments: &[&str]) -> String {
+    let output = trimtab(arguments);
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output.stdout));
+    said(&output.stderr)
+}
+
+#[test]
+fn fit_works_without_a_server() {
+    let table = succeeds(&["fit", "data/elevator.csv", "--model", "short-period"]);
+    assert!(
+        table.contains("Mde") && table.contains("alpha_0 [elevator]") && table.contains("R²"),
+        "{table}"
+    );
+    let json = succeeds(&[
+        "fit",
+        "data/elevator.csv",
+        "-m",
+        "short-period",
+        "--fix",
+        "q_bias",
+        "--json",
+    ]);
+    let result: Value = serde_json::from_str(&json).expect("JSON");
+    assert_eq!(result["estimate"]["outcome"], "converged");
+    let bias = result["estimate"]["parameters"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .find(|p| p["name"] == "q_bias");
+    assert_eq!(bias.expect("the parameter")["fixed"], true);
+}
+
+#[test]
+fn what_cannot_be_done_is_said_with_the_remedy() {
+    let words = fails(&["fit", "data/elevator.csv", "--model", "short-periot"]);
+    assert!(
+        words.contains("no catalog model 'short-periot'; known are short-period"),
+        "{words}"
+    );
+    let words = fails(&[
+        "fit",
+        "data/elevator.csv",
+        "--model",
+        "lateral-directional-2",
+    ]);
+    assert!(
+        words.contains("no channel 'da' is recorded for the model's input"),
+        "{words}"
+    );
+    let words = fails(&["fit", "no-such-file.csv", "--model", "short-period"]);
+    assert!(words.contains("no-such-file.csv: No such file"), "{words}");
+    let words = fails(&[
+        "fit",
+        "data/elevator.csv",
+        "-m",
+        "short-period",
+        "--start",
+        "Ma",
+    ]);
+    assert!(
+        words.contains("--start 'Ma' should read NAME=VALUE"),
+        "{words}"
+    );
+    let words = fails(&[
+        "submit",
+        "data/elevator.csv",
+        "-m",
+        "short-period",
+        "--server",
+        "http://127.0.0.1:1",
+    ]);
+    assert!(
+        words.contains("the server does not answer") && words.contains("trimtab serve"),
+        "{words}"
+    );
+}
+
+#[test]
+fn health_is_that_of_the_server() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let server = Process::start(directory.path(), 0);
+    let url = server.url.clone();
+    assert_eq!(succeeds(&["health", "--server", &url]), "ready\n");
+    server.kill();
+    let words = fails(&["health", "--server", &url]);
+    assert!(words.contains("the server does not answer"), "{words}");
+}
+
+#[test]
+fn a_server_that_accepts_and_says_nothing_is_not_healthy() {
+    let silent = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let url = format!("http://{}", silent.local_addr().expect("an address"));
+    let words = fails(&["health", "--server", &url]);
+    assert!(words.contains("timed out"), "{words}");
+}
+
+#[test]
+fn submit_and_watch_go_to_a_server() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let server = Process::start(directory.path(), 1);
+    let job = [
+        "submit",
+        "data/aileron.csv",
+        "data/rudder.csv",
+        "-m",
+        "lateral-directional-4",
+        "--server",
+        &server.url,
+    ];
+    let id = succeeds(&job);
+    let table = succeeds(&["watch", id.trim(), "--server", &server.url]);
+    assert!(
+        table.contains("Ndr") && table.contains("V_e [rudder]"),
+        "{table}"
+    );
+    let words = fails(&["watch", "nonsense", "--server", &server.url]);
+    assert!(
+        words.contains("404") && words.contains("there is no job 'nonsense'"),
+        "{words}"
+    );
+    let bad = [
+        "submit",
+        "data/elevator.csv",
+        "-m",
+        "short-period",
+        "-c",
+        "q=qq",
+        "--watch",
+        "--server",
+        &server.url,
+    ];
+    let words = fails(&bad);
+    assert!(
+        words.contains("422") && words.contains("/channels/q") && words.contains("no channel 'qq'"),
+        "{words}"
+    );
+}
+
+#[test]
+fn a_diagnosis_is_submitted_and_watched_to_its_conclusion() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let server = Process::start(directory.path(), 1);
+    let output = trimtab(&[
+        "submit",
+        "data/effects/elevator-backlash-fit.csv",
+        "--validate",
+        "data/effects/elevator-backlash-check.csv",
+        "--final",
+        "data/effects/elevator-backlash-final.csv",
+        "-m",
+        "short-period",
+        "--diagnose",
+        "--watch",
+        "--server",
+        &server.url,
+    ]);
+    let (table, steps) = (said(&output.stdout), said(&output.stderr));
+    assert!(output.status.success(), "{steps}");
+    assert!(
+        steps.contains("candidates screened") && steps.contains("accepted backlash of de"),
+        "{steps}"
+    );
+    let (id, table) = table.split_once('\n').expect("the id, then tables");
+    let last = table.lines().last().expect("a line");
+    assert!(
+        last.starts_with("verdict: named") && last.contains("de_backlash = "),
+        "{last}"
+    );
+    assert!(
+        last.contains("data that took no part in any decision: alpha "),
+        "{last}"
+    );
+    assert_eq!(
+        succeeds(&["watch", id, "--server", &server.url]).trim(),
+        table.trim()
+    );
+}
+
+#[test]
+fn parts_of_a_recording_are_diagnosed_and_drawn() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let figures = directory.path().join("new").join("figures");
+    let flight = "data/effects/elevator-lag-fit.csv";
+    let table = succeeds(&[
+        "diagnose",
+        &format!("{flight}:1-500"),
+        "--validate",
+        &format!("{flight}:501-626"),
+        "-m",
+        "short-period",
+        "--figures",
+        figures.to_str().expect("a path"),
+    ]);
+    assert!(table.contains("verdict: "), "{table}");
+    let mut drawn: Vec<String> = (std::fs::read_dir(&figures).expect("a directory"))
+        .map(|entry| entry.expect("a file").file_name().into_string().unwrap())
+        .collect();
+    drawn.sort();
+    assert_eq!(
+        drawn,
+        [
+            "1-elevator-lag-fit_1-500.svg",
+            "2-elevator-lag-fit_501-626.svg"
+        ]
+    );
+}
+
+#[test]
+fn a_server_is_not_put_where_others_can_reach_it() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let database = directory.path().join("never.db");
+    let database = database.to_str().expect("a path");
+    let words = fails(&["serve", "--listen", "0.0.0.0:0", "--database", database]);
+    assert!(words.contains("refusing to listen on 0.0.0.0:0"), "{words}");
+    assert!(!Path::new(database).exists());
+}
+
+#[test]
+fn with_a_key_it_is_and_who_has_the_key_comes_in() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let database = directory.path().join("keys.db");
+    let database = database.to_str().expect("a path");
+    let key =
+        |arguments: &[&str]| succeeds(&[&["key"], arguments, &["--database", database]].concat());
+    let secret = key(&["new", "--project", "icing", "--name", "pipeline"]);
+    let server = Process::serve(database, "0.0.0.0:0", 1);
+    let url = server.url.replace("0.0.0.0", "127.0.0.1");
+    let watch = |secret: &str| {
+        let job = [
+            "submit",
+            "data/elevator.csv",
+            "-m",
+            "short-period",
+            "--watch",
+        ];
+        command(&[&job[..], &["--server", &url]].concat())
+            .env("TRIMTAB_KEY", secret)
+            .output()
+            .expect("the program")
+    };
+    let done = watch(secret.trim());
+    assert!(
+        done.status.success(),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
+    assert!(String::from_utf8_lossy(&done.stdout).contains("Mde"));
+    let listed = key(&["list"]);
+    assert!(
+        listed.contains("pipeline") && listed.contains("icing") && !listed.contains(secret.trim())
+    );
+    let id = listed
+        .lines()
+        .find(|line| line.contains("pipeline"))
+        .and_then(|line| line.split_whitespace().next());
+    let next = key(&["rotate", id.expect("an id"), "--overlap", "0"]);
+    key(&["list", "--project", "icing"]);
+    let words = watch(secret.trim());
+    let words = String::from_utf8_lossy(&words.stderr).to_string();
+    assert!(words.contains("the key has expired"), "{words}");
+    assert!(watch(next.trim()).status.success());
+    let words = fails(&[
+        "key",
+        "new",
+        "--project",
+        "two words",
+        "--database",
+        database,
+    ]);
+    assert!(words.contains("is no name of a project"), "{words}");
+}
+
+#[test]
+fn the_catalog_can_be_read() {
+    assert!(
+        succeeds(&["model"])
+            .lines()
+            .any(|line| line.starts_with("lateral-directional-4 "))
+    );
+    let document: ModelDocument =
+        toml::from_str(&succeeds(&["model", "short-period"])).expect("a document");
+    assert_eq!(document.name, "short-period");
+}
+
+#[test]
+fn derivatives_become_coefficients_and_back() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let file = |name: &str, text: &str| {
+        let path = directory.path().join(name);
+        std::fs::write(&path, text).expect("written");
+        path.to_str().expect("a path").to_string()
+    };
+    let aircraft = file(
+        "aircraft.toml",
+        "m = 17600.0\nS = 64.0\nc = 3.16\nIy = 331000.0\nV = 130.0\nrho = 0.75\n",
+    );
+    let fit = succeeds(&["fit", "data/elevator.csv", "-m", "short-period", "--json"]);
+    let fit_file = file("fit.json", &fit);
+    let table = succeeds(&["derivatives", &fit_file, "--aircraft", &aircraft]);
+    assert!(
+        table.contains("Cmq") && table.contains("std. error"),
+        "{table}"
+    );
+    let json = succeeds(&["derivatives", &fit_file, "-a", &aircraft, "--json"]);
+    let coefficients: Value = serde_json::from_str(&json).expect("JSON");
+    let lines: Vec<String> = (coefficients.as_array().expect("a list").iter())
+        .map(|c| format!("{} = {}", c["name"].as_str().expect("a name"), c["value"]))
+        .collect();
+    let back_file = file("coefficients.toml", &lines.join("\n"));
+    let back = succeeds(&[
+        "derivatives",
+        &back_file,
+        "-a",
+        &aircraft,
+        "-m",
+        "short-period",
+        "--json",
+    ]);
+    let back: Value = serde_json::from_str(&back).expect("JSON");
+    let fit: Value = serde_json::from_str(&fit).expect("JSON");
+    let mut compared = 0;
+    for row in fit["estimate"]["parameters"].as_array().expect("a list") {
+        if let Some(found) = back[row["name"].as_str().expect("a name")].as_f64() {
+            let expected = row["estimate"].as_f64().expect("a number");
+            assert!((found / expected - 1.0).abs() < 1e-9, "{row}");
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 6);
+    let useless = file("bad.toml", "m = 17600.0\nS = 64.0\nV = 130.0\nrho = 0.75\n");
+    assert!(fails(&["derivatives", &fit_file, "-a", &useless]).contains("needs"));
+}
+
+#[test]
+fn a_recording_can_be_predicted_instead_of_fitted() {
+    let table = succeeds(&[
+        "fit",
+        "data/aileron.csv",
+        "--validate",
+        "data/rudder.csv",
+        "--model",
+        "lateral-directional-4",
+    ]);
+    let (fitted, predicted) = table.split_once("prediction of rudder:").expect("both");
+    assert!(
+        fitted.contains("Theil") && predicted.contains("Theil"),
+        "{table}"
+    );
+}

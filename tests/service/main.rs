@@ -1,0 +1,45 @@
+//! The service as those see it who use it: over HTTP, on the command line, in a browser, and while it is killed.
+//! `tests/postgres tests/browser cargo test --test service`; one subject by its name, `cargo test --test service jobs::`.
+
+#[path = "../common"]
+mod common {
+    pub(crate) mod browser;
+    pub(crate) mod chaos;
+    pub(crate) mod chromedriver;
+    pub(crate) mod database;
+    pub(crate) mod filter_case;
+    pub(crate) mod flight_data;
+    pub(crate) mod jobs;
+    pub(crate) mod preprocessing;
+    pub(crate) mod process;
+    pub(crate) mod published_cases;
+    pub(crate) mod recordings;
+    pub(crate) mod repository;
+    pub(crate) mod server;
+    pub(crate) mod sse;
+}
+
+mod abuse;
+mod again;
+mod api;
+mod architecture;
+mod bad_jobs;
+mod chaos;
+mod cli;
+mod coefficients;
+mod derivatives;
+mod diagnosis;
+mod events;
+mod filter_error;
+mod jobs;
+mod keys;
+mod lifecycle;
+mod limits;
+mod maneuvers;
+mod mappings;
+mod models;
+mod once;
+mod pages;
+mod published_cases;
+mod real_flights;
+mod webhooks;

@@ -1,0 +1,6 @@
+//! Pages for people: what they say, and how they are used.
+
+mod browser;
+mod jobs;
+mod maneuvers;
+mod models;
