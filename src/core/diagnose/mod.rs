@@ -61,6 +61,10 @@ pub use report::{
     OutputGain, ParameterChange, Refusal, RefusedEffect, Step, Verdict,
 };
 pub use residual::{ResidualAnalysis, SpectralLine, analyse};
+pub use unmodelled::{
+    ForceCurve, ForceDependence, ForceElsewhere, ForceHistory, ForceIn, ForceInterval,
+    ForceSpectrum, Unmodelled,
+};
 pub use watch::Watcher;
 
 use accepted::Accepted;
@@ -90,17 +94,27 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
     let cleaned = clean(case, &declared.fitted, &mut base, &mut found, watcher)?;
     let case = cleaned.as_ref().unwrap_or(case);
     let catalogue = candidates::candidates(case, &declared.fitted.problem.model);
+    let mut pool = catalogue.clone();
     let mut number = 1;
     while number <= MOST_ROUNDS {
-        let left: Vec<Effect> = (catalogue.iter())
+        let left: Vec<Effect> = (pool.iter())
             .filter(|effect| !found.accepted.iter().any(|a| a.effect == **effect))
             .cloned()
             .collect();
         let round = round(case, &base, left, &found.added(), number, watcher)?;
         let Some(accepted) = round.accepted else {
             found.refuse(round.refused);
-            break;
+            // what the catalogue has no word for may still have a form
+            if pool != catalogue {
+                break;
+            }
+            pool = unmodelled::proposals(case, &base);
+            if pool.is_empty() {
+                break;
+            }
+            continue;
         };
+        pool.clone_from(&catalogue);
         // what made the difference may be where the fit began, not the effect
         if found.accepted.is_empty()
             && !accepted.effect.is_noise()

@@ -1,26 +1,16 @@
 //! Where a force may act that the model does not have: the equations that carry aerodynamics, and the outputs.
 
+use super::report::ForceIn;
 use crate::diagnose::candidates::Ingredients;
 use crate::flight::{Dimension, Unit};
 use crate::model::ModelDocument;
-
-/// What an equation gives.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Gives {
-    /// The derivative of a state: the force is an acceleration.
-    Derivative,
-    /// A named coefficient: the force is an increment of it.
-    Definition,
-    /// An output: the force is an error of the instrument.
-    Output,
-}
 
 /// An equation that a force may act in.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(super) struct Equation {
     /// A state, a definition or an output.
     pub name: String,
-    pub gives: Gives,
+    pub force_in: ForceIn,
     /// Of the force, SI.
     pub unit: String,
 }
@@ -29,10 +19,10 @@ impl Equation {
     /// `the equation of q`, `the coefficient Cm`, `the output alpha`.
     pub(super) fn words(&self) -> String {
         let name = &self.name;
-        match self.gives {
-            Gives::Derivative => format!("the equation of {name}"),
-            Gives::Definition => format!("the coefficient {name}"),
-            Gives::Output => format!("the output {name}"),
+        match self.force_in {
+            ForceIn::State => format!("the equation of {name}"),
+            ForceIn::Coefficient => format!("the coefficient {name}"),
+            ForceIn::Output => format!("the output {name}"),
         }
     }
 }
@@ -40,18 +30,22 @@ impl Equation {
 /// All of a model's equations that a force may act in, outputs last.
 pub(super) fn of(document: &ModelDocument) -> Vec<Equation> {
     let aerodynamic = terms::aerodynamic(document).into_iter().filter_map(|name| {
-        let (gives, unit) = match document.definitions.get(&name) {
-            Some(definition) => (Gives::Definition, Unit::si_name(&definition.unit)),
+        let (force_in, unit) = match document.definitions.get(&name) {
+            Some(definition) => (ForceIn::Coefficient, Unit::si_name(&definition.unit)),
             None => {
                 let state = document.states.get(&name)?;
-                (Gives::Derivative, per_second(&Unit::si_name(&state.unit)))
+                (ForceIn::State, per_second(&Unit::si_name(&state.unit)))
             }
         };
-        Some(Equation { name, gives, unit })
+        Some(Equation {
+                name,
+                force_in,
+                unit,
+            })
     });
     let outputs = document.outputs.iter().map(|(name, output)| Equation {
         name: name.clone(),
-        gives: Gives::Output,
+        force_in: ForceIn::Output,
         unit: Unit::si_name(&output.unit),
     });
     motion.chain(outputs).collect()

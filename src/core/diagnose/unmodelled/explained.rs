@@ -5,6 +5,8 @@
 //! colour is that of the noise itself, on average over what it may be (an EM step), or it would miss just what θ and the
 //! force take off it.
 
+use std::borrow::Cow;
+
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -37,7 +39,7 @@ impl Noise {
         let mut chance = ChaCha8Rng::seed_from_u64(SEED);
         let mut best: Option<Self> = None;
         for _ in 0..PASSES {
-            let metric = Metric::new(from, colour)?;
+            let metric = Metric::new(Cow::Borrowed(from), colour)?;
             let ln_evidence = metric.ln_evidence();
             let before = best.as_ref().map_or(f64::NEG_INFINITY, |b| b.ln_evidence);
             let noise = (metric.clear / metric.samples).sqrt();
@@ -70,7 +72,7 @@ impl<'f> Explained<'f> {
     pub(super) fn by(
         from: &'f Samples,
         noise: &Noise,
-        responses: &[Response],
+        responses: &[&Response],
         smoothness: &[Smoothness],
     ) -> Option<Self> {
         let white = Colour::white(&from.layout, &from.residual);
@@ -109,10 +111,10 @@ impl<'f> Explained<'f> {
     fn with(
         from: &'f Samples,
         colour: Colour,
-        responses: &[Response],
+        responses: &[&Response],
         smoothness: &[Smoothness],
     ) -> Option<Self> {
-        let metric = Metric::new(from, colour)?;
+        let metric = Metric::new(Cow::Borrowed(from), colour)?;
         let normal = metric.normal(responses);
         let posterior = Posterior::likeliest((metric.clear, metric.samples), &normal, smoothness)?;
         Some(Self {

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::equations::{self, Equation};
 use super::explained::{Explained, Noise};
 use super::flown::Flown;
+use super::report::{ForceElsewhere, ForceIn};
 use super::responses::Responses;
 use super::shapes::Shapes;
 use super::smoothness::Smoothness;
@@ -28,15 +29,15 @@ const FREEDOM: usize = 2;
 pub(in crate::diagnose) struct LeftOver {
     /// A state, a definition or an output.
     pub equation: String,
-    /// `the equation of q`
-    pub words: String,
-    pub is_output: bool,
+    pub force_in: ForceIn,
     /// Twice the gain of the marginal likelihood over noise alone.
     pub likelihood_ratio: f64,
-    /// Parameters that the force is worth.
+    /// Independent numbers that the force is worth.
     pub freedom: f64,
     /// What noise alone exceeds once in a thousand diagnoses.
     pub threshold: f64,
+    /// The other equations, the best first.
+    pub elsewhere: Vec<ForceElsewhere>,
 }
 
 impl LeftOver {
@@ -45,18 +46,12 @@ impl LeftOver {
     }
 }
 
-/// What a model fitted by output error leaves of its flights: the equation in which a force explains most of it. `None`
-/// where the simulation leaves the range of numbers, or the model has no room for a force.
+/// What a model fitted by output error leaves of its flights. `None` where the simulation leaves the range of numbers, or
+/// the model has no room for a force.
 pub(in crate::diagnose) fn left_over(case: &Case, fitted: &Fitted) -> Option<LeftOver> {
-    all(case, fitted)?
-        .into_iter()
-        .max_by(|a, b| a.likelihood_ratio.total_cmp(&b.likelihood_ratio))
-}
-
-/// By equation.
-pub(in crate::diagnose) fn all(case: &Case, fitted: &Fitted) -> Option<Vec<LeftOver>> {
     let flown = Flown::fitted(fitted)?;
-    let equations = equations::of(&Ingredients::new(case, &fitted.document), &fitted.document);
+    let ingredients = Ingredients::new(case, &fitted.document);
+    let equations = equations::of(&ingredients, &fitted.document);
     let shapes: Vec<Shapes> = (flown.problem.segments.iter())
         .map(|segment| Shapes::over(segment.elapsed(), SPACING, MOST_INTERVALS))
         .collect();
@@ -64,18 +59,27 @@ pub(in crate::diagnose) fn all(case: &Case, fitted: &Fitted) -> Option<Vec<LeftO
     let smoothness = Smoothness::all(&counts)?;
     let responses = Responses::new(&flown, &shapes, &equations)?;
     let noise = Noise::of(&flown.samples)?;
-    let threshold = critical(FALSE_ALARM, equations.len() as f64, FREEDOM);
     let of = |equation: &Equation| {
         let responses = responses.to(equation)?;
+        let responses: Vec<_> = responses.iter().collect();
         let explained = Explained::by(&flown.samples, &noise, &responses, &smoothness)?;
-        Some(LeftOver {
+        Some(ForceElsewhere {
             equation: equation.name.clone(),
-            words: equation.words(),
-            is_output: equation.gives == equations::Gives::Output,
+            force_in: equation.force_in,
             likelihood_ratio: 2.0 * (explained.ln_evidence - noise.ln_evidence),
             freedom: explained.posterior.freedom,
-            threshold,
         })
     };
-    Some(equations.par_iter().filter_map(of).collect())
+    let mut all: Vec<ForceElsewhere> = equations.par_iter().filter_map(of).collect();
+    all.sort_by(|a, b| b.likelihood_ratio.total_cmp(&a.likelihood_ratio));
+    let mut all = all.into_iter();
+    let best = all.next()?;
+    Some(LeftOver {
+        equation: best.equation,
+        force_in: best.force_in,
+        likelihood_ratio: best.likelihood_ratio,
+        freedom: best.freedom,
+        threshold: critical(FALSE_ALARM, equations.len() as f64, FREEDOM),
+        elsewhere: all.collect(),
+    })
 }

@@ -56,6 +56,17 @@ pub(super) struct Normal {
     imitated: DMatrix<f64>,
 }
 
+impl Normal {
+    /// What they say of fewer numbers that the sizes are made of: c = B β.
+    pub(super) fn through(&self, made: &DMatrix<f64>) -> Self {
+        Self {
+            gram: made.tr_mul(&(&self.gram * made)),
+            moment: made.tr_mul(&self.moment),
+            imitated: made.tr_mul(&self.imitated),
+        }
+    }
+}
+
 impl<'f> Metric<'f> {
     /// `None` where something is not a number.
     pub(super) fn new(from: Cow<'f, Samples>, colour: Colour) -> Option<Self> {
@@ -75,12 +86,11 @@ impl<'f> Metric<'f> {
         }
         let (span, to_theta, ln_determinant) = orthonormal(&declared, &scale)?;
         let ln_whitening = ln_whitening - 0.5 * ln_determinant;
-        let samples =
-            residual.iter().filter(|e| e.is_finite()).count() - span.ncols().min(residual.len());
+        let measured = residual.iter().filter(|e| e.is_finite()).count();
         let shares = span.tr_mul(&whitened);
         Some(Self {
             clear: (whitened.norm_squared() - shares.norm_squared()).max(f64::MIN_POSITIVE),
-            samples: samples.max(1) as f64,
+            samples: measured.saturating_sub(span.ncols()).max(1) as f64,
             ln_whitening,
             residual: whitened,
             span,
@@ -147,6 +157,24 @@ impl<'f> Metric<'f> {
         white
     }
 
+    /// The residual as it was given.
+    pub(super) fn residual(&self) -> DVector<f64> {
+        DVector::from_column_slice(&self.from.residual)
+    }
+
+    /// |(I - P) W x|² of a column.
+    pub(super) fn length(&self, column: &[f64]) -> f64 {
+        let (layout, residual) = (&self.from.layout, &self.from.residual);
+        let white = DVector::from_vec(self.colour.whiten(layout, residual, column));
+        let shares = self.span.tr_mul(&white);
+        white.norm_squared() - shares.norm_squared()
+    }
+
+    /// By how much θ moves where there is no force.
+    pub(super) fn moved_alone(&self) -> DVector<f64> {
+        &self.to_theta * &self.shares
+    }
+
     /// By how much θ moves beside a force with these sizes.
     pub(super) fn moved(&self, normal: &Normal, sizes: &DVector<f64>) -> DVector<f64> {
         &self.to_theta * (&self.shares - normal.imitated.tr_mul(sizes))
@@ -162,7 +190,7 @@ impl<'f> Metric<'f> {
     ) -> Vec<Vec<f64>> {
         let none = DVector::zeros(0);
         let middle = match force {
-            None => self.less(&(&self.to_theta * &self.shares), &[], &none),
+            None => self.less(&self.moved_alone(), &[], &none),
             Some((normal, responses, posterior)) => {
                 let theta = self.moved(normal, &posterior.sizes);
                 self.less(&theta, responses, &posterior.sizes)

@@ -1,24 +1,55 @@
 //! The unmodelled force: what is left of the residual, as an acceleration in one equation (or the increment of a
-//! coefficient, or the error of an instrument) over time.
+//! coefficient, or the error of an output) over time, and what it depends on.
 //!
 //! A force in one equation is a sum of smooth shapes in time. Its sizes are estimated by generalised least squares with
 //! all that is free in the model projected out, and a prior of smoothness whose weight the marginal likelihood chooses.
 //! How well each equation's force explains the residual says where something is missing, whether or not any
-//! catalogue has a name for it.
+//! catalogue has a name for it: [`left_over`]. [`picture`] shows it.
 
+mod curve;
+mod dependence;
 mod equations;
 mod explained;
 mod flown;
 mod left_over;
 mod metric;
+mod parts;
+mod picture;
+mod proposals;
+mod quantities;
+mod report;
 mod responses;
+mod sentence;
 mod shapes;
 mod smoothness;
+mod spectrum;
 mod splines;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod truth;
 
-#[allow(unused_imports)] // until a diagnosis asks
-pub(super) use left_over::{LeftOver, left_over};
+pub use report::{
+    ForceCurve, ForceDependence, ForceElsewhere, ForceHistory, ForceIn, ForceInterval,
+    ForceSpectrum, Unmodelled,
+};
+
+pub(super) use picture::Picture;
+
+use super::case::Case;
+use super::effect::Effect;
+use super::fitted::Fitted;
+
+/// The picture of what a fit by output error leaves, where noise alone would hardly leave it.
+pub(super) fn found(case: &Case, fitted: &Fitted) -> Option<Picture> {
+    if fitted.estimate.filter.is_some() {
+        return None;
+    }
+    let left = left_over::left_over(case, fitted).filter(left_over::LeftOver::is_significant)?;
+    picture::picture(case, fitted, &left)
+}
+
+/// Effects that no catalogue has and that would make what is left, the most promising first.
+pub(super) fn proposals(case: &Case, fitted: &Fitted) -> Vec<Effect> {
+    found(case, fitted).map_or_else(Vec::new, |picture| picture.proposals)
+}

@@ -6,8 +6,9 @@
 
 use nalgebra::DMatrix;
 
-use super::equations::{Equation, Gives};
+use super::equations::Equation;
 use super::flown::Flown;
+use super::report::ForceIn;
 use super::shapes::Shapes;
 use crate::diagnose::case::compile;
 use crate::diagnose::stack::sensitivities;
@@ -59,7 +60,7 @@ impl<'f> Responses<'f> {
     ) -> Option<Self> {
         let document = &flown.problem.model.document;
         let at_once = AT_ONCE.min(MOST_INPUTS.saturating_sub(document.inputs.len()));
-        let inner = || (equations.iter()).filter(|equation| equation.gives != Gives::Output);
+        let inner = || (equations.iter()).filter(|equation| equation.force_in != ForceIn::Output);
         let forced = if inner().next().is_none() {
             None
         } else if at_once == 0 {
@@ -77,9 +78,9 @@ impl<'f> Responses<'f> {
 
     /// By segment, the response to a force in an equation. `None` where the simulation leaves the range of numbers.
     pub(super) fn to(&self, equation: &Equation) -> Option<Vec<Response>> {
-        match equation.gives {
-            Gives::Output => self.of_output(&equation.name),
-            Gives::Derivative | Gives::Definition => self.of_motion(&equation.name),
+        match equation.force_in {
+            ForceIn::Output => self.of_output(&equation.name),
+            ForceIn::State | ForceIn::Coefficient => self.of_motion(&equation.name),
         }
     }
 

@@ -2,10 +2,14 @@
 
 use std::ops::ControlFlow;
 
-use super::left_over::{LeftOver, all};
+use nalgebra::{DMatrix, DVector};
+
+use super::found;
+use super::left_over::{LeftOver, left_over};
+use super::report::ForceIn;
 use super::truth::{Noise, Truth, steps};
 use crate::diagnose::declared::Declared;
-use crate::diagnose::{Case, Fitted};
+use crate::diagnose::{Case, Effect, Fitted};
 use crate::estimate::Role;
 use crate::model::catalog;
 
@@ -86,10 +90,8 @@ fn fitted(case: &Case) -> Fitted {
     declared.fitted
 }
 
-fn best_first(case: &Case) -> Vec<LeftOver> {
-    let mut found = all(case, &fitted(case)).unwrap();
-    found.sort_by(|a, b| b.likelihood_ratio.total_cmp(&a.likelihood_ratio));
-    found
+fn left(case: &Case) -> LeftOver {
+    left_over(case, &fitted(case)).expect("a model with room for a force")
 }
 
 /// Noise alone leaves nothing, whatever its colour; the statistic does not grow with it.
@@ -105,12 +107,12 @@ fn noise_of_any_colour_leaves_nothing() {
                 &[Role::Estimation; 2],
                 seed,
             );
-            let found = best_first(&case);
+            let found = left(&case);
             assert!(
-                !found[0].is_significant(),
+                !found.is_significant(),
                 "colour {colour}, seed {seed}: {found:?}"
             );
-            ratios.push(found[0].likelihood_ratio);
+            ratios.push(found.likelihood_ratio);
         }
         ratios.sort_by(f64::total_cmp);
         assert!(ratios[3] < 8.0, "colour {colour}: {ratios:?}");
@@ -121,21 +123,97 @@ fn noise_of_any_colour_leaves_nothing() {
 #[test]
 fn a_force_is_found_in_the_equation_in_which_it_acts() {
     let expected = [
-        (Undeclared::CubicMoment, "the equation of q"),
-        (Undeclared::Saturation, "the equation of q"),
-        (Undeclared::WanderingBalance, "the equation of q"),
-        (Undeclared::Once, "the equation of q"),
-        (Undeclared::Slosh, "the equation of alpha"),
+        (Undeclared::CubicMoment, "q"),
+        (Undeclared::Saturation, "q"),
+        (Undeclared::WanderingBalance, "q"),
+        (Undeclared::Once, "q"),
+        (Undeclared::Slosh, "alpha"),
     ];
-    for (undeclared, words) in expected {
+    for (undeclared, equation) in expected {
         for colour in [0.0, 0.9] {
             let case = flown(undeclared, 1.0, colour, &[Role::Estimation; 2], 11);
-            let found = best_first(&case);
-            assert_eq!(found[0].words, words, "{undeclared:?}, {colour}: {found:?}");
+            let found = left(&case);
+            let place = (found.equation.as_str(), found.force_in);
+            assert_eq!(place, (equation, ForceIn::State), "{undeclared:?}, {colour}: {found:?}");
             assert!(
-                found[0].is_significant(),
+                found.is_significant(),
                 "{undeclared:?}, {colour}: {found:?}"
             );
         }
     }
+}
+
+/// What is left of a series besides a constant and some others.
+fn besides(series: &[f64], others: &[&[f64]]) -> DVector<f64> {
+    let ones = vec![1.0; series.len()];
+    let columns: Vec<DVector<f64>> = std::iter::once(ones.as_slice())
+        .chain(others.iter().copied())
+        .map(DVector::from_column_slice)
+        .collect();
+    let columns = DMatrix::from_columns(&columns);
+    let series = DVector::from_column_slice(series);
+    let fit = columns.clone().svd(true, true).solve(&series, 1e-12).unwrap();
+    series - columns * fit
+}
+
+fn correlation(a: &DVector<f64>, b: &DVector<f64>) -> f64 {
+    a.dot(b) / (a.norm() * b.norm())
+}
+
+/// A cubic moment: its course over time, what it depends on and its term are found, in flights that were not fitted too.
+#[test]
+fn a_cubic_moment_is_seen_for_what_it_is() {
+    let roles = [Role::Estimation, Role::Estimation, Role::Validation];
+    let case = flown(Undeclared::CubicMoment, 0.3, 0.0, &roles, 5);
+    let picture = found(&case, &fitted(&case)).expect("something is left");
+    let force = &picture.unmodelled;
+    assert_eq!((force.equation.as_str(), force.unit.as_str()), ("q", "rad/s^2"));
+    assert_eq!(force.flights.len(), 3);
+    for flight in &force.flights {
+        let recorded = case.flights.iter().find(|f| f.label == flight.segment).unwrap();
+        let every = recorded.time.len().div_ceil(flight.time.len());
+        let channel = |name: &str| -> Vec<f64> {
+            let (values, _) = &recorded.channels[name];
+            values.iter().step_by(every).copied().collect()
+        };
+        let (alpha, q, de) = (channel("alpha"), channel("q"), channel("de"));
+        let truth: Vec<f64> = alpha.iter().map(|a| 240.0 * (a - 0.05).powi(3)).collect();
+        // the declared derivatives imitate what is linear
+        let known = [alpha.as_slice(), &q, &de];
+        let like = correlation(&besides(&flight.value, &known), &besides(&truth, &known));
+        assert!(like > 0.9, "{}: {like}", flight.segment);
+    }
+    let best = &force.depends_on[0];
+    assert!(best.quantity == "alpha" && best.share > 0.5, "{:?}", force.depends_on);
+    let curve = best.curve.as_ref().unwrap();
+    let truth: Vec<f64> = curve.x.iter().map(|x| 240.0 * (x - 0.05).powi(3)).collect();
+    let like = correlation(&besides(&curve.y, &[&curve.x]), &besides(&truth, &[&curve.x]));
+    assert!(like > 0.9, "the curve: {like}");
+    let names: Vec<String> = picture.proposals.iter().map(Effect::name).collect();
+    assert!(names.iter().any(|name| name.contains("alpha^3")), "{names:?}");
+    assert!(picture.proposals.len() <= 8);
+}
+
+/// One flight alone: a quarter of it at a time is predicted from the rest.
+#[test]
+fn a_lone_flight_is_its_own_judge() {
+    let case = flown(Undeclared::CubicMoment, 0.3, 0.0, &[Role::Estimation], 5);
+    let picture = found(&case, &fitted(&case)).expect("something is left");
+    let best = &picture.unmodelled.depends_on[0];
+    assert!(best.quantity == "alpha" && best.share > 0.5, "{:?}", picture.unmodelled.depends_on);
+}
+
+/// What acts once depends on nothing, and is said when it acts.
+#[test]
+fn what_depends_on_nothing_is_said_when_it_acts() {
+    let roles = [Role::Estimation, Role::Estimation, Role::Validation];
+    let case = flown(Undeclared::Once, 0.5, 0.0, &roles, 5);
+    let force = found(&case, &fitted(&case)).expect("something is left").unmodelled;
+    assert_eq!(force.equation, "q");
+    let best = force.depends_on.first().map_or(0.0, |best| best.share);
+    assert!(best < 0.3, "{:?}", force.depends_on);
+    assert_eq!(force.strongest.segment, "A");
+    let (from, to) = (force.strongest.from, force.strongest.to);
+    assert!(from > 8.5 && to < 11.5 && to - from < 2.0, "{from} to {to}");
+    assert!(force.sentence.contains("depends on nothing"), "{}", force.sentence);
 }
