@@ -140,7 +140,7 @@ impl Request {
         })
     }
 
-    /// The job, ready to be run here. What is to be known of its data is said.
+    /// The job, ready to be run here.
     pub(super) fn plan(&self, kind: JobKind) -> Result<Plan, Failure> {
         let maneuvers = self.recordings()?;
         let ids: Vec<String> = maneuvers.iter().map(|maneuver| maneuver.digest()).collect();
@@ -148,12 +148,8 @@ impl Request {
             kind,
             ..self.spec(&ids)?
         };
-        let plan = job::prepare(&spec, &self.document()?, &maneuvers)
-            .map_err(|faults| Failure::faults("the job cannot start", &faults))?;
-        for finding in &plan.prepared.findings {
-            eprintln!("note: {}; {}", finding.message, finding.remedy);
-        }
-        Ok(plan)
+        job::prepare(&spec, &self.document()?, &maneuvers)
+            .map_err(|faults| Failure::faults("the job cannot start", &faults))
     }
 
     /// The job, for recordings that are known by `ids`.

@@ -3,18 +3,19 @@
 use crate::estimate::answer::Solution;
 use crate::estimate::equation_error::equation_error;
 use crate::estimate::filter_error::filter_error;
+use crate::estimate::findings::findings;
 use crate::estimate::options::estimator::Estimator;
 use crate::estimate::output_error::second_try;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::progress::{Progress, Watcher};
 
-/// Estimates θ as the problem's options say.
+/// Estimates θ as the problem's options say; what a reader of the answer should know is in its findings.
 ///
 /// # Errors
 /// There is nothing to begin with: why.
 pub fn estimate(problem: &Problem, watcher: &mut Watcher<'_>) -> Result<Solution, Unusable> {
-    match problem.options.estimator {
+    let mut solution = match problem.options.estimator {
         Estimator::OutputError => second_try::from_start(problem, watcher),
         Estimator::FilterError => filter_error(problem, &mut |iteration| {
             watcher(Progress::Iteration(iteration))
@@ -22,5 +23,13 @@ pub fn estimate(problem: &Problem, watcher: &mut Watcher<'_>) -> Result<Solution
         Estimator::EquationError => equation_error(problem, &mut |iteration| {
             watcher(Progress::Iteration(iteration))
         }),
+    }?;
+    let found = findings(problem, &solution);
+    let estimate = &mut solution.estimate;
+    estimate.findings.extend(found);
+    let short = problem.options.max_iterations > 0 && estimate.outcome.is_short();
+    for row in &mut estimate.parameters {
+        row.provisional = short && !row.fixed;
     }
+    Ok(solution)
 }

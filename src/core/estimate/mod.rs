@@ -25,6 +25,7 @@
 //! regression   the problem of equation error
 //! start        where to begin; multiple shooting
 //! output_error, filter_error, study
+//! findings     what a reader of the answer should know beside its numbers
 //! ```
 //!
 //! Invariant: the same problem gives the same estimate to the last bit, and a solver that stops says why.
@@ -37,6 +38,7 @@ mod equation_error;
 mod estimator;
 mod evaluation;
 mod filter_error;
+mod findings;
 mod likelihood;
 mod linear;
 mod options;

@@ -152,6 +152,7 @@ impl Ending<'_> {
             samples: problem.samples(),
             filter: None,
             modes: modes(problem, self.theta, self.bounds),
+            findings: Vec::new(),
         }
     }
 }

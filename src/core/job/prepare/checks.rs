@@ -6,8 +6,8 @@ use crate::estimate::{
 };
 use crate::flight::Fault;
 use crate::job::no_start::no_measured_state;
-use crate::job::spec::{JobSpec, ModelSource};
-use crate::model::Model;
+use crate::job::spec::{JobSpec, ManeuverUse, ModelSource};
+use crate::model::{Model, Per};
 
 /// Variances of noise that leave the likelihood a number.
 const VARIANCES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
@@ -110,6 +110,32 @@ pub(super) fn check_names(spec: &JobSpec, model: &Model, faults: &mut Vec<Fault>
         if !known.clone().any(|known| known == name) {
             let what = ("input or output", name.as_str());
             unknown_name("/channels", "unknown_channel", what, known, faults);
+        }
+    }
+    for (index, usage) in spec.maneuvers.iter().enumerate() {
+        check_own_names(index, usage, model, faults);
+    }
+}
+
+/// Names that a maneuver says something of for itself.
+fn check_own_names(index: usize, usage: &ManeuverUse, model: &Model, faults: &mut Vec<Fault>) {
+    for name in usage.channels.keys() {
+        let quantities = model.inputs.iter().chain(&model.outputs);
+        let known = quantities.map(|quantity| quantity.name.as_str());
+        if !known.clone().any(|known| known == name) {
+            let what = ("input or output", name.as_str());
+            let pointer = format!("/maneuvers/{index}/channels");
+            unknown_name(&pointer, "unknown_channel", what, known, faults);
+        }
+    }
+    for name in usage.start.keys() {
+        let own = model.parameters.iter();
+        let own = own.filter(|parameter| parameter.document.per == Per::Maneuver);
+        let known = own.map(|parameter| parameter.name.as_str());
+        if !known.clone().any(|known| known == name) {
+            let what = ("parameter of each maneuver's own", name.as_str());
+            let pointer = format!("/maneuvers/{index}/start");
+            unknown_name(&pointer, "unknown_parameter", what, known, faults);
         }
     }
 }
