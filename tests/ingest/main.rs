@@ -7,4 +7,6 @@ mod common {
 }
 
 mod flight_data;
+mod corruptions;
+mod findings;
 mod formats;

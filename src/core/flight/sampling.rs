@@ -131,6 +131,10 @@ fn coarse_clock(time: &[f64], gaps: &[Gap]) -> Option<(f64, f64)> {
         .windows(2)
         .map(|pair| pair[1] - pair[0])
         .reduce(f64::min)?;
+    let is_whole = |length: &f64| (length / tick - (length / tick).round()).abs() < 0.15;
+    if !lengths.iter().all(is_whole) {
+        return None;
+    }
     let slope = slope(&stretches)?;
     let within = |stretch: &&[f64]| {
         let off = |(row, t): (usize, &f64)| t - stretch[0] - slope * row as f64;

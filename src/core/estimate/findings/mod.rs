@@ -6,6 +6,7 @@
 
 mod convergence;
 mod identifiability;
+mod input_interpolation;
 
 use crate::estimate::answer::Solution;
 use crate::estimate::problem::Problem;
@@ -18,6 +19,7 @@ pub(super) fn findings(problem: &Problem, solution: &Solution) -> Vec<Finding> {
     let checks = [
         convergence::findings(&solution.estimate, estimated),
         identifiability::findings(&solution.estimate),
+        input_interpolation::findings(problem, solution),
     ];
     checks.into_iter().flatten().collect()
 }

@@ -3,6 +3,7 @@
 //! A channel that is new in every n-th row only, and repeated in between, changes at rows of a grid, and brings a new value
 //! at nearly every one of them. A quantised signal changes at any row, a command rests for long and has few values.
 
+use std::collections::HashSet;
 use std::ops::Range;
 
 use crate::flight::{Finding, FindingCode, is_control};
@@ -15,54 +16,85 @@ const WIDEST: usize = 100;
 const LEAST_CHANGES: usize = 12;
 /// So many values tell a measured channel from a command of a few levels.
 const LEAST_VALUES: usize = 8;
-/// The share of changes that must be one grid step apart, or a row more or less where rates do not divide.
-const ALONG_GRID: f64 = 0.9;
+/// The share of changes that must be one step of the grid apart, to a row.
+const SINGLE: f64 = 0.6;
+/// The share of changes that must lie on the grid, and to within how many rows: where rates do not divide, the nearest row.
+const ALONG_GRID: f64 = 0.97;
+const OFF_GRID: f64 = 0.75;
 
 /// The rows between new values; `None` where the channel is not held.
 pub(super) fn grid(values: &[f64], segments: &[Range<usize>]) -> Option<f64> {
-    let mut runs: Vec<usize> = Vec::new();
-    let (mut rises, mut falls) = (false, false);
-    let mut levels = std::collections::HashSet::new();
-    for segment in segments {
-        let mut change: Option<usize> = None;
-        for k in segment.start + 1..segment.end {
-            if values[k] == values[k - 1] || values[k].is_nan() || values[k - 1].is_nan() {
-                continue;
-            }
-            if let Some(before) = change {
-                runs.push(k - before);
-            }
-            levels.insert(values[k].to_bits());
-            rises |= values[k] > values[k - 1];
-            falls |= values[k] < values[k - 1];
-            change = Some(k);
-        }
-    }
+    let changes: Vec<Vec<usize>> = (segments.iter())
+        .map(|segment| changes(values, segment.clone()))
+        .collect();
+    let all = || changes.iter().flatten().copied();
+    let levels: HashSet<u64> = all().map(|k| values[k].to_bits()).collect();
     // what only rises or only falls is a counter, or fuel: nothing that a fit would count twice
-    let counts = !(rises && falls);
-    if counts || runs.len() < LEAST_CHANGES || levels.len() < LEAST_VALUES {
+    let rises = all().filter(|&k| values[k] > values[k - 1]).count();
+    if rises == 0 || rises == all().count() || levels.len() < LEAST_VALUES {
         return None;
     }
-    let mut sorted = runs.clone();
-    sorted.sort_unstable();
+    let mut runs: Vec<usize> = (changes.iter())
+        .flat_map(|rows| rows.windows(2))
+        .map(|pair| pair[1] - pair[0])
+        .collect();
+    if runs.len() < LEAST_CHANGES {
+        return None;
+    }
+    runs.sort_unstable();
     // the grid's step is what most runs are long; a value that happens to stay the same makes one of twice the length
-    let step = sorted[sorted.len() / 4];
-    if !(2..=WIDEST).contains(&step) {
+    let usual = runs[runs.len() / 4];
+    if !(2..=WIDEST).contains(&usual) {
         return None;
     }
-    // where the rates do not divide, runs are a row longer now and then; one in two rows leaves no room for that
-    let slack = usize::from(step > 2);
-    let is_step = |run: &usize| run.abs_diff(step) <= slack;
-    let single: Vec<&usize> = runs.iter().filter(|run| is_step(run)).collect();
-    let on_grid = runs.iter().filter(|run| {
-        let steps = (**run + step / 2) / step;
-        steps >= 1 && run.abs_diff(steps * step) <= slack * steps
-    });
-    let all = runs.len() as f64;
-    if (single.len() as f64) < 0.6 * all || (on_grid.count() as f64) < ALONG_GRID * all {
+    let single: Vec<usize> = runs
+        .iter()
+        .copied()
+        .filter(|run| run.abs_diff(usual) <= 1)
+        .collect();
+    if (single.len() as f64) < SINGLE * runs.len() as f64 {
         return None;
     }
-    Some(single.iter().copied().sum::<usize>() as f64 / single.len() as f64)
+    let step = single.iter().sum::<usize>() as f64 / single.len() as f64;
+    along(&changes, step)
+}
+
+/// The rows of a segment at which a series changes.
+fn changes(values: &[f64], segment: Range<usize>) -> Vec<usize> {
+    let is_new = |k: &usize| {
+        let (before, now) = (values[k - 1], values[*k]);
+        now != before && !now.is_nan() && !before.is_nan()
+    };
+    (segment.start + 1..segment.end).filter(is_new).collect()
+}
+
+/// The grid of least squares through the changes, where they lie on one to within a row.
+fn along(changes: &[Vec<usize>], step: f64) -> Option<f64> {
+    let counted = |rows: &Vec<usize>| -> Vec<(f64, f64)> {
+        let mut number = 0.0;
+        let mut before = rows.first().copied().unwrap_or(0);
+        let place = |&row: &usize| {
+            number += ((row - before) as f64 / step).round();
+            before = row;
+            (number, row as f64)
+        };
+        let places: Vec<(f64, f64)> = rows.iter().map(place).collect();
+        let count = places.len() as f64;
+        let sum = places
+            .iter()
+            .fold((0.0, 0.0), |sum, place| (sum.0 + place.0, sum.1 + place.1));
+        let centred = places
+            .iter()
+            .map(|place| (place.0 - sum.0 / count, place.1 - sum.1 / count));
+        centred.collect()
+    };
+    let places: Vec<Vec<(f64, f64)>> = changes.iter().map(counted).collect();
+    let all = || places.iter().flatten();
+    let grid = all().map(|(k, row)| k * row).sum::<f64>() / all().map(|(k, _)| k * k).sum::<f64>();
+    let on_grid = all()
+        .filter(|(k, row)| (row - grid * k).abs() <= OFF_GRID)
+        .count();
+    (on_grid as f64 >= ALONG_GRID * all().count() as f64).then_some(grid)
 }
 
 /// That a channel is held, with its grid.

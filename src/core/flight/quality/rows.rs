@@ -60,7 +60,9 @@ impl RepeatedRows {
     pub(super) fn of(record: &Record<'_>, segments: &[Range<usize>]) -> Self {
         let series = record.series.iter();
         let changing: Vec<Changing<'_>> = series.filter_map(|s| Changing::of(&s.values)).collect();
-        let mut is_repeated = vec![!changing.is_empty(); record.time.len()];
+        // one channel alone is stuck, or held
+        let telling = changing.iter().filter(|channel| channel.chance < 1.0);
+        let mut is_repeated = vec![telling.count() >= 2; record.time.len()];
         for segment in segments {
             is_repeated[segment.start] = false;
         }

@@ -26,6 +26,7 @@ const USUAL: [f64; 16] = [
 ];
 /// Further from what is usual than the usual range, so many times.
 const FAR: f64 = 5.0;
+const FURTHER: f64 = 20.0;
 /// More samples than this share are no exception.
 const MOST: f64 = 0.3;
 
@@ -56,7 +57,9 @@ pub(super) fn sentinel(series: &Series<'_>) -> Option<(Vec<usize>, f64)> {
         let recorded = series.unit.from_si(extreme);
         let is_usual = |usual: &f64| (recorded - usual).abs() <= 1e-6 * usual.abs();
         let known = USUAL.iter().copied().find(|usual| is_usual(usual));
-        let is_one = distance > FAR * size && (known.is_some() || rows.len() >= 3);
+        // a number of no fame must be further out, and of a channel that moves otherwise: a command has levels
+        let is_odd = high > low && distance > FURTHER * size && rows.len() >= 3;
+        let is_one = (known.is_some() && distance > FAR * size) || is_odd;
         is_one.then(|| (rows, known.unwrap_or(recorded)))
     });
     found

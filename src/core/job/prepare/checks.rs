@@ -6,7 +6,7 @@ use crate::estimate::{
 };
 use crate::flight::Fault;
 use crate::job::no_start::no_measured_state;
-use crate::job::spec::{JobSpec, ManeuverUse, ModelSource};
+use crate::job::spec::{JobKind, JobSpec, ManeuverUse, ModelSource};
 use crate::model::{Model, Per};
 
 /// Variances of noise that leave the likelihood a number.
@@ -50,6 +50,14 @@ pub(super) fn check_shape(spec: &JobSpec, maneuvers: usize, faults: &mut Vec<Fau
             "unknown_model",
             "name a model of the catalog, or send a document",
         ));
+    }
+}
+
+/// What only one kind of job reads is refused of the others: nothing that is asked for passes in silence.
+pub(super) fn check_kind(spec: &JobSpec, faults: &mut Vec<Fault>) {
+    if spec.kind != JobKind::Diagnose && !spec.candidates.is_empty() {
+        let message = "only a diagnosis tries candidates; say \"kind\": \"diagnose\", or put the edits into \"edits\"";
+        faults.push(Fault::new("/candidates", "bad_option", message));
     }
 }
 

@@ -4,7 +4,7 @@
 use super::stretch::Stretch;
 use crate::estimate::{Unknown, Unknowns};
 use crate::flight::{Finding, FindingCode, Severity};
-use crate::job::spec::JobKind;
+use crate::job::spec::{JobKind, JobSpec};
 use crate::model::{Edit, EditKind, Model, ModelDocument, Per};
 use crate::simulate::Segment;
 
@@ -26,6 +26,7 @@ impl FreeInitial {
     /// `None` where no part begins in mid-motion behind a gap, or where all initial states that the outputs can see
     /// are estimated anyway.
     pub(super) fn of(
+        spec: &JobSpec,
         document: &ModelDocument,
         model: &Model,
         fitted: &[(Segment, &Stretch<'_>)],
@@ -41,6 +42,12 @@ impl FreeInitial {
         let seen = seen(model);
         let held = model.states.iter().zip(seen);
         for (state, _) in held.filter(|(state, seen)| *seen && is_held(document, &state.name)) {
+            // what the job says of it itself is meant
+            let is_own =
+                |edit: &Edit| edit.kind == EditKind::InitialState && edit.target == state.name;
+            if spec.edits.iter().any(is_own) {
+                continue;
+            }
             // a state whose initial value takes no parameter more stays as it is
             let Ok(found) = Edit::new(EditKind::InitialState, &state.name).apply(&edited) else {
                 continue;
@@ -77,7 +84,7 @@ impl FreeInitial {
             "{begin}; their initial state is estimated, by {}",
             self.names.join(", ")
         );
-        let remedy = "fix these parameters where the model's initial state is meant";
+        let remedy = "nothing; where the model's initial state is meant, say so by an edit of the kind initial_state whose parameter is fixed";
         Finding::new(FindingCode::HeldInitialState, message, remedy)
             .with_severity(Severity::Note)
             .of_parameters(&self.names)

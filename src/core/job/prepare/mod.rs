@@ -48,6 +48,7 @@ pub fn prepare(
     let (mut faults, mut findings) = (Vec::new(), Vec::new());
     let document = document::edited(spec, declared, &mut faults);
     checks::check_shape(spec, maneuvers.len(), &mut faults);
+    checks::check_kind(spec, &mut faults);
     let model = document::compiled(&document, spec, declared, &mut faults)?;
     check_settings(spec, &model, &mut faults);
     let stretches = gaps::stretches(spec, &model, maneuvers, &mut findings, &mut faults);
@@ -114,7 +115,7 @@ fn with_unknowns(
     resolved: &Resolved<'_, '_>,
     findings: &mut Vec<Finding>,
 ) -> Result<Opened, Vec<Fault>> {
-    let free = FreeInitial::of(&document, &model, &resolved.fitted);
+    let free = FreeInitial::of(spec, &document, &model, &resolved.fitted);
     findings.extend((free.as_ref()).map(|free| free.finding(spec.kind, &resolved.fitted)));
     // a diagnosis fits many edits of one model, each to parts that begin alike
     let Some(free) = free.filter(|_| spec.kind != JobKind::Diagnose) else {
