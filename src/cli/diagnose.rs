@@ -18,7 +18,7 @@ pub(super) struct Diagnose {
     #[command(flatten)]
     request: Request,
     /// Show every candidate that was refused, with the reason.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "json")]
     all: bool,
     /// Write a picture of each segment to this directory: measured, declared model and model with its effects.
     #[arg(long, value_name = "DIRECTORY")]

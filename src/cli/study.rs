@@ -26,6 +26,10 @@ pub(super) struct Study {
 
 impl Study {
     pub(super) fn run(&self) -> Result<(), Failure> {
+        if !(self.request.validate.is_empty() && self.request.last.is_empty()) {
+            let message = "a study compares techniques on the recordings that are fitted; leave --validate and --final out";
+            return Err(Failure::new(message));
+        }
         let plan = self.request.plan(JobKind::DerivativeStudy)?;
         let progress = ProgressLine::new(self.request.tolerance);
         let result = job::run_study(&plan, &ThreadClock::start(), &mut |told| {

@@ -117,6 +117,17 @@ fn alarms_are_few() {
                 .is_some_and(|channel| commands.contains(&channel))
         });
         assert_eq!(about_commands.count(), 0, "{name}");
+        // air data that come 8.14 times a second over a bus, and were held up to 25: that is so, and no false alarm
+        let (held, warnings): (Vec<&Finding>, Vec<&Finding>) =
+            (warnings.into_iter()).partition(|finding| finding.code == "held_channel");
+        for finding in held {
+            let channel = finding.channel.as_deref();
+            assert!(
+                matches!(channel, Some("V_cas" | "mach")),
+                "{name}: {finding:?}"
+            );
+            assert!(finding.message.contains("(8.13"), "{name}: {finding:?}");
+        }
         assert!(
             warnings.len() * 4 < channels,
             "{name}: {} warnings on {channels} channels",

@@ -1,9 +1,9 @@
 //! What inputs do between samples: where the other assumption explains the data far better, that is said.
 //!
-//! One evaluation with the other assumption at the estimate, and the step that would follow from there: what the cost
-//! would come down to, to second order, with all parameters adjusted.
+//! Where residuals still follow an input, one evaluation with the other assumption at the estimate, and the step that would
+//! follow from there: what the cost would come down to, to second order, with all parameters adjusted.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, SMatrix, SVector};
 
 use crate::estimate::answer::Solution;
 use crate::estimate::evaluation::evaluator::Evaluator;
@@ -24,7 +24,7 @@ const LEAST: f64 = 20.0;
 pub(super) fn findings(problem: &Problem, solution: &Solution) -> Vec<Finding> {
     let options = &problem.options;
     let fit = options.estimator == Estimator::OutputError && solution.estimate.outcome.is_minimum();
-    if !fit || problem.model.states.is_empty() || !jumps(problem) {
+    if !fit || problem.model.states.is_empty() || !jumps(problem) || !follow(problem, solution) {
         return Vec::new();
     }
     let other = match options.input_interpolation {
@@ -65,6 +65,47 @@ pub(super) fn findings(problem: &Problem, solution: &Solution) -> Vec<Finding> {
     );
     let finding = Finding::new(FindingCode::InputInterpolation, message, remedy);
     vec![finding.at("/options/input_interpolation")]
+}
+
+/// The share of a residual that the neighbouring samples of an input must explain before more is looked into.
+const FOLLOWS: f64 = 0.05;
+/// Samples of the input: two before, the one itself, two behind.
+const NEIGHBOURS: usize = 5;
+
+/// Whether the residual of some output still follows some input.
+fn follow(problem: &Problem, solution: &Solution) -> bool {
+    let outputs = 0..problem.model.outputs.len();
+    outputs.into_iter().any(|output| {
+        let inputs = 0..problem.model.inputs.len();
+        inputs
+            .into_iter()
+            .any(|input| explained(problem, solution, output, input) > FOLLOWS)
+    })
+}
+
+/// The share of an output's residual that is a sum of neighbouring samples of an input.
+fn explained(problem: &Problem, solution: &Solution, output: usize, input: usize) -> f64 {
+    let mut normal = SMatrix::<f64, NEIGHBOURS, NEIGHBOURS>::zeros();
+    let mut right = SVector::<f64, NEIGHBOURS>::zeros();
+    let (mut total, mut mean, mut count) = (0.0, 0.0, 0.0);
+    let series = problem.segments.iter().zip(&solution.histories);
+    for (segment, history) in series {
+        let (u, residual) = (&segment.inputs[input], &history.outputs[output].residual);
+        for k in 2..segment.len().saturating_sub(2) {
+            if residual[k].is_finite() {
+                let row = SVector::<f64, NEIGHBOURS>::from_fn(|i, _| u[k + i - 2] - u[0]);
+                normal += row * row.transpose();
+                right += row * residual[k];
+                total += residual[k] * residual[k];
+                mean += residual[k];
+                count += 1.0;
+            }
+        }
+    }
+    total -= mean * mean / f64::max(count, 1.0);
+    let solution = normal.cholesky().map(|factor| factor.solve(&right));
+    let up = solution.map_or(0.0, |solution| solution.dot(&right));
+    if total > 0.0 { up / total } else { 0.0 }
 }
 
 /// What the cost would come down to by the step from here.

@@ -108,11 +108,11 @@ fn finding(name: &str, values: &[f64], grid: f64, step: f64) -> Finding {
         .filter(|&k| values[k] == values[k - 1])
         .collect();
     let every = match (grid - grid.round()).abs() < 0.02 {
-        true => format!("every {}", ordinal(grid.round() as usize)),
-        false => format!("one of {grid:.2}"),
+        true => format!("every {} row", ordinal(grid.round() as usize)),
+        false => format!("one of {grid:.2} rows"),
     };
     let message = format!(
-        "it is new in {every} row only ({:.4} Hz in a recording of {:.4} Hz) and repeated in between: late by {:.3} s on average, and counted {:.1} times",
+        "it is new in {every} only ({:.4} Hz in a recording of {:.4} Hz) and repeated in between: late by {:.3} s on average, and counted {:.1} times",
         1.0 / (grid * step),
         1.0 / step,
         (grid - 1.0) / 2.0 * step,

@@ -11,6 +11,8 @@ pub struct Record<'a> {
     pub time: Cow<'a, [f64]>,
     /// Of `time`.
     pub sampling: Cow<'a, Sampling>,
+    /// The row of the recording that its first sample is, from 0.
+    pub first_row: usize,
     /// All of one length.
     pub series: Vec<Series<'a>>,
 }
@@ -42,6 +44,7 @@ impl<'a> Record<'a> {
         Self {
             time: Cow::Borrowed(maneuver.time()),
             sampling: Cow::Borrowed(maneuver.sampling()),
+            first_row: 0,
             series: series.collect(),
         }
     }

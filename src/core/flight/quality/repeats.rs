@@ -55,9 +55,8 @@ pub(super) fn stuck(
     let longest = stuck.iter().max_by_key(|stretch| stretch.len())?;
     let severity = severity_of(stuck.iter().map(|stretch| stretch.start));
     let message = format!(
-        "{} value(s) in a row are exactly equal from row {}, in a channel that otherwise changes ({} such stretch(es))",
+        "{} value(s) in a row are exactly equal, in a channel that otherwise changes ({} such stretch(es))",
         longest.len(),
-        longest.start + 1,
         stuck.len()
     );
     let rows: Vec<usize> = stuck.iter().map(|stretch| stretch.start).collect();

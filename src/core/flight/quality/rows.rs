@@ -185,10 +185,10 @@ pub(super) fn blocks(record: &Record<'_>) -> Option<Finding> {
     let (again, first) = longest_block(&hashes)?;
     let message = format!(
         "rows {} to {} repeat rows {} to {} in every channel that changes",
-        again.start + 1,
-        again.end,
-        first + 1,
-        first + again.len()
+        record.first_row + again.start + 1,
+        record.first_row + again.end,
+        record.first_row + first + 1,
+        record.first_row + first + again.len()
     );
     let remedy =
         "cut one of the two with \"rows\": what is counted twice makes error bounds too small";

@@ -82,6 +82,7 @@ fn record<'r>(
     Record {
         time: Cow::Borrowed(time),
         sampling,
+        first_row: rows.start,
         series: all,
     }
 }
