@@ -31,10 +31,10 @@ fn rounded(channel: &Channel) -> Channel {
     }
 }
 
-fn corrupted(
-    seed: u64,
-    wrong: &dyn Fn(u64, &mut Vec<f64>, &mut Vec<(String, Channel)>),
-) -> Vec<Finding> {
+/// What is put wrong of time and channels, by a seed.
+type Wrong = dyn Fn(u64, &mut Vec<f64>, &mut Vec<(String, Channel)>);
+
+fn corrupted(seed: u64, wrong: &Wrong) -> Vec<Finding> {
     let maneuver = clean(seed);
     let mut time = maneuver.time().to_vec();
     let channels = maneuver.channels().iter();
@@ -49,8 +49,6 @@ fn of<'c>(channels: &'c mut [(String, Channel)], name: &str) -> &'c mut Vec<f64>
     let channel = channels.iter_mut().find(|(known, _)| known == name);
     &mut channel.expect("the channel").1.values
 }
-
-type Wrong = dyn Fn(u64, &mut Vec<f64>, &mut Vec<(String, Channel)>);
 
 #[test]
 fn what_was_put_wrong_is_found() {

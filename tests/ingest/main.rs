@@ -6,7 +6,7 @@ mod common {
     pub(crate) mod repository;
 }
 
-mod flight_data;
 mod corruptions;
 mod findings;
+mod flight_data;
 mod formats;

@@ -9,6 +9,7 @@ use crate::estimate::output_error::second_try;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::progress::{Progress, Watcher};
+use crate::flight::FindingCode;
 
 /// Estimates θ as the problem's options say; what a reader of the answer should know is in its findings.
 ///
@@ -27,7 +28,8 @@ pub fn estimate(problem: &Problem, watcher: &mut Watcher<'_>) -> Result<Solution
     let found = findings(problem, &solution);
     let estimate = &mut solution.estimate;
     estimate.findings.extend(found);
-    let short = problem.options.max_iterations > 0 && estimate.outcome.is_short();
+    let not_converged = FindingCode::NotConverged.name();
+    let short = (estimate.findings.iter()).any(|finding| finding.code == not_converged);
     for row in &mut estimate.parameters {
         row.provisional = short && !row.fixed;
     }

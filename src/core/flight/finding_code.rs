@@ -11,7 +11,7 @@ macro_rules! codes {
         }
 
         impl FindingCode {
-            /// All of them, in the order of the documentation: of recordings, of jobs, of fits.
+            /// All of them, in the order of the documentation: of files, of recordings, of jobs, of fits.
             pub const ALL: &'static [Self] = &[$(Self::$variant,)+];
 
             /// As it stands in `code`. It never changes its meaning.
@@ -33,6 +33,30 @@ macro_rules! codes {
 }
 
 codes! {
+    /// A column of the file was left out, and why.
+    LeftOut "left_out" Warning;
+    /// A channel goes by another name than the file gives it.
+    Renamed "renamed" Note;
+    /// A column of the file has no unit: it was taken for a pure number.
+    NoUnit "no_unit" Note;
+    /// The layout of the file was recognised: which header, delimiter or mapping it was read with.
+    Recognised "recognised" Note;
+    /// A channel that a mapping knows is not in the file.
+    Absent "absent" Note;
+    /// The text is in another encoding than UTF-8, or has characters that are none.
+    Encoding "encoding" Note;
+    /// Zero bytes at the end of the file, as of a preallocated log, were passed over.
+    ZeroBytes "zero_bytes" Note;
+    /// Lines behind the table were passed over.
+    Footer "footer" Note;
+    /// The last line of the file is cut off: it was left out.
+    IncompleteLine "incomplete_line" Warning;
+    /// The header stands in the file again: a logger was switched on a second time.
+    RepeatedHeader "repeated_header" Note;
+    /// Rows have the time of the row before them.
+    RepeatedTime "repeated_time" Warning;
+    /// Rows at the beginning have no time yet, and were left out.
+    NoTimeYet "no_time_yet" Note;
     /// The recording stopped and started again.
     Gap "gap" Warning;
     /// Steps of time differ by more than the rounding of the time column explains.
@@ -71,6 +95,12 @@ codes! {
     AssumedConstants "assumed_constants" Warning;
     /// Inputs that are held between samples explain the data far better than the straight lines that were assumed, or the reverse.
     InputInterpolation "input_interpolation" Warning;
+    /// Integration steps are too long for the accuracy of the estimate: with half their length a parameter would move.
+    StepTooLong "step_too_long" Warning;
+    /// A motion of the estimate is at the edge of what an integration step can follow.
+    ModeAtEdge "mode_at_edge" Warning;
+    /// With its start values the model grows so fast that no simulation follows the motion.
+    UnstableModel "unstable_model" Warning;
     /// The solver stopped short of a minimum: the numbers are not an estimate, and their error bounds mean little.
     NotConverged "not_converged" Fault;
     /// A parameter is held at a bound.

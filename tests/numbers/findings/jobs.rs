@@ -114,7 +114,9 @@ fn held_inputs_that_are_taken_as_straight_lines_are_told() {
     );
     let hold = json!({"options": {"input_interpolation": "hold"}});
     let held = solve(model, hold, &[maneuver]);
-    assert!(!codes(&held.estimate.findings).contains(&"input_interpolation"));
+    for code in ["input_interpolation", "held_channel"] {
+        assert!(!codes(&held.estimate.findings).contains(&code), "{code}");
+    }
     for (name, truth) in [("Lp", -2.0), ("Lda", 6.0)] {
         let row = parameter(&held, name);
         assert!(

@@ -6,7 +6,9 @@ use crate::flight::{Finding, FindingCode, Severity};
 
 pub(super) fn findings(estimate: &Estimate, estimated: bool) -> Vec<Finding> {
     let mut findings = Vec::new();
-    if estimated && estimate.outcome.is_short() {
+    // what is reproduced to rounding has no lower cost to step to
+    let is_exact = estimate.outcome == Outcome::Stalled && estimate.error_bounds.is_none();
+    if estimated && estimate.outcome.is_short() && !is_exact {
         findings.push(not_converged(estimate));
     }
     let held = (estimate.parameters.iter()).filter(|row| row.at_bound.is_some());

@@ -8,6 +8,7 @@ use super::twice::Used;
 use crate::flight::{Finding, FindingCode, Maneuver, Record, Sampling, Series, Unit, quality_of};
 use crate::job::spec::JobSpec;
 use crate::model::{Model, Quantity};
+use crate::simulate::InputInterpolation;
 
 /// Of one maneuver, `parts` being what was made of it.
 pub(super) fn findings(
@@ -26,8 +27,17 @@ pub(super) fn findings(
     let record = record(spec, model, index, maneuver, rows.clone(), parts);
     let told_elsewhere = [FindingCode::Gap.name(), FindingCode::MissingValues.name()];
     let found = quality_of(&record).into_iter();
+    // a command that a computer holds is what the job says that it is
+    let holds = spec.options.input_interpolation == InputInterpolation::Hold;
+    let is_meant = |finding: &Finding| {
+        let inputs = model.inputs.iter().map(|input| Some(&input.name));
+        let is_input = inputs
+            .into_iter()
+            .any(|name| name == finding.channel.as_ref());
+        holds && is_input && finding.code == FindingCode::HeldChannel.name()
+    };
     found
-        .filter(|finding| !told_elsewhere.contains(&finding.code.as_str()))
+        .filter(|finding| !told_elsewhere.contains(&finding.code.as_str()) && !is_meant(finding))
         .map(|mut finding| {
             finding.rows.iter_mut().for_each(|row| *row += rows.start);
             finding.of_recording(&label)
