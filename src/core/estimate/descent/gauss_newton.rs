@@ -1,6 +1,7 @@
 //! Gauss-Newton or Levenberg-Marquardt on the likelihood concentrated in R.
 
 use super::Descent;
+use super::fallback::Fallback;
 use super::iterate::{Iterate, Taken};
 use super::search::{Nothing, Search};
 use super::stopped::Stopped;
@@ -21,7 +22,8 @@ pub(crate) fn descend<'p>(
     let mut evaluator = Evaluator::on_all_cores(problem);
     let mut current = Iterate::at(problem, &mut evaluator, theta)?;
     let first_information = Some(current.information.clone());
-    let mut search = Search::new(problem);
+    let mut fallback = Fallback::new(&problem.options);
+    let mut search = Search::new(problem, fallback.method());
     let mut taken = Taken::default();
     let mut iteration = 0;
     let stopped = loop {
@@ -38,7 +40,16 @@ pub(crate) fn descend<'p>(
         if iteration == problem.options.max_iterations {
             break Stopped::Budget { distance };
         }
-        match search.onward(&mut evaluator, &current, newton) {
+        if fallback.turns_at(iteration) {
+            search = Search::new(problem, fallback.method());
+        }
+        let mut found = search.onward(&mut evaluator, &current, newton);
+        if let Err(nothing) = found {
+            search = Search::new(problem, fallback.turn());
+            let other = search.onward(&mut evaluator, &current, newton);
+            found = other.map_err(|other| other.or(nothing));
+        }
+        match found {
             Ok(found) => {
                 (current, taken) = *found;
                 iteration += 1;

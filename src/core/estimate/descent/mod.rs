@@ -3,6 +3,7 @@
 
 pub(super) mod acceleration;
 pub(super) mod damping;
+pub(super) mod fallback;
 pub(super) mod gauss_newton;
 pub(super) mod iterate;
 pub mod quasi_newton;

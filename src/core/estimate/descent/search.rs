@@ -6,7 +6,7 @@
 use nalgebra::DVector;
 
 use super::acceleration::Acceleration;
-use super::damping;
+use super::damping::Damping;
 use super::iterate::{Iterate, Taken};
 use super::step::{Newton, advanced, length};
 use crate::estimate::evaluation::evaluator::Evaluator;
@@ -23,25 +23,40 @@ pub(crate) const MOST_TRIALS: usize = 16;
 /// The cost is a sum over all samples: differences below this share of it are rounding.
 pub(crate) const ROUNDING: f64 = 1e-13;
 
+/// And gains below this share say nothing of the quadratic model.
+const FINEST: f64 = 1e-11;
+
 /// No θ of lower cost was found; was there any that could be simulated?
+#[derive(Clone, Copy)]
 pub(crate) struct Nothing {
     pub in_range: bool,
+}
+
+impl Nothing {
+    /// Of two searches from one place.
+    pub(crate) fn or(self, other: Self) -> Self {
+        Self {
+            in_range: self.in_range || other.in_range,
+        }
+    }
 }
 
 /// The memory that one search hands on to the next.
 pub(crate) struct Search<'p> {
     problem: &'p Problem,
-    damping: f64,
+    method: Method,
+    damping: Damping,
     acceleration: Acceleration,
     /// The last search went on beyond its first trial; so may this one.
     careful: bool,
 }
 
 impl<'p> Search<'p> {
-    pub(crate) fn new(problem: &'p Problem) -> Self {
+    pub(crate) fn new(problem: &'p Problem, method: Method) -> Self {
         Self {
             problem,
-            damping: damping::start(problem.options.method),
+            method,
+            damping: Damping::start(method),
             acceleration: Acceleration::default(),
             careful: false,
         }
@@ -55,6 +70,7 @@ impl<'p> Search<'p> {
         newton: &Newton,
     ) -> Result<Box<(Iterate, Taken)>, Nothing> {
         let accelerated = self.accelerated(evaluator, current, newton);
+        let is_accelerated = accelerated.is_some();
         let found = match accelerated {
             Some(found) => found,
             None => self.along(evaluator, current, newton)?,
@@ -64,7 +80,11 @@ impl<'p> Search<'p> {
             self.acceleration.forget();
         }
         self.careful = taken.halvings > 0;
-        self.damping = damping::eased(taken.damping);
+        if !is_accelerated {
+            let promised = newton.promised(&moved(current, next), self.damping.value());
+            let costs = (current.weighting.cost, next.weighting.cost);
+            self.damping.ease(gain(costs, promised));
+        }
         Ok(found)
     }
 
@@ -75,14 +95,14 @@ impl<'p> Search<'p> {
         current: &Iterate,
         newton: &Newton,
     ) -> Option<Box<(Iterate, Taken)>> {
-        if self.damping >= DAMPING_SLIGHT {
+        if self.damping.value() >= DAMPING_SLIGHT {
             return None;
         }
         let full = newton.step(0.0);
         let step = (self.acceleration).propose(&current.theta, full, &current.information)?;
         let theta = advanced(&self.problem.unknowns, &current.theta, &step, 1.0);
         let next = Iterate::at(self.problem, evaluator, theta).ok();
-        let found = next.and_then(|next| lower(current, next, self.damping, 0));
+        let found = next.and_then(|next| lower(current, next, self.damping.value(), 0));
         if found.is_none() {
             self.acceleration.forget();
         }
@@ -91,16 +111,16 @@ impl<'p> Search<'p> {
 
     /// Along the step, as short or as much damped as it must be.
     fn along(
-        &self,
+        &mut self,
         evaluator: &mut Evaluator<'_>,
         current: &Iterate,
         newton: &Newton,
     ) -> Result<Box<(Iterate, Taken)>, Nothing> {
         let problem = self.problem;
-        let (mut damping, mut share) = (self.damping, 1.0);
+        let mut share = 1.0;
         let mut in_range = false;
         for trial in 0..MOST_TRIALS {
-            let step = newton.step(damping);
+            let step = newton.step(self.damping.value());
             let theta = advanced(&problem.unknowns, &current.theta, &step, share);
             // the first trial is nearly always taken: its sensitivities are then not worked out twice
             let worth_it = (trial == 0 && !self.careful)
@@ -111,13 +131,13 @@ impl<'p> Search<'p> {
                 });
             if worth_it && let Ok(next) = Iterate::at(problem, evaluator, theta) {
                 in_range = true;
-                if let Some(found) = lower(current, next, damping, trial) {
+                if let Some(found) = lower(current, next, self.damping.value(), trial) {
                     return Ok(found);
                 }
             }
-            match problem.options.method {
+            match self.method {
                 Method::GaussNewton => share *= 0.5,
-                Method::LevenbergMarquardt => damping = damping::raised(damping),
+                Method::LevenbergMarquardt => self.damping.raise(),
             }
         }
         Err(Nothing { in_range })
@@ -140,12 +160,25 @@ fn lower(
     if !is_lower(&next.weighting, current) {
         return None;
     }
-    let moved = next.theta.iter().zip(&current.theta).map(|(a, b)| a - b);
-    let moved = DVector::from_iterator(current.theta.len(), moved);
     let taken = Taken {
-        length: length(&moved, &current.information),
+        length: length(&moved(current, &next), &current.information),
         damping,
         halvings,
     };
     Some(Box::new((next, taken)))
+}
+
+/// The step from one iterate to another.
+fn moved(current: &Iterate, next: &Iterate) -> DVector<f64> {
+    let moved = next.theta.iter().zip(&current.theta).map(|(a, b)| a - b);
+    DVector::from_iterator(current.theta.len(), moved)
+}
+
+/// What a step gained, as a share of what the quadratic model promised; all of it where both are rounding.
+pub(crate) fn gain((before, after): (f64, f64), promised: f64) -> f64 {
+    if promised > FINEST * (1.0 + before.abs()) {
+        (before - after) / promised
+    } else {
+        1.0
+    }
 }

@@ -5,9 +5,9 @@ use nalgebra::DVector;
 use super::evaluation::FilterEvaluator;
 use super::iterate::Iterate;
 use super::limit::restore;
-use crate::estimate::descent::damping;
+use crate::estimate::descent::damping::Damping;
 use crate::estimate::descent::iterate::Taken;
-use crate::estimate::descent::search::{MOST_TRIALS, ROUNDING};
+use crate::estimate::descent::search::{MOST_TRIALS, Nothing, ROUNDING, gain};
 use crate::estimate::descent::step::length;
 use crate::estimate::likelihood::weighting::Weighting;
 use crate::estimate::options::Method;
@@ -19,26 +19,20 @@ pub(super) struct Trial {
     pub weighting: Weighting,
 }
 
-/// No unknowns of lower cost were found; were there any that could be predicted with?
-pub(super) struct Nothing {
-    pub in_range: bool,
-}
-
 /// Looks for unknowns of lower cost: by halving the step (Gauss-Newton) or by damping it more (Levenberg-Marquardt).
 pub(super) fn search(
     evaluator: &mut FilterEvaluator<'_>,
     current: &Iterate,
-    start_damping: f64,
+    (method, damping): (Method, &mut Damping),
 ) -> Result<(Trial, Taken), Nothing> {
     let Some(newton) = &current.newton else {
         return Err(Nothing { in_range: true });
     };
-    let problem = evaluator.problem;
     let most = current.weighting.cost + ROUNDING * (1.0 + current.weighting.cost.abs());
-    let (mut damping, mut share) = (start_damping, 1.0);
+    let mut share = 1.0;
     let mut in_range = false;
     for halvings in 0..MOST_TRIALS {
-        let step = current.step(evaluator, newton, damping) * share;
+        let step = current.step(evaluator, newton, damping.value()) * share;
         if let Ok(trial) = trial(evaluator, current, &step) {
             in_range = true;
             if trial.weighting.cost <= most {
@@ -46,18 +40,20 @@ pub(super) fn search(
                 let mut moved = DVector::from_iterator(step.len(), moved);
                 // these follow from the others, and count with them
                 current.limit.places.iter().for_each(|&i| moved[i] = 0.0);
-                let length = length(&moved, &current.information);
                 let taken = Taken {
-                    length,
-                    damping,
+                    length: length(&moved, &current.information),
+                    damping: damping.value(),
                     halvings,
                 };
+                let promised = newton.promised(&moved, damping.value());
+                let costs = (current.weighting.cost, trial.weighting.cost);
+                damping.ease(gain(costs, promised));
                 return Ok((trial, taken));
             }
         }
-        match problem.options.method {
+        match method {
             Method::GaussNewton => share *= 0.5,
-            Method::LevenbergMarquardt => damping = damping::raised(damping),
+            Method::LevenbergMarquardt => damping.raise(),
         }
     }
     Err(Nothing { in_range })

@@ -7,12 +7,14 @@ use super::collinear::CollinearSet;
 use super::filter::FilterEstimate;
 use super::fit::OutputFit;
 use super::identifiability::Identifiability;
+use super::integration::Integration;
 use super::iteration::Outcome;
 use super::mode::Mode;
 use super::number::null_as_nan;
 use super::parameter::{Bound, ParameterEstimate};
 use super::prediction::Prediction;
 use crate::estimate::options::error_bounds::ErrorBoundsKind;
+use crate::flight::Finding;
 
 /// The answer of an estimation job.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
@@ -57,9 +59,15 @@ pub struct Estimate {
     pub prediction: Vec<Prediction>,
     /// Samples used, over all segments.
     pub samples: usize,
+    /// How the model was stepped through time; none with equation error, which does not step it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub integration: Option<Integration>,
     /// What the filter-error estimator adds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub filter: Option<FilterEstimate>,
+    /// What to know before the numbers are used.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub findings: Vec<Finding>,
     /// Modes of the motion, fastest first; none for reconstruction models.
     #[serde(default)]
     pub modes: Vec<Mode>,
@@ -73,7 +81,10 @@ fn conventional() -> Option<ErrorBoundsKind> {
 impl Estimate {
     /// What a reader of the tables should know beside them.
     pub fn remarks(&self) -> Vec<String> {
-        let mut remarks = Vec::new();
+        let findings = self.findings.iter();
+        let mut remarks: Vec<String> = findings
+            .map(|finding| format!("{}; {}", finding.message, finding.remedy))
+            .collect();
         if self.error_bounds.is_none() {
             remarks.push(
                 "an output is reproduced to rounding, as data without noise are: error bounds would mean nothing and are left out".to_string(),

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::flight::{Dimension, Fault, Finding, Maneuver, Severity, escape};
 use crate::job::spec::{Gaps, JobSpec, ManeuverUse};
 use crate::model::{ChannelFormula, Model, Quantity, Recorded};
-use crate::simulate::{Segment, Steps};
+use crate::simulate::{Segment, Steps, Substeps};
 
 /// Some rows of a recording, and what the job makes of them.
 pub(super) struct Stretch<'m> {
@@ -217,6 +217,7 @@ pub(super) fn segment(
         label: stretch.label.clone(),
         time: stretch.time().to_vec(),
         steps: stretch.steps.clone(),
+        substeps: Substeps::default(),
     }
 }
 
