@@ -29,12 +29,22 @@ use trimtab_core::job::{self, JobSpec};
 use trimtab_core::model::ModelDocument;
 
 const CASES: [&str; 9] = [
-    "TC01", "TC03_ailrud1", "TC04", "TC11_elv1", "TC22", "TC22_x0free", "TC27_qst01", "TC32", "TC33",
+    "TC01",
+    "TC03_ailrud1",
+    "TC04",
+    "TC11_elv1",
+    "TC22",
+    "TC22_x0free",
+    "TC27_qst01",
+    "TC32",
+    "TC33",
 ];
 const MOST_ITERATIONS: usize = 700;
 
 fn prepared(document: &ModelDocument, maneuvers: &[Arc<Maneuver>], changes: &Value) -> Problem {
-    let uses = maneuvers.iter().map(|maneuver| json!({"id": maneuver.digest(), "gaps": "join"}));
+    let uses = maneuvers
+        .iter()
+        .map(|maneuver| json!({"id": maneuver.digest(), "gaps": "join"}));
     let mut spec = json!({
         "model": "given", "maneuvers": uses.collect::<Vec<Value>>(),
         "options": {"error_bounds": "conventional", "steps_per_sample": 1, "max_iterations": MOST_ITERATIONS},
@@ -61,21 +71,30 @@ fn published(directory: &Path, name: &str) -> Problem {
             json!({"id": maneuver.digest(), "rows": rows, "gaps": "join", "label": (i + 1).to_string()})
         })
         .collect();
-    prepared(&document, &maneuvers, &json!({"channels": case.channels, "maneuvers": uses}))
+    prepared(
+        &document,
+        &maneuvers,
+        &json!({"channels": case.channels, "maneuvers": uses}),
+    )
 }
 
 fn peers(directory: &Path, name: &str) -> Problem {
     let start = |value: f64| json!({"start": value});
-    let read = |file: &str| recordings::maneuver(&std::fs::read(directory.join(file)).expect("a file"));
+    let read =
+        |file: &str| recordings::maneuver(&std::fs::read(directory.join(file)).expect("a file"));
     let document = |text: &str| toml::from_str::<ModelDocument>(text).expect("a document");
     match name {
         "P1" => prepared(
-            &document(include_str!("../../src/core/model/catalog/short-period.toml")),
+            &document(include_str!(
+                "../../src/core/model/catalog/short-period.toml"
+            )),
             &[read("attas_elv1.csv")],
             &json!({}),
         ),
         "P2" => prepared(
-            &document(include_str!("../../src/core/model/catalog/lateral-directional-2.toml")),
+            &document(include_str!(
+                "../../src/core/model/catalog/lateral-directional-2.toml"
+            )),
             &[read("attas_ailrud1.csv")],
             &json!({
                 "channels": {"da": "(da_right - da_left)/2"},
@@ -90,7 +109,11 @@ fn peers(directory: &Path, name: &str) -> Problem {
             let recording = reconstruction::Truth::new().recording(1, 1.0);
             prepared(&reconstruction::document(), &[recording], &json!({}))
         }
-        _ => prepared(&document(include_str!("hfb320.toml")), &[read("hfb320_1_10.csv")], &json!({})),
+        _ => prepared(
+            &document(include_str!("hfb320.toml")),
+            &[read("hfb320_1_10.csv")],
+            &json!({}),
+        ),
     }
 }
 
@@ -126,8 +149,10 @@ fn compare_random(name: &str, problem: &Problem, starts: usize) {
                 return found;
             }
             let mut random = ChaCha8Rng::seed_from_u64(number as u64);
-            let drawn: Vec<f64> =
-                theta.iter().map(|value| value * random.random_range(0.0..=2.0)).collect();
+            let drawn: Vec<f64> = theta
+                .iter()
+                .map(|value| value * random.random_range(0.0..=2.0))
+                .collect();
             let mut problem = at(problem, &drawn);
             problem.options.max_iterations = 200;
             found.push(BOTH.map(|method| solved(&problem, method)));
@@ -137,35 +162,56 @@ fn compare_random(name: &str, problem: &Problem, starts: usize) {
     let mut all: Vec<[Option<Estimate>; 2]> = Vec::new();
     std::thread::scope(|scope| {
         let running: Vec<_> = (0..threads).map(|_| scope.spawn(some)).collect();
-        running.into_iter().for_each(|thread| all.extend(thread.join().expect("a thread")));
+        running
+            .into_iter()
+            .for_each(|thread| all.extend(thread.join().expect("a thread")));
     });
-    let best = all.iter().flatten().flatten().map(|e| e.cost).fold(reference.estimate.cost, f64::min);
+    let best = all
+        .iter()
+        .flatten()
+        .flatten()
+        .map(|e| e.cost)
+        .fold(reference.estimate.cost, f64::min);
     let is_best = |e: &Option<Estimate>| e.as_ref().is_some_and(|e| e.cost < best + 0.01);
     let mut line = format!("{name}:");
     for (i, label) in ["LM", "GN"].into_iter().enumerate() {
         let ended = all.iter().filter(|pair| is_best(&pair[i])).count();
         let of = |outcome: Outcome| {
-            all.iter().filter(|p| p[i].as_ref().is_some_and(|e| e.outcome == outcome)).count()
+            all.iter()
+                .filter(|p| p[i].as_ref().is_some_and(|e| e.outcome == outcome))
+                .count()
         };
         line += &format!(
             " {label} best {ended}/{starts} budget {} stalled {} diverged {};",
-            of(Outcome::Budget), of(Outcome::Stalled), of(Outcome::Diverged)
+            of(Outcome::Budget),
+            of(Outcome::Stalled),
+            of(Outcome::Diverged)
         );
     }
     let both: Vec<(usize, usize, usize, usize)> = all
         .iter()
         .filter(|pair| is_best(&pair[0]) && is_best(&pair[1]))
         .map(|pair| {
-            let of = |i: usize| pair[i].as_ref().map_or((0, 0), |e| (e.iterations, e.evaluations + e.simulations));
+            let of = |i: usize| {
+                pair[i]
+                    .as_ref()
+                    .map_or((0, 0), |e| (e.iterations, e.evaluations + e.simulations))
+            };
             (of(0).0, of(1).0, of(0).1, of(1).1)
         })
         .collect();
     let median = |pick: &dyn Fn(&(usize, usize, usize, usize)) -> usize| {
         let mut values: Vec<usize> = both.iter().map(pick).collect();
         values.sort_unstable();
-        (values.get(values.len() / 2).copied(), values.last().copied())
+        (
+            values.get(values.len() / 2).copied(),
+            values.last().copied(),
+        )
     };
-    let ratio = both.iter().map(|b| b.0 as f64 / b.1.max(1) as f64).fold(0.0, f64::max);
+    let ratio = both
+        .iter()
+        .map(|b| b.0 as f64 / b.1.max(1) as f64)
+        .fold(0.0, f64::max);
     let above = both.iter().filter(|b| b.0 > 2 * b.1).count();
     let budget_alone = all
         .iter()
@@ -174,7 +220,10 @@ fn compare_random(name: &str, problem: &Problem, starts: usize) {
         .count();
     println!(
         "{line} of both: median, most iterations LM {:?} GN {:?}, looks LM {:?} GN {:?}; largest ratio {ratio:.1}, above twice {above}; LM budget where GN converges {budget_alone}",
-        median(&|b| b.0), median(&|b| b.1), median(&|b| b.2), median(&|b| b.3)
+        median(&|b| b.0),
+        median(&|b| b.1),
+        median(&|b| b.2),
+        median(&|b| b.3)
     );
 }
 
@@ -182,21 +231,42 @@ fn main() {
     let Some(directory) = flight_data::directory("bench methods") else {
         return;
     };
-    let words: Vec<String> = std::env::args().skip(1).filter(|w| !w.starts_with("--")).collect();
-    let starts = words.iter().find_map(|word| word.parse().ok()).unwrap_or(1000);
+    let words: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|w| !w.starts_with("--"))
+        .collect();
+    let starts = words
+        .iter()
+        .find_map(|word| word.parse().ok())
+        .unwrap_or(1000);
     let chosen = |name: &str| {
-        let names: Vec<&String> = words.iter().filter(|w| w.parse::<usize>().is_err()).collect();
+        let names: Vec<&String> = words
+            .iter()
+            .filter(|w| w.parse::<usize>().is_err())
+            .collect();
         names.is_empty() || names.iter().any(|word| name == word.as_str())
     };
     for name in CASES.into_iter().filter(|name| chosen(name)) {
         let problem = published(&directory, name);
         let told = BOTH.map(|method| match solved(&problem, method) {
-            Some(e) => format!("{} ({} looks) {} at {:.4}", e.iterations, e.evaluations + e.simulations, e.outcome.name(), e.cost),
+            Some(e) => format!(
+                "{} ({} looks) {} at {:.4}",
+                e.iterations,
+                e.evaluations + e.simulations,
+                e.outcome.name(),
+                e.cost
+            ),
             None => "cannot begin".to_string(),
         });
-        println!("{name}: Levenberg-Marquardt {}; Gauss-Newton {}", told[0], told[1]);
+        println!(
+            "{name}: Levenberg-Marquardt {}; Gauss-Newton {}",
+            told[0], told[1]
+        );
     }
-    for name in ["P1", "P2", "P3", "P4"].into_iter().filter(|name| chosen(name)) {
+    for name in ["P1", "P2", "P3", "P4"]
+        .into_iter()
+        .filter(|name| chosen(name))
+    {
         compare_random(name, &peers(&directory, name), starts);
     }
 }

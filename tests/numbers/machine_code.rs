@@ -2,7 +2,8 @@
 
 use trimtab_core::model::{Model, ModelDocument, Start, catalog};
 use trimtab_core::simulate::{
-    Columns, InputInterpolation, Integrator, Outputs, Segment, Sensitivities, Steps, Substeps, simulate,
+    Columns, InputInterpolation, Integrator, Outputs, Segment, Sensitivities, Steps, Substeps,
+    simulate,
 };
 
 const SAMPLES: usize = 150;

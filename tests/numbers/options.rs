@@ -16,13 +16,17 @@ const SAMPLES: usize = 60;
 
 fn maneuver() -> Arc<Maneuver> {
     let step = 0.1;
-    let u: Vec<f64> = (0..SAMPLES).map(|k| if (k / 9) % 2 == 0 { 1.0 } else { -0.5 }).collect();
+    let u: Vec<f64> = (0..SAMPLES)
+        .map(|k| if (k / 9) % 2 == 0 { 1.0 } else { -0.5 })
+        .collect();
     let (mut x, mut y) = (0.2, Vec::new());
     for k in 0..SAMPLES {
         y.push(x + 0.1 + 0.02 * scatter(k, 0.4));
         x += step * (-1.5 * x + 2.0 * u[k]);
     }
-    let rate: Vec<f64> = (0..SAMPLES).map(|k| -1.5 * y[k] + 2.0 * u[k] + 0.05 * scatter(k, 0.1)).collect();
+    let rate: Vec<f64> = (0..SAMPLES)
+        .map(|k| -1.5 * y[k] + 2.0 * u[k] + 0.05 * scatter(k, 0.1))
+        .collect();
     let time = (0..SAMPLES).map(|k| k as f64 * step).collect();
     recording(time, &[("u", u), ("y", y), ("yd", rate)])
 }
@@ -62,11 +66,26 @@ fn choices() -> Vec<Vec<Choice>> {
         option("/options/method", vec![json!("gauss_newton")]),
         option(
             "/options/derivatives",
-            ["forward_difference", "central_difference", "complex_step", "adjoint"].map(technique).to_vec(),
+            [
+                "forward_difference",
+                "central_difference",
+                "complex_step",
+                "adjoint",
+            ]
+            .map(technique)
+            .to_vec(),
         ),
         option(
             "/options/start",
-            ["document", "equation_error", "nelder_mead", "multi_start", "multiple_shooting"].map(kind).to_vec(),
+            [
+                "document",
+                "equation_error",
+                "nelder_mead",
+                "multi_start",
+                "multiple_shooting",
+            ]
+            .map(kind)
+            .to_vec(),
         ),
         option("/options/integrator", vec![json!("euler"), json!("rk2")]),
         option("/options/steps_per_sample", vec![json!(1), json!(3)]),
@@ -79,14 +98,29 @@ fn choices() -> Vec<Vec<Choice>> {
             ],
         ),
         option("/options/error_bounds", vec![json!("conventional")]),
-        option("/options/process_noise", vec![json!({"x": {"start": 0.1}}), json!({"w": {"start": 0.0, "fixed": true}})]),
+        option(
+            "/options/process_noise",
+            vec![
+                json!({"x": {"start": 0.1}}),
+                json!({"w": {"start": 0.0, "fixed": true}}),
+            ],
+        ),
         option("/options/max_iterations", vec![json!(0), json!(2)]),
         option("/options/tolerance", vec![json!(1e-9), json!(1.0)]),
-        option("/parameters/a/prior", vec![json!({"mean": -1.5, "sd": 0.3})]),
-        option("/parameters/x_0/prior", vec![json!({"mean": 0.2, "sd": 0.1})]),
+        option(
+            "/parameters/a/prior",
+            vec![json!({"mean": -1.5, "sd": 0.3})],
+        ),
+        option(
+            "/parameters/x_0/prior",
+            vec![json!({"mean": 0.2, "sd": 0.1})],
+        ),
         option("/parameters/b/upper", vec![json!(1.2)]),
         option("/parameters/a/fixed", vec![json!(true)]),
-        option("/maneuvers/1/role", vec![json!("validation"), json!("final")]),
+        option(
+            "/maneuvers/1/role",
+            vec![json!("validation"), json!("final")],
+        ),
         option("/model/outputs/y/delay", vec![json!("tau")]),
     ]
 }
@@ -125,21 +159,33 @@ fn fault(spec: &Value, maneuver: &Arc<Maneuver>) -> Option<String> {
             Ok(plan) => plan,
             Err(faults) => {
                 let named = |pointer: &str| {
-                    ["/options/", "/kind", "/parameters", "/model/outputs/y/delay"].iter().any(|n| pointer.starts_with(n))
+                    [
+                        "/options/",
+                        "/kind",
+                        "/parameters",
+                        "/model/outputs/y/delay",
+                    ]
+                    .iter()
+                    .any(|n| pointer.starts_with(n))
                 };
-                let bad = faults.iter().find(|fault| !named(&fault.pointer) || fault.message.len() < 20);
+                let bad = faults
+                    .iter()
+                    .find(|fault| !named(&fault.pointer) || fault.message.len() < 20);
                 return bad.map(|fault| format!("refused without a name: {fault}"));
             }
         };
         let ran = match spec["kind"].as_str() {
             Some("diagnose") => job::run_diagnosis(&plan, &mut |_| ControlFlow::Continue(())),
-            Some("derivative_study") => job::run_study(&plan, &Looks::default(), &mut |_| ControlFlow::Continue(())),
+            Some("derivative_study") => {
+                job::run_study(&plan, &Looks::default(), &mut |_| ControlFlow::Continue(()))
+            }
             _ => job::run(&plan, &mut |_| ControlFlow::Continue(())),
         };
         match ran {
             Ok(result) => {
                 let rows = &result.estimate.parameters;
-                let finite = rows.iter().all(|row| row.estimate.is_finite()) && result.estimate.cost.is_finite();
+                let finite = rows.iter().all(|row| row.estimate.is_finite())
+                    && result.estimate.cost.is_finite();
                 (!finite).then(|| "an estimate that is not finite".to_string())
             }
             Err(faults) => Some(format!("accepted, and then: {faults}")),
@@ -163,10 +209,13 @@ fn every_pair_works_or_is_refused_by_name() {
             });
             let mut attempt = |chosen: &[&Choice]| {
                 let mut spec = base.clone();
-                chosen.iter().for_each(|(pointer, value)| put(&mut spec, pointer, value));
+                chosen
+                    .iter()
+                    .for_each(|(pointer, value)| put(&mut spec, pointer, value));
                 tried += 1;
                 if let Some(why) = fault(&spec, &maneuver) {
-                    let told: Vec<String> = chosen.iter().map(|(p, v)| format!("{p} = {v}")).collect();
+                    let told: Vec<String> =
+                        chosen.iter().map(|(p, v)| format!("{p} = {v}")).collect();
                     bad.push(format!("{estimator}, {kind}, {}: {why}", told.join(", ")));
                 }
             };
@@ -185,6 +234,11 @@ fn every_pair_works_or_is_refused_by_name() {
             }
         }
     }
-    assert!(bad.is_empty(), "{} of {tried}:\n{}", bad.len(), bad.join("\n"));
+    assert!(
+        bad.is_empty(),
+        "{} of {tried}:\n{}",
+        bad.len(),
+        bad.join("\n")
+    );
     assert!(tried > 2000, "{tried}");
 }

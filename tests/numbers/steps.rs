@@ -14,7 +14,11 @@ use trimtab_core::job::{self, JobResult};
 use trimtab_core::simulate::{Steps, Substeps};
 
 fn solve(model: &Value, options: Value, maneuver: &Arc<Maneuver>) -> JobResult {
-    let plan = plan(model.clone(), json!({"options": options}), std::slice::from_ref(maneuver));
+    let plan = plan(
+        model.clone(),
+        json!({"options": options}),
+        std::slice::from_ref(maneuver),
+    );
     job::run(&plan, &mut |_| ControlFlow::Continue(())).unwrap_or_else(|f| panic!("{f:#?}"))
 }
 
@@ -40,7 +44,9 @@ const ROLL: Linear = Linear {
     },
     model: |theta| {
         let parameters: serde_json::Map<String, Value> =
-            [start("a", theta[0], "1/s"), start("b", theta[1], "1/s")].into_iter().collect();
+            [start("a", theta[0], "1/s"), start("b", theta[1], "1/s")]
+                .into_iter()
+                .collect();
         json!({
             "name": "roll", "inputs": {"u": {}}, "parameters": parameters,
             "states": {"p": {"initial": "0", "derivative": "-a*p + b*u"}},
@@ -123,7 +129,10 @@ fn exact_fit(system: &Linear, truth: &[f64], u: &[f64], z: &[f64], h: f64) -> Ve
         }
         let normal = slopes.tr_mul(&slopes).cholesky().expect("definite");
         let change = normal.solve(&slopes.tr_mul(&residual));
-        theta.iter_mut().zip(&change).for_each(|(theta, change)| *theta += change);
+        theta
+            .iter_mut()
+            .zip(&change)
+            .for_each(|(theta, change)| *theta += change);
     }
     theta
 }
@@ -132,13 +141,22 @@ fn exact_fit(system: &Linear, truth: &[f64], u: &[f64], z: &[f64], h: f64) -> Ve
 fn input(samples: usize, h: f64) -> Vec<f64> {
     let level = |k: usize| {
         let t = k as f64 * h;
-        let slow = if (t / 1.7) as usize % 2 == 0 { 1.0 } else { -1.0 };
+        let slow = if (t / 1.7) as usize % 2 == 0 {
+            1.0
+        } else {
+            -1.0
+        };
         slow + 0.5 * scatter(k, 0.9)
     };
     (0..samples).map(level).collect()
 }
 
-fn recorded(system: &Linear, truth: &[f64], rate: f64, noise: f64) -> (Vec<f64>, Vec<f64>, Arc<Maneuver>) {
+fn recorded(
+    system: &Linear,
+    truth: &[f64],
+    rate: f64,
+    noise: f64,
+) -> (Vec<f64>, Vec<f64>, Arc<Maneuver>) {
     let (samples, h) = ((12.0 * rate) as usize + 120, 1.0 / rate);
     let u = input(samples, h);
     let z: Vec<f64> = exact(system, truth, &u, h)
@@ -152,7 +170,13 @@ fn recorded(system: &Linear, truth: &[f64], rate: f64, noise: f64) -> (Vec<f64>,
 }
 
 /// Of the fit: the largest distance from the exact one, in standard errors.
-fn distance(system: &Linear, names: &[&str], truth: &[f64], rate: f64, options: Value) -> (f64, JobResult) {
+fn distance(
+    system: &Linear,
+    names: &[&str],
+    truth: &[f64],
+    rate: f64,
+    options: Value,
+) -> (f64, JobResult) {
     let (u, z, maneuver) = recorded(system, truth, rate, 0.02);
     let near: Vec<f64> = truth.iter().map(|value| 0.98 * value).collect();
     let mut all = json!({"error_bounds": "conventional", "start": {"kind": "document"}});
@@ -177,9 +201,17 @@ fn first_order_modes_are_as_of_the_exact_solution() {
         for a in [1.0, 3.0, 8.0, 12.0, 20.0, 30.0, 45.0, 60.0] {
             let (far, result) = distance(&ROLL, &["a", "b"], &[a, 7.0 * a], rate, json!({}));
             let found = &result.estimate;
-            assert_eq!(found.outcome, Outcome::Converged, "{a} 1/s at {rate} Hz: {}", found.reason);
+            assert_eq!(
+                found.outcome,
+                Outcome::Converged,
+                "{a} 1/s at {rate} Hz: {}",
+                found.reason
+            );
             let steps = found.integration.as_ref().expect("steps").most_steps();
-            assert!(far < 0.1, "{a} 1/s at {rate} Hz, {steps} steps: {far} standard errors");
+            assert!(
+                far < 0.1,
+                "{a} 1/s at {rate} Hz, {steps} steps: {far} standard errors"
+            );
         }
     }
 }
@@ -193,9 +225,16 @@ fn second_order_modes_are_as_of_the_exact_solution() {
             let names = ["w", "d", "b"];
             let (far, result) = distance(&BENDING, &names, &truth, rate, json!({}));
             let found = &result.estimate;
-            assert!(found.outcome.is_minimum(), "{frequency} Hz at {rate} Hz: {}", found.reason);
+            assert!(
+                found.outcome.is_minimum(),
+                "{frequency} Hz at {rate} Hz: {}",
+                found.reason
+            );
             let steps = found.integration.as_ref().expect("steps").most_steps();
-            assert!(far < 0.1, "{frequency} Hz at {rate} Hz, {steps} steps: {far} standard errors");
+            assert!(
+                far < 0.1,
+                "{frequency} Hz at {rate} Hz, {steps} steps: {far} standard errors"
+            );
         }
     }
 }
@@ -209,9 +248,16 @@ fn a_step_that_is_too_long_is_told_by_what_halving_it_does() {
     let integration = result.estimate.integration.expect("steps");
     assert_eq!(integration.steps_per_sample, [1]);
     let halved = integration.halved.expect("a shift");
-    assert!(halved.most > 0.5 * far && halved.most < 2.0 * far, "{halved:?} {far}");
+    assert!(
+        halved.most > 0.5 * far && halved.most < 2.0 * far,
+        "{halved:?} {far}"
+    );
     assert_eq!(halved.shifts.len(), 2);
-    assert!((integration.fastest - 1.9).abs() < 0.2, "{}", integration.fastest);
+    assert!(
+        (integration.fastest - 1.9).abs() < 0.2,
+        "{}",
+        integration.fastest
+    );
     // and where the step is short enough, that is said too
     let (far, result) = distance(&ROLL, &["a", "b"], &[1.0, 7.0], 50.0, json!({}));
     let integration = result.estimate.integration.expect("steps");
@@ -230,10 +276,18 @@ fn the_shift_is_what_another_fit_with_halved_steps_finds() {
         };
         let (one, two) = (fit(1), fit(2));
         let halved = one.integration.expect("steps").halved.expect("a shift");
-        for ((a, b), shift) in one.parameters.iter().zip(&two.parameters).zip(&halved.shifts) {
+        for ((a, b), shift) in one
+            .parameters
+            .iter()
+            .zip(&two.parameters)
+            .zip(&halved.shifts)
+        {
             let moved = (b.estimate - a.estimate) / a.standard_error.expect("an error");
             let shift = shift.expect("a shift");
-            assert!((moved - shift).abs() < 0.1 * moved.abs() + 0.01, "{moved} {shift}");
+            assert!(
+                (moved - shift).abs() < 0.1 * moved.abs() + 0.01,
+                "{moved} {shift}"
+            );
         }
     }
 }
@@ -247,7 +301,10 @@ fn nonlinear(theta: &[f64]) -> Value {
 
 fn with_steps(problem: &Problem, substeps: Substeps) -> Problem {
     let mut problem = problem.clone();
-    problem.segments.iter_mut().for_each(|segment| segment.substeps = substeps);
+    problem
+        .segments
+        .iter_mut()
+        .for_each(|segment| segment.substeps = substeps);
     problem
 }
 
@@ -259,8 +316,16 @@ fn all_techniques_agree_on_several_steps() {
         for interpolation in ["linear", "hold"] {
             let (_, _, maneuver) = recorded(&ROLL, &[8.0, 40.0], 10.0, 0.02);
             let options = json!({"input_interpolation": interpolation});
-            let plan = plan(model.clone(), json!({"options": options}), std::slice::from_ref(&maneuver));
-            for substeps in [Substeps::Each(3), Substeps::Each(70), Substeps::NoLonger(0.04)] {
+            let plan = plan(
+                model.clone(),
+                json!({"options": options}),
+                std::slice::from_ref(&maneuver),
+            );
+            for substeps in [
+                Substeps::Each(3),
+                Substeps::Each(70),
+                Substeps::NoLonger(0.04),
+            ] {
                 for uneven in [false, true] {
                     let mut problem = with_steps(&plan.problem, substeps);
                     if uneven {
@@ -282,7 +347,11 @@ fn agree(problem: &Problem) {
         problem.options.derivatives = technique;
         let mut evaluator = Evaluator::new(&problem);
         let found = NormalEquations::at(&mut evaluator, &theta).expect("a cost");
-        (found.cost(), found.descent.clone(), found.information.clone())
+        (
+            found.cost(),
+            found.descent.clone(),
+            found.information.clone(),
+        )
     };
     let (cost, descent, information) = equations(Derivatives::ForwardSensitivities {});
     let size = descent.norm();
@@ -294,9 +363,18 @@ fn agree(problem: &Problem) {
             _ => 1e-9,
         };
         let (other, gradient, matrix) = equations(technique);
-        assert!((other - cost).abs() < 1e-9 * cost.abs(), "{technique:?}: {other} {cost}");
-        assert!((&gradient - &descent).norm() < share * size, "{technique:?}: {gradient} {descent}");
-        assert!((&matrix - &information).norm() < share * information.norm(), "{technique:?}");
+        assert!(
+            (other - cost).abs() < 1e-9 * cost.abs(),
+            "{technique:?}: {other} {cost}"
+        );
+        assert!(
+            (&gradient - &descent).norm() < share * size,
+            "{technique:?}: {gradient} {descent}"
+        );
+        assert!(
+            (&matrix - &information).norm() < share * information.norm(),
+            "{technique:?}"
+        );
     }
     let (adjoint, gradient) = CostAndGradient::new(problem).at(&theta).expect("a cost");
     assert!((adjoint - cost).abs() < 1e-9 * cost.abs());
@@ -312,7 +390,8 @@ fn many_steps_are_the_exact_solution() {
     let mut general = (ROLL.model)(&truth);
     general["states"]["p"]["derivative"] = json!("-a*p + b*u + 0*p^2");
     for model in [(ROLL.model)(&truth), general] {
-        let options = json!({"steps_per_sample": 200, "max_iterations": 0, "start": {"kind": "document"}});
+        let options =
+            json!({"steps_per_sample": 200, "max_iterations": 0, "start": {"kind": "document"}});
         let result = solve(&model, options, &maneuver);
         for (y, z) in result.histories[0].outputs[0].model.iter().zip(&z) {
             assert!((y - z).abs() < 1e-7, "{y} {z}");
@@ -339,7 +418,11 @@ fn a_number_out_of_range_is_refused_by_name() {
     let (_, _, maneuver) = recorded(&ROLL, &[2.0, 14.0], 10.0, 0.02);
     for steps in [json!(0), json!(1001)] {
         let options = json!({"options": {"steps_per_sample": steps}});
-        let faults = try_plan((ROLL.model)(&[2.0, 14.0]), options, std::slice::from_ref(&maneuver));
+        let faults = try_plan(
+            (ROLL.model)(&[2.0, 14.0]),
+            options,
+            std::slice::from_ref(&maneuver),
+        );
         let faults = faults.err().expect("a fault");
         let fault = faults.iter().next().expect("one");
         assert_eq!(fault.pointer, "/options/steps_per_sample");
@@ -350,9 +433,16 @@ fn a_number_out_of_range_is_refused_by_name() {
 #[test]
 fn a_stiff_model_is_refused_by_name() {
     let (_, _, maneuver) = recorded(&ROLL, &[2.0, 14.0], 10.0, 0.02);
-    let faults = try_plan((ROLL.model)(&[5e5, 3e6]), json!({}), std::slice::from_ref(&maneuver));
+    let faults = try_plan(
+        (ROLL.model)(&[5e5, 3e6]),
+        json!({}),
+        std::slice::from_ref(&maneuver),
+    );
     let faults = faults.err().expect("a fault");
-    let fault = faults.iter().find(|fault| fault.code == "too_stiff").expect("too stiff");
+    let fault = faults
+        .iter()
+        .find(|fault| fault.code == "too_stiff")
+        .expect("too stiff");
     assert!(fault.message.contains("'p'"), "{}", fault.message);
     // ten thousand times slower it is integrated
     let (far, _) = distance(&ROLL, &["a", "b"], &[300.0, 2100.0], 10.0, json!({}));

@@ -60,20 +60,38 @@ fn solve(options: Value) -> JobResult {
 fn output_error_says_that_it_cannot_follow_and_what_filter_error_finds() {
     let result = solve(json!({"input_interpolation": "hold"}));
     let found = result.estimate.findings;
-    let finding = found.iter().find(|finding| finding.code == "unstable_model");
+    let finding = found
+        .iter()
+        .find(|finding| finding.code == "unstable_model");
     let finding = finding.unwrap_or_else(|| panic!("{found:#?}"));
     assert_eq!(finding.severity, Severity::Warning);
-    assert!(finding.message.contains("30.000 1/s"), "{}", finding.message);
-    assert!(finding.message.contains("filter error finds a = "), "{}", finding.message);
+    assert!(
+        finding.message.contains("30.000 1/s"),
+        "{}",
+        finding.message
+    );
+    assert!(
+        finding.message.contains("filter error finds a = "),
+        "{}",
+        finding.message
+    );
     assert!(finding.remedy.contains("filter_error"));
     let filtered = solve(json!({"input_interpolation": "hold", "estimator": "filter_error"}));
     for (name, truth) in [("a", A), ("b", B)] {
         let row = parameter(&filtered, name);
         let error = row.standard_error.expect("an error");
-        assert!((row.estimate - truth).abs() < 4.0 * error, "{name}: {} ± {error}", row.estimate);
+        assert!(
+            (row.estimate - truth).abs() < 4.0 * error,
+            "{name}: {} ± {error}",
+            row.estimate
+        );
         assert!(error < 0.05 * truth.abs(), "{name} ± {error}");
     }
-    assert!(filtered.estimate.findings.is_empty(), "{:#?}", filtered.estimate.findings);
+    assert!(
+        filtered.estimate.findings.is_empty(),
+        "{:#?}",
+        filtered.estimate.findings
+    );
 }
 
 /// The same equations, stable: nothing to say.
@@ -81,7 +99,9 @@ fn output_error_says_that_it_cannot_follow_and_what_filter_error_finds() {
 fn a_stable_model_has_no_such_finding() {
     let mut stable = model();
     stable["parameters"]["a"]["start"] = json!(-4.0);
-    let u: Vec<f64> = (0..400).map(|k| if (k / 40) % 2 == 0 { 1.0 } else { -1.0 }).collect();
+    let u: Vec<f64> = (0..400)
+        .map(|k| if (k / 40) % 2 == 0 { 1.0 } else { -1.0 })
+        .collect();
     let (mut y, mut v, mut ys) = (0.0, 0.0, Vec::new());
     for k in 0..400 {
         ys.push(y + 0.01 * scatter(k, 1.0));
@@ -98,5 +118,9 @@ fn a_stable_model_has_no_such_finding() {
     let options = json!({"options": {"input_interpolation": "hold"}});
     let plan = plan(stable, options, &[maneuver]);
     let result = job::run(&plan, &mut |_| ControlFlow::Continue(())).unwrap();
-    assert!(result.estimate.findings.is_empty(), "{:#?}", result.estimate.findings);
+    assert!(
+        result.estimate.findings.is_empty(),
+        "{:#?}",
+        result.estimate.findings
+    );
 }

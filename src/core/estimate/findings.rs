@@ -1,6 +1,5 @@
 //! What a reader of an estimate must be told: steps too long for a motion, and models that no simulation can follow.
 
-use crate::estimate::accuracy::halved_steps::duration;
 use crate::estimate::answer::Solution;
 use crate::estimate::filter_error::finer_steps::filter_error_in_steps;
 use crate::estimate::options::estimator::Estimator;
@@ -32,7 +31,11 @@ pub(super) fn findings(problem: &Problem, solution: &Solution) -> Vec<Finding> {
         return Vec::new();
     }
     let found = &solution.estimate;
-    let all = [step_too_long(problem, found), at_edge(found), unstable(problem, found)];
+    let all = [
+        step_too_long(problem, found),
+        at_edge(found),
+        unstable(problem, found),
+    ];
     all.into_iter().flatten().collect()
 }
 
@@ -51,7 +54,10 @@ fn warning(code: &str, message: String, remedy: String) -> Finding {
 /// Halving the steps would move a parameter.
 fn step_too_long(problem: &Problem, found: &Estimate) -> Option<Finding> {
     let integration = found.integration.as_ref()?;
-    let halved = integration.halved.as_ref().filter(|halved| halved.most > SHIFT)?;
+    let halved = integration
+        .halved
+        .as_ref()
+        .filter(|halved| halved.most > SHIFT)?;
     let size = |shift: &Option<f64>| shift.map_or(0.0, f64::abs);
     let most = (0..halved.shifts.len())
         .max_by(|&a, &b| size(&halved.shifts[a]).total_cmp(&size(&halved.shifts[b])));
@@ -66,7 +72,9 @@ fn step_too_long(problem: &Problem, found: &Estimate) -> Option<Finding> {
     );
     let remedy = match problem.options.steps_per_sample {
         StepsPerSample::Number(_) => "say \"steps_per_sample\": \"auto\", or a larger number",
-        StepsPerSample::Auto(_) => "use the integrator \"rk4\", say \"steps_per_sample\" with a larger number, or record at a higher rate",
+        StepsPerSample::Auto(_) => {
+            "use the integrator \"rk4\", say \"steps_per_sample\" with a larger number, or record at a higher rate"
+        }
     };
     Some(warning("step_too_long", message, remedy.to_string()))
 }
@@ -96,20 +104,23 @@ fn unstable(problem: &Problem, found: &Estimate) -> Option<Finding> {
         problem.unknowns.parameters(index, &theta, &mut parameters);
         let Rates { growth, .. } =
             StateMatrixAt::new(&problem.model, &parameters).rates_at_start(segment, &parameters);
-        let duration = duration(segment);
+        let duration = segment.duration();
         if worst.is_none_or(|(growth_before, before)| growth_before * before < growth * duration) {
             worst = Some((growth, duration));
         }
     }
     let (growth, duration) = worst?;
-    let fits = found.outcome.is_minimum()
-        && (found.outputs.iter()).all(|output| output.r_squared > GOOD);
+    let fits =
+        found.outcome.is_minimum() && (found.outputs.iter()).all(|output| output.r_squared > GOOD);
     if growth * duration < DOUBTFUL || (fits && growth * duration < HOPELESS) {
         return None;
     }
     let message = format!(
         "the model is unstable with its start values ({:.3} 1/s, over {:.3} s): a simulation multiplies each error by e^{:.0}, so that output error cannot follow the motion, and its estimate may be that of another model{}",
-        growth, duration, growth * duration, offer(problem).unwrap_or_default()
+        growth,
+        duration,
+        growth * duration,
+        offer(problem).unwrap_or_default()
     );
     let remedy = "use the estimator \"filter_error\", which corrects the states at each sample";
     Some(warning("unstable_model", message, remedy.to_string()))
@@ -127,7 +138,9 @@ fn offer(problem: &Problem) -> Option<String> {
     other.options.estimator = Estimator::FilterError;
     other.options.derivatives = Derivatives::default();
     other.options.max_iterations = other.options.max_iterations.min(MOST_ITERATIONS);
-    let found = filter_error_in_steps(&other, &mut unobserved).ok()?.estimate;
+    let found = filter_error_in_steps(&other, &mut unobserved)
+        .ok()?
+        .estimate;
     if !found.outcome.is_minimum() {
         return Some(format!("; filter error ends {}", found.outcome.name()));
     }

@@ -67,7 +67,9 @@ impl<'m> Outputs<'m> {
             let len = BLOCK.min(segment.len() - first);
             let advanced = self.trajectory.advance(segment, first, len);
             advanced.map_err(|diverged| diverged.in_samples(refined.as_ref()))?;
-            let sample = refined.as_ref().map_or(first, |refined| refined.sample_from(first));
+            let sample = refined
+                .as_ref()
+                .map_or(first, |refined| refined.sample_from(first));
             self.passed.push((sample, self.trajectory.first_state()));
             self.outputs.evaluate(0, len, &self.trajectory);
             let over_block = |output: usize| &self.outputs.over_block(0, output)[..len];

@@ -20,7 +20,15 @@ pub struct Rates {
     pub growth: f64,
 }
 
+/// Growth, as the exponent of e, beyond which no number is left: steps of whatever length diverge.
+const BOUNDLESS: f64 = 500.0;
+
 impl Rates {
+    /// Whether a simulation of so many seconds can stay in the range of numbers.
+    pub(crate) fn stay_in_range(&self, duration: f64) -> bool {
+        self.growth * duration < BOUNDLESS
+    }
+
     fn add(&mut self, eigenvalue: Complex64) {
         self.fastest = self.fastest.max(eigenvalue.norm());
         self.growth = self.growth.max(eigenvalue.re);
@@ -60,9 +68,7 @@ impl<'m> StateMatrixAt<'m> {
     pub(crate) fn at(&mut self, segment: &Segment, k: usize, state: &[f64]) -> DMatrix<f64> {
         let jacobian = &self.model.dynamics_jacobian;
         let program = &jacobian.program;
-        program
-            .states(&mut self.workspace)
-            .copy_from_slice(state);
+        program.states(&mut self.workspace).copy_from_slice(state);
         for (to, samples) in (program.inputs(&mut self.workspace).iter_mut()).zip(&segment.inputs) {
             *to = samples[k];
         }
@@ -123,7 +129,9 @@ mod tests {
         (matrix[(0, 1)], matrix[(1, 0)], matrix[(1, 1)]) = (1.0, -9.0, -0.4);
         (matrix[(2, 2)], matrix[(3, 3)], matrix[(2, 3)]) = (-2.0, 0.1, 1e6);
         let mut rates = Rates::default();
-        eigenvalues(matrix).into_iter().for_each(|value| rates.add(value));
+        eigenvalues(matrix)
+            .into_iter()
+            .for_each(|value| rates.add(value));
         assert!((rates.fastest - 3.0).abs() < 1e-12, "{rates:?}");
         assert!((rates.growth - 0.1).abs() < 1e-12, "{rates:?}");
     }

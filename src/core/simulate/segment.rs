@@ -70,12 +70,19 @@ impl Substeps {
     pub fn within(self, length: f64) -> usize {
         match self {
             Self::Each(count) => count.max(1),
-            Self::NoLonger(longest) => ((length / longest * (1.0 - ROUNDING)).ceil() as usize).max(1),
+            Self::NoLonger(longest) => {
+                ((length / longest * (1.0 - ROUNDING)).ceil() as usize).max(1)
+            }
         }
     }
 }
 
 impl Segment {
+    /// From the first sample to the last, s.
+    pub(crate) fn duration(&self) -> f64 {
+        (1..self.len()).map(|k| self.steps.length(k - 1)).sum()
+    }
+
     /// The most integration steps between two samples.
     pub fn most_substeps(&self) -> usize {
         self.substeps.within(self.steps.longest())

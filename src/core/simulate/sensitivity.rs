@@ -86,7 +86,9 @@ impl<'m> Sensitivities<'m> {
             Some(_) => None,
             None => Refined::of(segment, self.trajectory.interpolation()),
         };
-        let mut thinning = refined.as_ref().map(|refined| (refined, Thinning::new(self.columns)));
+        let mut thinning = refined
+            .as_ref()
+            .map(|refined| (refined, Thinning::new(self.columns)));
         let segment = refined.as_ref().map_or(segment, |refined| &refined.segment);
         self.trajectory.start(segment, parameters);
         if self.trajectory.one_step().is_none() {

@@ -29,7 +29,10 @@ pub(crate) fn with_finer(problem: &Problem, found: &Estimate) -> Option<Problem>
         return None;
     }
     let integration = found.integration.as_ref()?;
-    let shift = integration.halved.as_ref().map_or(0.0, |halved| halved.most);
+    let shift = integration
+        .halved
+        .as_ref()
+        .map_or(0.0, |halved| halved.most);
     let factor = if shift > LARGEST_SHIFT {
         (shift / WANTED_SHIFT).powf(1.0 / ORDER)
     } else if !found.outcome.is_minimum() && integration.fastest > REACH {

@@ -43,7 +43,9 @@ pub(crate) fn integration(
     evaluator.simulations += 1;
     let mut parameters = Vec::new();
     for (index, segment) in problem.segments.iter().enumerate() {
-        problem.unknowns.parameters(index, &at.theta, &mut parameters);
+        problem
+            .unknowns
+            .parameters(index, &at.theta, &mut parameters);
         let change = changed(&mut machinery, segment, &parameters, &histories[index]);
         let rates = rates_along(problem, &machinery, segment, &parameters);
         fastest = fastest.max(rates.fastest * step(segment));
@@ -53,35 +55,37 @@ pub(crate) fn integration(
     Integration {
         steps_per_sample: steps_per_sample(problem),
         fastest,
-        halved: bounds.kind.is_some().then(|| {
-            let most = square.sqrt();
-            if most <= SMALL {
-                return Some(HalvedSteps {
-                    most,
-                    shifts: Vec::new(),
-                });
-            }
-            let pull = pull(problem, evaluator, at, &changes)?;
-            Some(shifts(at, &bounds.standard_errors, &-pull))
-        })
-        .flatten()
-        .filter(|halved| halved.most.is_finite()),
+        halved: bounds
+            .kind
+            .is_some()
+            .then(|| {
+                let most = square.sqrt();
+                if most <= SMALL {
+                    return Some(HalvedSteps {
+                        most,
+                        shifts: Vec::new(),
+                    });
+                }
+                let pull = pull(problem, evaluator, at, &changes)?;
+                Some(shifts(at, &bounds.standard_errors, &-pull))
+            })
+            .flatten()
+            .filter(|halved| halved.most.is_finite()),
     }
 }
 
 /// By segment.
 pub(crate) fn steps_per_sample(problem: &Problem) -> Vec<usize> {
-    problem.segments.iter().map(Segment::most_substeps).collect()
+    problem
+        .segments
+        .iter()
+        .map(Segment::most_substeps)
+        .collect()
 }
 
 /// The longest integration step, s.
 pub(crate) fn step(segment: &Segment) -> f64 {
     segment.steps.longest() / segment.most_substeps() as f64
-}
-
-/// From the first sample to the last, s.
-pub(crate) fn duration(segment: &Segment) -> f64 {
-    (1..segment.len()).map(|k| segment.steps.length(k - 1)).sum()
 }
 
 /// Δθ in standard errors, for a descent direction that halving the steps adds.
@@ -125,10 +129,14 @@ fn changed(
     let run = machinery.run(&finer, parameters, |first, y| {
         for ((change, y), series) in change.iter_mut().zip(y).zip(&history.outputs) {
             let before = series.model[first..].iter().zip(&series.measured[first..]);
-            change.extend(y.iter().zip(before).map(|(y, (before, z))| match z.is_nan() {
-                true => 0.0,
-                false => y - before,
-            }));
+            change.extend(
+                y.iter()
+                    .zip(before)
+                    .map(|(y, (before, z))| match z.is_nan() {
+                        true => 0.0,
+                        false => y - before,
+                    }),
+            );
         }
     });
     if run.is_err() {

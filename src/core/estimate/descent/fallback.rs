@@ -8,7 +8,7 @@ const LEAST_SHARED: usize = 20;
 pub(crate) struct Fallback {
     method: Method,
     asked: Method,
-    /// The iteration from which on the other method steps; none where the budget is too small.
+    /// The iteration at which the other method's turn is; none where the budget is too small.
     half: Option<usize>,
 }
 

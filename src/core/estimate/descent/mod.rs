@@ -1,5 +1,5 @@
 //! From one θ to the next until there is a reason to stop. The cost never rises from one iterate to the next, but for
-//! rounding.
+//! rounding, and where the other method begins anew.
 
 pub(super) mod acceleration;
 pub(super) mod damping;

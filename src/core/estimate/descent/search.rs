@@ -1,12 +1,14 @@
 //! The way from one iterate to the next: the first θ of lower cost among some that are worth a try.
 //!
-//! First what earlier steps tell of this one ([`super::acceleration`]), then the step itself, then the step halved
-//! (Gauss-Newton) or damped more (Levenberg-Marquardt).
+//! First what earlier steps tell of this one ([`super::acceleration`]), then the step itself. Where that leads nowhere,
+//! Gauss-Newton halves it, and Levenberg-Marquardt takes the better of the step halved and the step damped more: damping
+//! leaves directions that the data hardly see where they are, which is what a step needs that leads astray along them, but
+//! not one that leads too far along a valley.
 
 use nalgebra::DVector;
 
 use super::acceleration::Acceleration;
-use super::damping::Damping;
+use super::damping;
 use super::iterate::{Iterate, Taken};
 use super::step::{Newton, advanced, length};
 use crate::estimate::evaluation::evaluator::Evaluator;
@@ -45,7 +47,7 @@ impl Nothing {
 pub(crate) struct Search<'p> {
     problem: &'p Problem,
     method: Method,
-    damping: Damping,
+    damping: f64,
     acceleration: Acceleration,
     /// The last search went on beyond its first trial; so may this one.
     careful: bool,
@@ -56,7 +58,7 @@ impl<'p> Search<'p> {
         Self {
             problem,
             method,
-            damping: Damping::start(method),
+            damping: damping::start(method),
             acceleration: Acceleration::default(),
             careful: false,
         }
@@ -81,9 +83,10 @@ impl<'p> Search<'p> {
         }
         self.careful = taken.halvings > 0;
         if !is_accelerated {
-            let promised = newton.promised(&moved(current, next), self.damping.value());
+            let moved = moved(current, next);
+            let promised = newton.promised(&moved, taken.damping, taken.share);
             let costs = (current.weighting.cost, next.weighting.cost);
-            self.damping.ease(gain(costs, promised));
+            self.damping = damping::eased(taken.damping, gain(costs, promised));
         }
         Ok(found)
     }
@@ -95,14 +98,24 @@ impl<'p> Search<'p> {
         current: &Iterate,
         newton: &Newton,
     ) -> Option<Box<(Iterate, Taken)>> {
-        if self.damping.value() >= DAMPING_SLIGHT {
+        if self.damping >= DAMPING_SLIGHT {
             return None;
         }
         let full = newton.step(0.0);
         let step = (self.acceleration).propose(&current.theta, full, &current.information)?;
         let theta = advanced(&self.problem.unknowns, &current.theta, &step, 1.0);
         let next = Iterate::at(self.problem, evaluator, theta).ok();
-        let found = next.and_then(|next| lower(current, next, self.damping.value(), 0));
+        let found = next.and_then(|next| {
+            lower(
+                current,
+                next,
+                Way {
+                    damping: self.damping,
+                    share: 1.0,
+                },
+                0,
+            )
+        });
         if found.is_none() {
             self.acceleration.forget();
         }
@@ -111,36 +124,68 @@ impl<'p> Search<'p> {
 
     /// Along the step, as short or as much damped as it must be.
     fn along(
-        &mut self,
+        &self,
         evaluator: &mut Evaluator<'_>,
         current: &Iterate,
         newton: &Newton,
     ) -> Result<Box<(Iterate, Taken)>, Nothing> {
         let problem = self.problem;
-        let mut share = 1.0;
+        let theta = |way: Way| {
+            let step = newton.step(way.damping);
+            advanced(&problem.unknowns, &current.theta, &step, way.share)
+        };
         let mut in_range = false;
         for trial in 0..MOST_TRIALS {
-            let step = newton.step(self.damping.value());
-            let theta = advanced(&problem.unknowns, &current.theta, &step, share);
+            let ways = Way::of_trial(self.method, self.damping, trial);
             // the first trial is nearly always taken: its sensitivities are then not worked out twice
-            let worth_it = (trial == 0 && !self.careful)
-                || evaluator.residuals(&theta).is_ok_and(|residuals| {
+            let way = if trial == 0 && !self.careful {
+                Some(ways[0])
+            } else {
+                let costs = ways.iter().filter_map(|&way| {
+                    let theta = theta(way);
+                    let residuals = evaluator.residuals(&theta).ok()?;
                     in_range = true;
-                    let weighting = Weighting::at(problem, &theta, &residuals);
-                    weighting.is_ok_and(|weighting| is_lower(&weighting, current))
+                    let weighting = Weighting::at(problem, &theta, &residuals).ok()?;
+                    is_lower(&weighting, current).then_some((way, weighting.cost))
                 });
-            if worth_it && let Ok(next) = Iterate::at(problem, evaluator, theta) {
+                let best = costs.min_by(|a, b| a.1.total_cmp(&b.1));
+                best.map(|(way, _)| way)
+            };
+            if let Some(way) = way
+                && let Ok(next) = Iterate::at(problem, evaluator, theta(way))
+            {
                 in_range = true;
-                if let Some(found) = lower(current, next, self.damping.value(), trial) {
+                if let Some(found) = lower(current, next, way, trial) {
                     return Ok(found);
                 }
             }
-            match self.method {
-                Method::GaussNewton => share *= 0.5,
-                Method::LevenbergMarquardt => self.damping.raise(),
-            }
         }
         Err(Nothing { in_range })
+    }
+}
+
+/// How a step is made: with a damping, and a share of it taken.
+#[derive(Clone, Copy)]
+pub(crate) struct Way {
+    pub damping: f64,
+    pub share: f64,
+}
+
+impl Way {
+    /// Those that are tried when `trial` have failed.
+    pub(crate) fn of_trial(method: Method, damping: f64, trial: usize) -> Vec<Self> {
+        let halved = Self {
+            damping,
+            share: 0.5_f64.powi(trial as i32),
+        };
+        if method == Method::GaussNewton || trial == 0 {
+            return vec![halved];
+        }
+        let damped = Self {
+            damping: (0..trial).fold(damping, |damping, _| damping::raised(damping)),
+            share: 1.0,
+        };
+        vec![halved, damped]
     }
 }
 
@@ -154,7 +199,7 @@ fn is_lower(weighting: &Weighting, current: &Iterate) -> bool {
 fn lower(
     current: &Iterate,
     next: Iterate,
-    damping: f64,
+    way: Way,
     halvings: usize,
 ) -> Option<Box<(Iterate, Taken)>> {
     if !is_lower(&next.weighting, current) {
@@ -162,7 +207,8 @@ fn lower(
     }
     let taken = Taken {
         length: length(&moved(current, &next), &current.information),
-        damping,
+        damping: way.damping,
+        share: way.share,
         halvings,
     };
     Some(Box::new((next, taken)))

@@ -26,7 +26,7 @@ mod start;
 
 use crate::estimate::accuracy::error_bounds::ErrorBounds;
 use crate::estimate::answer::Solution;
-use crate::estimate::descent::damping::Damping;
+use crate::estimate::descent::damping;
 use crate::estimate::descent::fallback::Fallback;
 use crate::estimate::descent::iterate::Taken;
 use crate::estimate::descent::search::Nothing;
@@ -64,7 +64,7 @@ pub fn filter_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
     let mut current = Iterate::at(&mut evaluator, xi, gain_noise)?;
     let mut taken = Taken::default();
     let mut fallback = Fallback::new(&problem.options);
-    let mut damping = Damping::start(fallback.method());
+    let mut damping = damping::start(fallback.method());
     let mut iteration = 0;
     let stopped = loop {
         let report = current.report(&evaluator, iteration, &taken);
@@ -83,7 +83,7 @@ pub fn filter_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
             break Stopped::Budget { distance };
         }
         if fallback.turns_at(iteration) {
-            damping = Damping::start(fallback.method());
+            damping = damping::start(fallback.method());
         }
         let way = (fallback.method(), &mut damping);
         let mut found = search(&mut evaluator, &current, way);
@@ -92,7 +92,7 @@ pub fn filter_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
             && lag <= problem.options.tolerance
         {
             let method = fallback.turn();
-            damping = Damping::start(method);
+            damping = damping::start(method);
             let other = search(&mut evaluator, &current, (method, &mut damping));
             found = other.map_err(|other| other.or(nothing));
         }

@@ -80,7 +80,7 @@ impl Default for Options {
 }
 
 /// How a step is made from gradient and information matrix. Where one method finds no lower cost, or has not converged
-/// when half of at least 20 iterations are used up, the other goes on.
+/// when half of at least 20 iterations are used up, the other is tried: from there, or from the start again.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {

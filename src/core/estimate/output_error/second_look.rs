@@ -62,7 +62,9 @@ pub(super) fn with_second_look(
     let (mut kept, came) = match second {
         Ok(second) if second.solution.estimate.cost < before - OTHER => {
             let cost = second.solution.estimate.cost;
-            let came = format!("the best of {STARTS} other starts is kept: -ln L {cost:.1} instead of {before:.1}");
+            let came = format!(
+                "the best of {STARTS} other starts is kept: -ln L {cost:.1} instead of {before:.1}"
+            );
             (second.solution.following(first), came)
         }
         _ => (

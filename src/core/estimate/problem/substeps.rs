@@ -4,9 +4,7 @@ use super::Problem;
 use crate::estimate::options::Options;
 use crate::estimate::options::steps::StepsPerSample;
 use crate::model::Model;
-use crate::simulate::{
-    Integrator, Rates, Segment, StateMatrixAt, Steps, Substeps, initial_state,
-};
+use crate::simulate::{Integrator, Rates, Segment, StateMatrixAt, Steps, Substeps, initial_state};
 
 /// Largest |λ| h of a step that is not looked at more closely: there the classical method errs by less than a hundredth
 /// of λ. It becomes unstable at 2.8.
@@ -34,7 +32,9 @@ pub(super) fn chosen(
     }
     let rates = StateMatrixAt::new(model, parameters).rates_at_start(segment, parameters);
     let needed = within_reach(segment, rates);
-    if needed.within(segment.steps.longest()) > segment.most_substeps() {
+    if rates.stay_in_range(segment.duration())
+        && needed.within(segment.steps.longest()) > segment.most_substeps()
+    {
         needed
     } else {
         segment.substeps
@@ -104,7 +104,12 @@ pub(super) fn too_stiff(problem: &Problem) -> Option<TooStiff> {
     for (index, segment) in problem.segments.iter().enumerate() {
         problem.unknowns.parameters(index, &theta, &mut parameters);
         let mut matrix = StateMatrixAt::new(&problem.model, &parameters);
-        let rate = matrix.rates_at_start(segment, &parameters).fastest;
+        let rates = matrix.rates_at_start(segment, &parameters);
+        if !rates.stay_in_range(segment.duration()) {
+            // the simulation itself tells where it ends
+            continue;
+        }
+        let rate = rates.fastest;
         let steps = rate * segment.steps.longest() / REACH;
         all += steps.max(1.0) * segment.len() as f64;
         if steps > StepsPerSample::MOST as f64 || all > MOST_IN_ALL {

@@ -137,7 +137,9 @@ pub(super) fn check_stiffness(problem: &Problem) -> Result<(), Vec<Fault>> {
     let state = &problem.model.states[found.state].name;
     let message = format!(
         "with the start values '{state}' moves at {:.3e} 1/s, which takes {:.0} integration steps from one sample of segment {} to the next, or too many in all; give the state its steady value as a quantity, start closer, or say \"steps_per_sample\"",
-        found.rate, found.steps.ceil(), problem.segments[found.segment].label
+        found.rate,
+        found.steps.ceil(),
+        problem.segments[found.segment].label
     );
     Err(vec![Fault::new("/model/states", "too_stiff", message)])
 }
