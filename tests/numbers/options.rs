@@ -12,7 +12,7 @@ use trimtab_core::estimate::study::Clock;
 use trimtab_core::flight::Maneuver;
 use trimtab_core::job;
 
-const SAMPLES: usize = 60;
+const SAMPLES: usize = 40;
 
 fn maneuver() -> Arc<Maneuver> {
     let step = 0.1;
@@ -77,15 +77,13 @@ fn choices() -> Vec<Vec<Choice>> {
         ),
         option(
             "/options/start",
-            [
-                "document",
-                "equation_error",
-                "nelder_mead",
-                "multi_start",
-                "multiple_shooting",
-            ]
-            .map(kind)
-            .to_vec(),
+            vec![
+                kind("document"),
+                kind("equation_error"),
+                json!({"kind": "nelder_mead", "max_evaluations": 40}),
+                json!({"kind": "multi_start", "starts": 3}),
+                kind("multiple_shooting"),
+            ],
         ),
         option("/options/integrator", vec![json!("euler"), json!("rk2")]),
         option("/options/steps_per_sample", vec![json!(1), json!(3)]),
@@ -223,8 +221,8 @@ fn every_pair_works_or_is_refused_by_name() {
             for (i, option) in choices.iter().enumerate() {
                 for choice in option {
                     attempt(&[choice]);
-                    // a diagnosis is hundreds of estimations: there each choice alone
-                    if kind == "diagnose" && estimator == "output_error" {
+                    // these are hundreds of estimations: there each choice alone
+                    if kind != "estimate" && estimator == "output_error" {
                         continue;
                     }
                     for other in choices[i + 1..].iter().flatten() {
@@ -240,5 +238,5 @@ fn every_pair_works_or_is_refused_by_name() {
         bad.len(),
         bad.join("\n")
     );
-    assert!(tried > 2000, "{tried}");
+    assert!(tried > 1000, "{tried}");
 }
