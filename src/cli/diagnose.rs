@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::progress::ProgressLine;
 use super::request::Request;
 use super::table::{self, bordered};
-use super::{Failure, figures};
+use super::{Failure, figures, notes};
 use crate::dashboard::history_svg;
 use crate::diagnose::{Diagnosis, FitChange, Refusal};
 use crate::estimate::{Role, TimeHistory, five_digits};
@@ -38,12 +38,16 @@ impl Diagnose {
             }
             ControlFlow::Continue(())
         })
-        .map_err(|faults| Failure::faults("the job failed", &faults))?;
+        .map_err(|faults| {
+            notes::say(&plan.prepared.findings);
+            Failure::faults("the job failed", &faults)
+        })?;
         let Some(diagnosis) = &result.diagnosis else {
             return Err(Failure::new(result.estimate.reason));
         };
         progress.finish(diagnosis.verdict.name());
         if self.json {
+            notes::say(&result.estimate.findings);
             println!("{}", serde_json::to_string_pretty(&result)?);
         } else {
             println!("{}", table::result(&result.estimate, None));
@@ -83,9 +87,6 @@ pub(super) fn conclusion(diagnosis: &Diagnosis, all: bool) -> String {
         text += &format!("{}\n", shifts(diagnosis));
     }
     text += &format!("{}\n", errors(diagnosis));
-    for remark in &diagnosis.remarks {
-        text += &format!("note: {remark}\n");
-    }
     text += &format!(
         "verdict: {}: {}",
         diagnosis.verdict.name(),

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use super::progress::ProgressLine;
 use super::request::Request;
-use super::{Failure, table};
+use super::{Failure, notes, table};
 use crate::job::{self, JobKind};
 
 /// Fits a model to recordings and prints the parameter table.
@@ -25,9 +25,13 @@ impl Fit {
             progress.told(told);
             ControlFlow::Continue(())
         })
-        .map_err(|faults| Failure::faults("the job failed", &faults))?;
+        .map_err(|faults| {
+            notes::say(&plan.prepared.findings);
+            Failure::faults("the job failed", &faults)
+        })?;
         progress.finish(&result.estimate.reason);
         if self.json {
+            notes::say(&result.estimate.findings);
             println!("{}", serde_json::to_string_pretty(&result)?);
         } else {
             println!("{}", table::result(&result.estimate, None));

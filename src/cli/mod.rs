@@ -16,6 +16,7 @@ mod key;
 mod local;
 mod mapping;
 mod model;
+mod notes;
 mod plots;
 mod process;
 mod progress;

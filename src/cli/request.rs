@@ -12,8 +12,11 @@ use super::recording::{format_of, read_bytes, read_text};
 use crate::estimate::{Derivatives, Estimator, Method, Options, Role};
 use crate::flight::Maneuver;
 use crate::ingest::{self, Limits};
-use crate::job::{self, Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride, Plan};
+use crate::job::{
+    self, Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride, Plan, Strict,
+};
 use crate::model::{ModelDocument, Start, catalog};
+use crate::simulate::{InputInterpolation, Integrator};
 
 #[derive(clap::Args, Debug)]
 pub(super) struct Request {
@@ -47,9 +50,22 @@ pub(super) struct Request {
     /// Estimate a parameter that the model holds.
     #[arg(long, value_name = "NAME")]
     free: Vec<String>,
-    /// Run recordings with gaps as one continuous time history.
-    #[arg(long)]
+    /// What to do where recordings have gaps: auto (through where a gap is short against the motion, else split), through
+    /// (integrate on), split (parts of their own), or join (close them up).
+    #[arg(long, value_name = "HOW", default_value = Gaps::default().name(), value_parser = gaps)]
+    gaps: Gaps,
+    /// Run recordings with gaps as one continuous time history: the same as --gaps join.
+    #[arg(long, conflicts_with = "gaps")]
     join: bool,
+    /// Inputs are held between samples, as the commands of a computer are, and not on straight lines.
+    #[arg(long)]
+    hold: bool,
+    /// How the model is stepped through time: euler, rk2 or rk4.
+    #[arg(long, value_name = "METHOD", default_value = "rk4", value_parser = integrator)]
+    integrator: Integrator,
+    /// Refuse the job where something is odd: every warning, or those of codes with commas between.
+    #[arg(long, value_name = "CODES", num_args = 0..=1, require_equals = true, default_missing_value = "")]
+    strict: Option<String>,
     /// Gauss-Newton steps in place of Levenberg-Marquardt.
     #[arg(long)]
     gauss_newton: bool,
@@ -140,7 +156,7 @@ impl Request {
         })
     }
 
-    /// The job, ready to be run here. What is to be known of its data is said.
+    /// The job, ready to be run here.
     pub(super) fn plan(&self, kind: JobKind) -> Result<Plan, Failure> {
         let maneuvers = self.recordings()?;
         let ids: Vec<String> = maneuvers.iter().map(|maneuver| maneuver.digest()).collect();
@@ -148,12 +164,8 @@ impl Request {
             kind,
             ..self.spec(&ids)?
         };
-        let plan = job::prepare(&spec, &self.document()?, &maneuvers)
-            .map_err(|faults| Failure::faults("the job cannot start", &faults))?;
-        for finding in &plan.prepared.findings {
-            eprintln!("note: {}; {}", finding.message, finding.remedy);
-        }
-        Ok(plan)
+        job::prepare(&spec, &self.document()?, &maneuvers)
+            .map_err(|faults| Failure::faults("the job cannot start", &faults))
     }
 
     /// The job, for recordings that are known by `ids`.
@@ -164,34 +176,46 @@ impl Request {
             let start = value
                 .parse()
                 .map_or_else(|_| Start::FromData(value.to_string()), Start::Value);
-            parameters.entry(name.to_string()).or_default().start = Some(start);
+            let before = parameters
+                .entry(name.to_string())
+                .or_default()
+                .start
+                .replace(start);
+            once("--start", name, before.is_some())?;
         }
         for (names, fixed) in [(&self.fix, true), (&self.free, false)] {
             for name in names {
-                parameters.entry(name.clone()).or_default().fixed = Some(fixed);
+                let before = parameters
+                    .entry(name.clone())
+                    .or_default()
+                    .fixed
+                    .replace(fixed);
+                once("--fix or --free", name, before.is_some())?;
             }
         }
-        let channels = self.channels.iter().map(|text| {
+        let (mut channels, mut constants) = (IndexMap::new(), IndexMap::new());
+        for text in &self.channels {
             let (name, formula) = pair(text, "--channel")?;
-            Ok((name.to_string(), formula.to_string()))
-        });
-        let constants = self.constants.iter().map(|text| {
+            let before = channels.insert(name.to_string(), formula.to_string());
+            once("--channel", name, before.is_some())?;
+        }
+        for text in &self.constants {
             let (name, value) = pair(text, "--constant")?;
-            let value = (value.parse()).map_err(|_| {
+            let number = (value.parse()).map_err(|_| {
                 Failure::new(format!("--constant '{text}': '{value}' is not a number"))
             })?;
-            Ok((name.to_string(), value))
-        });
+            let before = constants.insert(name.to_string(), number);
+            once("--constant", name, before.is_some())?;
+        }
         let fitted = self.files.iter().map(|file| (file, Role::Estimation));
         let predicted = self.validate.iter().map(|file| (file, Role::Validation));
         let last = self.last.iter().map(|file| (file, Role::Final));
-        let gaps = if self.join { Gaps::Join } else { Gaps::Split };
+        let gaps = if self.join { Gaps::Join } else { self.gaps };
         let usage = |(id, (used, role)): (&String, (&FileRows, Role))| ManeuverUse {
-            id: id.clone(),
             label: used.label(),
             rows: used.rows,
-            role,
             gaps,
+            ..ManeuverUse::new(id.clone(), role)
         };
         Ok(JobSpec {
             kind: JobKind::Estimate,
@@ -205,10 +229,10 @@ impl Request {
                 .zip(fitted.chain(predicted).chain(last))
                 .map(usage)
                 .collect(),
-            channels: channels.collect::<Result<_, Failure>>()?,
+            channels,
             parameters,
             candidates: Vec::new(),
-            constants: constants.collect::<Result<_, Failure>>()?,
+            constants,
             options: Options {
                 method: if self.gauss_newton {
                     Method::GaussNewton
@@ -223,9 +247,47 @@ impl Request {
                 tolerance: self.tolerance,
                 max_iterations: self.max_iterations,
                 derivatives: self.derivatives()?,
+                integrator: self.integrator,
+                input_interpolation: match self.hold {
+                    true => InputInterpolation::Hold,
+                    false => InputInterpolation::default(),
+                },
                 ..Options::default()
             },
+            strict: match self.strict.as_deref() {
+                None => Strict::default(),
+                Some("") => Strict::All(true),
+                Some(codes) => Strict::Codes(
+                    codes
+                        .split(',')
+                        .map(|code| code.trim().to_string())
+                        .collect(),
+                ),
+            },
         })
+    }
+}
+
+/// What is said of one name twice would count once, and which is not plain to see.
+fn once(option: &str, name: &str, again: bool) -> Result<(), Failure> {
+    match again {
+        true => Err(Failure::new(format!("{option} names '{name}' twice"))),
+        false => Ok(()),
+    }
+}
+
+fn gaps(name: &str) -> Result<Gaps, String> {
+    let names = || Gaps::ALL.map(Gaps::name).join(", ");
+    let found = Gaps::ALL.into_iter().find(|gaps| gaps.name() == name);
+    found.ok_or_else(|| format!("choose one of {}", names()))
+}
+
+fn integrator(name: &str) -> Result<Integrator, String> {
+    match name {
+        "euler" => Ok(Integrator::Euler),
+        "rk2" => Ok(Integrator::Rk2),
+        "rk4" => Ok(Integrator::Rk4),
+        _ => Err("choose one of euler, rk2, rk4".to_string()),
     }
 }
 

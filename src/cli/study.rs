@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::progress::ProgressLine;
 use super::request::Request;
 use super::study_tables::tables;
-use super::{Failure, figures};
+use super::{Failure, figures, notes};
 use crate::dashboard::{cost_figure, error_figure};
 use crate::job::{self, JobKind};
 use crate::work::ThreadClock;
@@ -38,6 +38,7 @@ impl Study {
         })
         .map_err(|faults| Failure::faults("the job failed", &faults))?;
         progress.finish(&result.estimate.reason);
+        notes::say(&result.estimate.findings);
         let Some(study) = result.study else {
             return Err(Failure::new(result.estimate.reason));
         };

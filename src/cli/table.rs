@@ -6,6 +6,7 @@ use comfy_table::presets::UTF8_BORDERS_ONLY;
 use comfy_table::{CellAlignment, Table};
 use indexmap::IndexMap;
 
+use super::notes;
 use crate::estimate::{
     Coefficient, Estimate, FilterEstimate, Measure, Mode, OutputFit, ParameterEstimate,
     five_digits as number,
@@ -26,8 +27,9 @@ pub(super) fn result(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>)
             outputs(&prediction.outputs)
         ));
     }
-    let remarks = estimate.remarks().into_iter();
-    parts.extend(remarks.map(|remark| format!("note: {remark}")));
+    parts.extend(
+        (!estimate.findings.is_empty()).then(|| notes::lines(&estimate.findings).join("\n")),
+    );
     parts.join("\n\n")
 }
 

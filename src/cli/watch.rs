@@ -3,7 +3,7 @@
 use super::client::Client;
 use super::progress::ProgressLine;
 use super::server::ServerOption;
-use super::{Failure, diagnose, plots, table};
+use super::{Failure, diagnose, notes, plots, table};
 use crate::estimate::{Estimate, Outcome};
 use crate::job::{EventBody, JobKind};
 
@@ -61,7 +61,7 @@ pub(super) async fn follow(client: &Client, job: &str) -> Result<Estimate, Failu
                 let (samples, unknowns) = (prepared.samples, prepared.parameters.len());
                 progress.say(&format!("{samples} samples, {unknowns} unknowns"));
                 for finding in &prepared.findings {
-                    progress.say(&format!("note: {}; {}", finding.message, finding.remedy));
+                    progress.say(&notes::line(finding));
                 }
             }
             EventBody::Start(report) => progress.say(&report.text),
@@ -73,13 +73,15 @@ pub(super) async fn follow(client: &Client, job: &str) -> Result<Estimate, Failu
                 progress.finish(reason);
                 ending = Some(Ok(()));
             }
-            EventBody::Cancelled { has_result: true } => {
+            EventBody::Cancelled {
+                has_result: true, ..
+            } => {
                 progress.finish("cancelled; the best iterate is kept");
                 ending = Some(Ok(()));
             }
-            EventBody::Cancelled { has_result: false } => {
-                ending = Some(Err(Failure::new("the job was cancelled")))
-            }
+            EventBody::Cancelled {
+                has_result: false, ..
+            } => ending = Some(Err(Failure::new("the job was cancelled"))),
             EventBody::Failed { faults } => {
                 ending = Some(Err(Failure::faults("the job failed", faults)))
             }

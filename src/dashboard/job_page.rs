@@ -10,7 +10,7 @@ use super::{correlation, diagnosis, eigenvalues};
 use crate::diagnose::Diagnosis;
 use crate::estimate::study::DerivativeStudy;
 use crate::estimate::{Estimate, Role};
-use crate::flight::{Finding, Severity};
+use crate::flight::{Finding, FindingCode, Severity};
 use crate::job::{Fault, Status};
 
 /// What the page shows.
@@ -28,7 +28,7 @@ pub struct JobView {
     pub attempt: u32,
     /// Why it failed.
     pub faults: Vec<Fault>,
-    /// What is odd about the data in use.
+    /// What is odd about the data in use, and of a result all that a reader should know.
     pub findings: Vec<Finding>,
     pub estimate: Option<Estimate>,
     /// Of a derivative study.
@@ -147,28 +147,37 @@ fn actions(view: &JobView) -> Markup {
     }
 }
 
+/// What a reader of the numbers should know before them.
 pub(super) fn findings(view: &JobView) -> Markup {
-    let unfinished = (view.estimate.as_ref()).filter(|estimate| !estimate.outcome.is_minimum());
+    let of = |severity: Severity| {
+        // a diagnosis tells its remarks itself
+        let all = (view.findings.iter()).filter(|f| f.code != FindingCode::DiagnosisRemark.name());
+        all.filter(move |finding| finding.severity == severity)
+    };
     html! {
-        @if unfinished.is_some() {
-            p.note { strong { "These numbers are not an estimate yet" } ": the best that was reached before the solver stopped, short of a minimum. Standard errors mean little there." }
+        @for severity in [Severity::Fault, Severity::Warning] {
+            @for finding in of(severity) {
+                p.note data-code=(finding.code) { strong { (lead(severity)) ": " } (finding.sentence()) }
+            }
         }
-        @for remark in view.estimate.as_ref().map(Estimate::remarks).unwrap_or_default() {
-            p.note { (remark) }
-        }
-        @for finding in view.findings.iter().filter(|finding| finding.severity == Severity::Warning) {
-            p.note { strong { "The data: " } (finding.message) "; " (finding.remedy) }
-        }
-        @if view.findings.iter().any(|finding| finding.severity == Severity::Note) {
+        @if of(Severity::Note).next().is_some() {
             details {
-                summary { "What else is odd about the data" }
+                summary { "What else is to be known" }
                 ul {
-                    @for finding in view.findings.iter().filter(|finding| finding.severity == Severity::Note) {
-                        li { (finding.message) "; " (finding.remedy) }
+                    @for finding in of(Severity::Note) {
+                        li data-code=(finding.code) { (finding.sentence()) }
                     }
                 }
             }
         }
+    }
+}
+
+fn lead(severity: Severity) -> &'static str {
+    match severity {
+        Severity::Fault => "Not to be used as it is",
+        Severity::Warning => "Warning",
+        Severity::Note => "Note",
     }
 }
 

@@ -129,6 +129,7 @@ fn rows(finding: &Finding) -> String {
 fn severity(severity: Severity) -> Markup {
     html! {
         @match severity {
+            Severity::Fault => { span.state.failed { "fault" } }
             Severity::Warning => { span.state.failed { "warning" } }
             Severity::Note => { span.state.queued { "note" } }
         }

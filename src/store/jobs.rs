@@ -296,17 +296,19 @@ impl Project {
             status: Some(status),
             last_seq,
         };
-        let events: &[EventBody] = match status {
-            Status::Queued => &[
+        let events = match status {
+            Status::Queued => vec![
                 EventBody::CancelRequested,
-                EventBody::Cancelled { has_result: false },
+                EventBody::cancelled_without_result(),
             ],
-            Status::Running => &[EventBody::CancelRequested],
-            Status::Cancelling | Status::Succeeded | Status::Failed | Status::Cancelled => &[],
+            Status::Running => vec![EventBody::CancelRequested],
+            Status::Cancelling | Status::Succeeded | Status::Failed | Status::Cancelled => {
+                Vec::new()
+            }
         };
         if !events.is_empty() {
             let now = self.store.clock.now_text();
-            record(writing.connection(), id, &mut head, &now, events).await?;
+            record(writing.connection(), id, &mut head, &now, &events).await?;
             writing.tell(Signal::Log(id));
             writing.tell(Signal::Cancel(id));
         }

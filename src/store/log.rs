@@ -5,6 +5,7 @@ use uuid::Uuid;
 
 use super::page::one_more;
 use super::{Page, Project, StoreError};
+use crate::flight::FindingTally;
 use crate::job::{EventBody, Status};
 
 /// An event as it is kept. The body stays JSON: most readers hand it on as it is.
@@ -91,6 +92,26 @@ pub(super) async fn append(
 pub(super) fn read_status(text: &str) -> Result<Status, StoreError> {
     serde_json::from_value(serde_json::Value::from(text))
         .map_err(|error| StoreError::corrupt("the status of a job", error))
+}
+
+/// What the last event of a job says of its findings; nothing of a message that is about no job.
+pub(super) async fn findings_of(
+    connection: &mut AnyConnection,
+    job: &str,
+) -> Result<FindingTally, StoreError> {
+    let sql = "SELECT body FROM events WHERE job = $1 ORDER BY seq DESC LIMIT 1";
+    let row = sqlx::query(sql)
+        .bind(job)
+        .fetch_optional(connection)
+        .await?;
+    let body: Option<String> = row.map(|row| row.try_get("body")).transpose()?;
+    let ending = body.and_then(|body| serde_json::from_str(&body).ok());
+    Ok(match ending {
+        Some(EventBody::Succeeded { findings, .. } | EventBody::Cancelled { findings, .. }) => {
+            findings
+        }
+        _ => FindingTally::default(),
+    })
 }
 
 fn read_event(row: &sqlx::any::AnyRow) -> Result<StoredEvent, StoreError> {

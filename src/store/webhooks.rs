@@ -10,8 +10,10 @@ use sqlx::any::AnyRow;
 use sqlx::{AnyConnection, AssertSqlSafe, Row};
 use uuid::Uuid;
 
+use super::log::findings_of;
 use super::row::read_id;
 use super::{Project, Store, StoreError, clock};
+use crate::flight::FindingTally;
 
 /// How long a delivery stays with the process that took it.
 const IN_HAND: Duration = Duration::from_secs(60);
@@ -55,6 +57,8 @@ pub struct Delivery {
     pub secrets: Vec<String>,
     pub event: String,
     pub job: String,
+    /// What the job's result carries.
+    pub findings: FindingTally,
     /// When the job ended.
     pub created: String,
     /// This one included.
@@ -315,6 +319,8 @@ impl Store {
             .bind(id.to_string())
             .fetch_one(writing.connection())
             .await?;
+        let job: String = row.try_get("job")?;
+        let findings = findings_of(writing.connection(), &job).await?;
         writing.commit().await?;
         let mut secrets = vec![row.try_get("secret")?];
         let until: Option<String> = row.try_get("previous_until")?;
@@ -327,7 +333,8 @@ impl Store {
             url: row.try_get("url")?,
             secrets,
             event: row.try_get("type")?,
-            job: row.try_get("job")?,
+            job,
+            findings,
             created: row.try_get("created")?,
             attempts: u32::try_from(row.try_get::<i64, _>("attempts")?).unwrap_or(u32::MAX),
         }))

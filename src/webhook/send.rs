@@ -92,7 +92,11 @@ fn message(delivery: &Delivery) -> String {
     let data = if delivery.job.is_empty() {
         json!({})
     } else {
-        json!({"job": delivery.job, "links": {"job": format!("/v1/jobs/{}", delivery.job)}})
+        json!({
+            "job": delivery.job,
+            "links": {"job": format!("/v1/jobs/{}", delivery.job)},
+            "warnings": delivery.findings,
+        })
     };
     json!({"type": delivery.event, "timestamp": delivery.created, "data": data}).to_string()
 }

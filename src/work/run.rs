@@ -78,7 +78,7 @@ struct Told {
 
 async fn work_on(store: &Store, claim: &Arc<Claim>, shutdown: &CancellationToken) -> Settled {
     if claim.cancelling {
-        let event = EventBody::Cancelled { has_result: false };
+        let event = EventBody::cancelled_without_result();
         return Settled::Ended(JobEnd::without_result(event));
     }
     let stop = Stop::default();
@@ -201,17 +201,25 @@ fn settle(answered: Result<Answer, Unanswered>, told: Told, asked: Option<Reason
         }
         Ok(answer) if stopped(&answer) => JobEnd {
             told,
-            event: EventBody::Cancelled { has_result: true },
+            event: EventBody::Cancelled {
+                has_result: true,
+                findings: answer.findings,
+            },
             result: Some(answer.parts),
         },
         // asked to stop or not: it finished before it noticed, and finished is finished
         Ok(Answer {
             outcome,
             reason,
+            findings,
             parts,
         }) => JobEnd {
             told,
-            event: EventBody::Succeeded { outcome, reason },
+            event: EventBody::Succeeded {
+                outcome,
+                reason,
+                findings,
+            },
             result: Some(parts),
         },
         Err(Unanswered::Refused(faults)) => JobEnd {

@@ -10,7 +10,7 @@ use super::clock::ThreadClock;
 use super::maker::this_program;
 use super::stop::Stop;
 use crate::estimate::Outcome;
-use crate::flight::Maneuver;
+use crate::flight::{FindingTally, Maneuver};
 use crate::job::{self, EventBody, Faults, JobKind, JobSpec, StudyProgress};
 use crate::model::ModelDocument;
 use crate::store::{ResultParts, StoreError};
@@ -19,6 +19,7 @@ use crate::store::{ResultParts, StoreError};
 pub(super) struct Answer {
     pub outcome: Outcome,
     pub reason: String,
+    pub findings: FindingTally,
     pub parts: ResultParts,
 }
 
@@ -86,6 +87,7 @@ pub(super) fn solve(
     let result = result.map_err(Unanswered::Refused)?;
     let parts = ResultParts::encode(&result, this_program())?;
     let outcome = result.estimate.outcome;
+    let findings = FindingTally::of(&result.estimate.findings);
     // what a diagnosis comes to is more than that its last fit ended well
     let reason = match result.diagnosis {
         Some(diagnosis) => diagnosis.sentence,
@@ -94,6 +96,7 @@ pub(super) fn solve(
     Ok(Answer {
         outcome,
         reason,
+        findings,
         parts,
     })
 }

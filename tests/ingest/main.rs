@@ -6,5 +6,7 @@ mod common {
     pub(crate) mod repository;
 }
 
+mod corruptions;
+mod findings;
 mod flight_data;
 mod formats;

@@ -166,7 +166,7 @@ fn a_perfect_fit_has_no_error_bounds() {
         .estimate;
     assert_eq!(exact.error_bounds, None, "{:?}", exact.outputs);
     assert!(exact.parameters.iter().all(|p| p.standard_error.is_none()));
-    assert!(exact.remarks()[0].contains("error bounds would mean nothing"));
+    assert_eq!(exact.findings[0].code, "no_error_bounds");
     assert!(
         exact
             .parameters
@@ -227,8 +227,8 @@ fn near_dependencies_are_named_and_estimated_all_the_same() {
     assert!(seen.highly_correlated[0].correlation < -0.99);
     assert!(
         estimate
-            .remarks()
+            .findings
             .iter()
-            .any(|remark| remark.contains("a + b"))
+            .any(|finding| finding.message.contains("a + b") && finding.parameters == ["a", "b"])
     );
 }

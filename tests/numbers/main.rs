@@ -29,6 +29,7 @@ mod derivative_techniques;
 mod effects;
 mod estimation;
 mod filter_error;
+mod findings;
 mod invisible_effects;
 mod likelihood;
 mod machine_code;

@@ -31,6 +31,7 @@ mod derivatives;
 mod diagnosis;
 mod events;
 mod filter_error;
+mod findings;
 mod jobs;
 mod keys;
 mod lifecycle;

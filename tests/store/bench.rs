@@ -88,6 +88,7 @@ pub(crate) fn new_job(name: &str) -> NewJob {
         constants: Default::default(),
         candidates: Vec::new(),
         options: Options::default(),
+        strict: Default::default(),
     };
     NewJob {
         kind: "estimate".into(),
@@ -103,6 +104,7 @@ pub(crate) fn succeeded() -> EventBody {
     EventBody::Succeeded {
         outcome: Outcome::Converged,
         reason: "converged".into(),
+        findings: Default::default(),
     }
 }
 

@@ -171,7 +171,7 @@ async fn the_wish_to_cancel_outlives_the_worker(bench: Bench) {
     assert_eq!(bench.status(job).await, Status::Cancelling);
     let claim = bench.claim("w2").await;
     assert!(claim.cancelling);
-    let ending = EventBody::Cancelled { has_result: false };
+    let ending = EventBody::cancelled_without_result();
     bench
         .store
         .finish(&claim, 0, &[], ending, None)

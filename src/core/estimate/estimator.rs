@@ -10,7 +10,7 @@ use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::progress::{Progress, Watcher};
 
-/// Estimates θ as the problem's options say.
+/// Estimates θ as the problem's options say; what a reader of the answer should know is in its findings.
 ///
 /// # Errors
 /// There is nothing to begin with: why.
@@ -24,7 +24,12 @@ pub fn estimate(problem: &Problem, watcher: &mut Watcher<'_>) -> Result<Solution
             watcher(Progress::Iteration(iteration))
         }),
     }?;
-    let told = findings(problem, &solution);
-    solution.estimate.findings.extend(told);
+    let found = findings(problem, &solution);
+    let estimate = &mut solution.estimate;
+    estimate.findings.extend(found);
+    let short = problem.options.max_iterations > 0 && estimate.outcome.is_short();
+    for row in &mut estimate.parameters {
+        row.provisional = short && !row.fixed;
+    }
     Ok(solution)
 }

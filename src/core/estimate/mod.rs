@@ -25,7 +25,7 @@
 //! regression   the problem of equation error
 //! start        where to begin; multiple shooting
 //! output_error, filter_error, study
-//! findings     what a reader must be told of the answer
+//! findings     what a reader of the answer should know beside its numbers
 //! ```
 //!
 //! Invariant: the same problem gives the same estimate to the last bit, and a solver that stops says why.

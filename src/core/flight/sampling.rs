@@ -15,6 +15,8 @@ pub struct Sampling {
     pub step: f64,
     /// Whether all steps but the gaps equal the usual one, up to rounding of the time column.
     pub even: bool,
+    /// The tick of a clock that tells time more coarsely than that, s; absent where it does not.
+    pub tick: Option<f64>,
     /// Where the recording stopped and started again: steps above [`GAP_FACTOR`] usual ones.
     pub gaps: Vec<Gap>,
     samples: usize,
@@ -31,7 +33,7 @@ pub struct Gap {
 
 impl Sampling {
     /// Looks at a strictly increasing time axis of at least two samples.
-    pub(super) fn of(time: &[f64]) -> Self {
+    pub fn of(time: &[f64]) -> Self {
         let steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let mut sorted = steps.clone();
         sorted.sort_by(f64::total_cmp);
@@ -49,14 +51,16 @@ impl Sampling {
         let even = steps
             .iter()
             .all(|&step| is_gap(step) || (step - median).abs() <= EVEN_WITHIN * median);
-        let step = if even {
-            mean_step(&steps, &is_gap)
-        } else {
-            median
+        let coarse = (!even).then(|| coarse_clock(time, &gaps)).flatten();
+        let step = match coarse {
+            Some((step, _)) => step,
+            None if even => mean_step(&steps, &is_gap),
+            None => median,
         };
         Self {
             step,
-            even,
+            even: even || coarse.is_some(),
+            tick: coarse.map(|(_, tick)| tick),
             gaps,
             samples: time.len(),
         }
@@ -89,14 +93,85 @@ fn mean_step(steps: &[f64], is_gap: &impl Fn(f64) -> bool) -> f64 {
         .fold(0.0, f64::max);
     let stretches = (steps.len() - kept.len() + 1) as f64;
     let open = 2.0 * roughest * stretches / kept.len() as f64 + 1e-12 * mean;
-    let rounded = (0..12).map(|digits| {
+    roundest(mean, open)
+}
+
+/// More steps of different length than this are no ticks of a clock.
+const MOST_LENGTHS: usize = 8;
+
+/// Step and tick of even sampling whose times are whole ticks of a clock: the slope of time over rows, where no time is
+/// further from that line than a tick.
+fn coarse_clock(time: &[f64], gaps: &[Gap]) -> Option<(f64, f64)> {
+    let starts = std::iter::once(0).chain(gaps.iter().map(|gap| gap.before));
+    let ends = gaps.iter().map(|gap| gap.before).chain([time.len()]);
+    let stretches: Vec<&[f64]> = starts
+        .zip(ends)
+        .map(|(start, end)| &time[start..end])
+        .collect();
+    let steps = || {
+        stretches
+            .iter()
+            .flat_map(|stretch| stretch.windows(2))
+            .map(|pair| pair[1] - pair[0])
+    };
+    let longest = steps().fold(0.0, f64::max);
+    let mut lengths: Vec<f64> = Vec::new();
+    for step in steps() {
+        // times of a day lose digits: what differs by less than a thousandth is one length
+        let is_same = |length: &f64| (length - step).abs() < 1e-3 * longest;
+        if !lengths.iter().any(is_same) {
+            lengths.push(step);
+        }
+        if lengths.len() > MOST_LENGTHS {
+            return None;
+        }
+    }
+    lengths.sort_by(f64::total_cmp);
+    let tick = lengths
+        .windows(2)
+        .map(|pair| pair[1] - pair[0])
+        .reduce(f64::min)?;
+    let is_whole = |length: &f64| (length / tick - (length / tick).round()).abs() < 0.15;
+    if !lengths.iter().all(is_whole) {
+        return None;
+    }
+    let slope = slope(&stretches)?;
+    let within = |stretch: &&[f64]| {
+        let off = |(row, t): (usize, &f64)| t - stretch[0] - slope * row as f64;
+        let (least, most) = stretch.iter().enumerate().map(off).fold(
+            (f64::INFINITY, f64::NEG_INFINITY),
+            |(least, most): (f64, f64), off| (least.min(off), most.max(off)),
+        );
+        most - least <= 1.05 * tick
+    };
+    let rows = stretches.iter().map(|stretch| stretch.len()).max()?;
+    let even = tick < 1.05 * longest && stretches.iter().all(within);
+    even.then(|| (roundest(slope, tick / (rows - 1) as f64), tick))
+}
+
+/// The slope of time over rows, of least squares, each stretch with a beginning of its own.
+fn slope(stretches: &[&[f64]]) -> Option<f64> {
+    let (mut along, mut spread) = (0.0, 0.0);
+    for stretch in stretches {
+        let middle = (stretch.len() - 1) as f64 / 2.0;
+        let mean = stretch.iter().map(|t| t - stretch[0]).sum::<f64>() / stretch.len() as f64;
+        for (row, t) in stretch.iter().enumerate() {
+            along += (row as f64 - middle) * (t - stretch[0] - mean);
+            spread += (row as f64 - middle).powi(2);
+        }
+    }
+    (spread > 0.0).then(|| along / spread)
+}
+
+/// The roundest number that is no further from `value` than `open`.
+fn roundest(value: f64, open: f64) -> f64 {
+    let mut rounded = (0..12).map(|digits| {
         let unit = 10_f64.powi(digits);
-        (mean * unit).round() / unit
+        (value * unit).round() / unit
     });
     rounded
-        .into_iter()
-        .find(|rounded| (rounded - mean).abs() <= open)
-        .unwrap_or(mean)
+        .find(|rounded| (rounded - value).abs() <= open)
+        .unwrap_or(value)
 }
 
 #[cfg(test)]
@@ -126,5 +201,33 @@ mod tests {
             .map(|k| f64::from(k) * 0.1 + f64::from(k % 3) * 0.01)
             .collect();
         assert!(!Sampling::of(&uneven).even);
+    }
+
+    #[test]
+    fn ticks_of_a_clock_are_even_sampling() {
+        // step of the sampling, tick of the clock, s
+        for (step, tick) in [
+            (0.02, 1.0 / 512.0),
+            (1.0 / 30.0, 0.001),
+            (0.016, 0.01),
+            (1.0 / 60.0, 1.0 / 128.0),
+            (1.3, 1.0),
+        ] {
+            let time = |k: u32| 3723.0 + ((f64::from(k) * step + 0.3 * tick) / tick).floor() * tick;
+            let sampling = Sampling::of(&(0..700).map(time).collect::<Vec<_>>());
+            assert!(sampling.even, "{step} {tick}");
+            assert!(
+                (sampling.step - step).abs() < 2.0 * tick / 700.0,
+                "{step}: {}",
+                sampling.step
+            );
+            assert!((sampling.tick.unwrap() - tick).abs() < 1e-6 * tick);
+        }
+        // jitter in whole ticks, and a lost sample, are uneven
+        let jitter = [0.0, 1.0, 2.0, 0.0, 3.0, 1.0, 0.0, 2.0];
+        let time = |k: usize| k as f64 * 0.02 + jitter[k * 5 % 7] * 0.002;
+        assert!(!Sampling::of(&(0..700).map(time).collect::<Vec<_>>()).even);
+        let time = |k: u32| (f64::from(k + u32::from(k > 300)) * 0.02 * 512.0).floor() / 512.0;
+        assert!(!Sampling::of(&(0..700).map(time).collect::<Vec<_>>()).even);
     }
 }

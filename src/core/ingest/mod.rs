@@ -31,19 +31,18 @@ mod mapping;
 mod mat;
 mod matrix;
 mod name;
-mod quality;
 mod recording;
 mod stamp;
 mod summary;
 mod text;
 mod units;
 
+pub use crate::flight::quality;
 pub use csv_writer::CsvWriter;
 pub use export::{to_csv, to_csv_as_recorded, to_json};
 pub use fault::{IngestError, code};
 pub use limits::Limits;
 pub use mapping::Mapping;
-pub use quality::quality;
 pub use recording::Recording;
 pub use summary::{ChannelSummary, Summary, summary};
 

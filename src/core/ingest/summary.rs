@@ -3,9 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::flight::{Channel, Finding, Maneuver, Unit};
-
-use super::quality;
+use crate::flight::{Channel, Finding, Maneuver, Unit, quality};
 
 /// A maneuver in numbers: its length, its sampling, its channels, and what is odd about it.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]

@@ -89,11 +89,6 @@ impl RecordedUnit {
     }
 }
 
-/// Whether a channel is an angle (and not some other pure number).
-pub(super) fn is_angle(channel: &Channel) -> bool {
-    Unit::si_name(&channel.recorded_unit) == "rad"
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -113,11 +108,5 @@ mod tests {
         assert!(channel.values[0].is_nan());
         assert_eq!(channel.values[1], 1000.0);
         assert!(RecordedUnit::parse("us^9*".repeat(8).trim_end_matches('*')).is_err());
-    }
-
-    #[test]
-    fn an_angle_is_told_from_a_pure_number() {
-        let angle = |text| is_angle(&RecordedUnit::parse(text).unwrap().channel(vec![]));
-        assert!(angle("deg") && angle("rad") && !angle("-") && !angle("%") && !angle("deg/s"));
     }
 }

@@ -7,7 +7,7 @@ use super::Fault;
 use crate::diagnose::Step;
 use crate::estimate::study::StudyStep;
 use crate::estimate::{Iteration, Outcome, Progress, StartReport};
-use crate::flight::Finding;
+use crate::flight::{Finding, FindingTally};
 
 /// One entry of a job's log. `seq` starts at 1 and has no holes.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
@@ -59,6 +59,9 @@ pub enum EventBody {
         outcome: Outcome,
         /// Why it ended, in a sentence.
         reason: String,
+        /// How many findings the result carries, and which.
+        #[serde(default, skip_serializing_if = "FindingTally::is_empty")]
+        findings: FindingTally,
     },
     /// No result: the faults say why.
     Failed {
@@ -69,6 +72,9 @@ pub enum EventBody {
     Cancelled {
         /// Whether there is an iterate to look at.
         has_result: bool,
+        /// How many findings that iterate carries, and which.
+        #[serde(default, skip_serializing_if = "FindingTally::is_empty")]
+        findings: FindingTally,
     },
 }
 
@@ -117,6 +123,14 @@ impl EventBody {
             Self::Succeeded { .. } => "succeeded",
             Self::Failed { .. } => "failed",
             Self::Cancelled { .. } => "cancelled",
+        }
+    }
+
+    /// The end of a job that was cancelled before there was anything to keep.
+    pub fn cancelled_without_result() -> Self {
+        Self::Cancelled {
+            has_result: false,
+            findings: FindingTally::default(),
         }
     }
 

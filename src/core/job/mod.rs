@@ -13,6 +13,7 @@ mod result;
 mod run;
 mod spec;
 mod status;
+mod strict;
 
 pub use crate::flight::{Fault, Faults};
 pub use event::{Event, EventBody, Prepared};
@@ -27,3 +28,4 @@ pub use spec::{
     ParameterOverride,
 };
 pub use status::Status;
+pub use strict::Strict;

@@ -1,6 +1,7 @@
 //! What a job comes to before it runs.
 
 use super::event::Prepared;
+use super::strict::Strict;
 use crate::diagnose::Case;
 use crate::estimate::{Problem, Validation};
 use crate::model::ModelDocument;
@@ -17,4 +18,6 @@ pub struct Plan {
     pub validation: Vec<Validation>,
     /// Of a diagnosis: all that it is made from.
     pub case: Option<Case>,
+    /// Which findings refuse the result.
+    pub strict: Strict,
 }

@@ -8,6 +8,7 @@ use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use utoipa::ToSchema;
 
+use super::strict::Strict;
 use crate::estimate::{Options, Role};
 use crate::model::{Edit, ModelDocument, Prior, Start};
 
@@ -69,6 +70,11 @@ pub struct JobSpec {
     /// How to estimate; each option has a default.
     #[serde(default)]
     pub options: Options,
+    /// Which warnings refuse the job, before it starts or when its fit has ended: `true` for all, or a list of codes. The
+    /// table of findings has them.
+    #[serde(default, skip_serializing_if = "Strict::is_default")]
+    #[schema(example = json!(["held_channel", "not_converged"]))]
+    pub strict: Strict,
 }
 
 impl JobSpec {
@@ -87,7 +93,24 @@ impl JobSpec {
             constants: IndexMap::new(),
             candidates: Vec::new(),
             options: Options::default(),
+            strict: Strict::default(),
         }
+    }
+}
+
+impl JobSpec {
+    /// How the model's quantity `name` is made from the channels of a maneuver: as the maneuver says, or the job, or by
+    /// name.
+    pub(super) fn formula<'s>(&'s self, maneuver: usize, name: &'s str) -> &'s str {
+        let own = self.maneuvers[maneuver].channels.get(name);
+        own.or_else(|| self.channels.get(name))
+            .map_or(name, String::as_str)
+    }
+
+    /// What a maneuver is called in tables.
+    pub(super) fn label(&self, maneuver: usize) -> String {
+        let label = self.maneuvers[maneuver].label.clone();
+        label.unwrap_or_else(|| (maneuver + 1).to_string())
     }
 }
 
@@ -215,6 +238,31 @@ pub struct ManeuverUse {
     /// What to do where the recording has gaps.
     #[serde(default)]
     pub gaps: Gaps,
+    /// Values of the model's constants that hold for this maneuver alone (mass, centre of gravity, speed), each in the
+    /// constant's own unit.
+    #[serde(
+        default,
+        deserialize_with = "crate::model::unique",
+        skip_serializing_if = "IndexMap::is_empty"
+    )]
+    #[schema(example = json!({"m": 17100.0}))]
+    pub constants: IndexMap<String, f64>,
+    /// How model inputs and outputs are made from the channels of this maneuver, where not as the job says.
+    #[serde(
+        default,
+        deserialize_with = "crate::model::unique",
+        skip_serializing_if = "IndexMap::is_empty"
+    )]
+    #[schema(example = json!({"da": "-da"}))]
+    pub channels: IndexMap<String, String>,
+    /// Start values of this maneuver's own parameters (those that are `per = "maneuver"` in the model).
+    #[serde(
+        default,
+        deserialize_with = "crate::model::unique",
+        skip_serializing_if = "IndexMap::is_empty"
+    )]
+    #[schema(example = json!({"alpha_0": "first(alpha)"}))]
+    pub start: IndexMap<String, Start>,
 }
 
 impl ManeuverUse {
@@ -226,6 +274,9 @@ impl ManeuverUse {
             rows: None,
             role,
             gaps: Gaps::default(),
+            constants: IndexMap::new(),
+            channels: IndexMap::new(),
+            start: IndexMap::new(),
         }
     }
 }
@@ -234,11 +285,30 @@ impl ManeuverUse {
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Gaps {
-    /// Each part is a segment of its own, simulated from its own initial state.
+    /// `through` where a gap is short against the motion (a sixth of the shortest period in the outputs), else `split`.
     #[default]
+    Auto,
+    /// The model is integrated on: inputs straight between the rows at both sides, outputs without values.
+    Through,
+    /// Each part is a segment of its own. One that begins in mid-motion has an initial state that is estimated.
     Split,
     /// Gaps are closed up: one continuous time history at the usual step.
     Join,
+}
+
+impl Gaps {
+    /// All of them, in the order of the help.
+    pub const ALL: [Self; 4] = [Self::Auto, Self::Through, Self::Split, Self::Join];
+
+    /// As it is written in a job.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Through => "through",
+            Self::Split => "split",
+            Self::Join => "join",
+        }
+    }
 }
 
 /// What a job says of a parameter instead of the document; absent: as the document has it.

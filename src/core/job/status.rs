@@ -111,7 +111,7 @@ mod tests {
         let over = [
             EventBody::Queued,
             claimed(1),
-            EventBody::Cancelled { has_result: true },
+            EventBody::cancelled_without_result(),
         ];
         assert!(fold(&over).unwrap().is_over());
     }

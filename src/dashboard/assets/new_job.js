@@ -282,6 +282,11 @@ function showProblem(error) {
       : element('p', {}, error.problem ? inWords(error.problem) : error.message)));
 }
 
+function sentence({ recording, channel, message, remedy }) {
+  const place = [recording, channel].filter(Boolean).join(', ');
+  return `${place ? `${place}: ` : ''}${message}${remedy ? `; ${remedy}` : ''}`;
+}
+
 /** The first thing that is missing, in words. */
 function missing() {
   if (byId('json-fault').textContent !== '') return `The job's JSON cannot be read, and nothing was sent. ${byId('json-fault').textContent}`;
@@ -318,7 +323,7 @@ byId('check').addEventListener('click', () => send('/v1/jobs?validate_only=true'
   byId('said').textContent = `It can run: ${samples} samples of ${outputs.length} outputs, ${parameters.length} free parameters.`;
   if (findings.length > 0) {
     byId('faults').replaceChildren(element('div', { class: 'note' }, 'But what is odd about the data:',
-      element('ul', {}, ...findings.map(finding => element('li', {}, `${finding.message}; ${finding.remedy}`)))));
+      element('ul', {}, ...findings.map(finding => element('li', {}, sentence(finding))))));
   }
 }));
 

@@ -30,6 +30,7 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(jobs::events::router())
         .merge(jobs::results::router())
         .merge(jobs::findings::router())
+        .merge(jobs::iterations::router())
         .merge(jobs::coefficients::router())
         .merge(jobs::histories::router())
         .merge(jobs::residual_analysis::router())

@@ -6,6 +6,7 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
+use crate::flight::{FindingCode, Severity};
 use crate::http::code::Code;
 use crate::http::problem::{Problem, ProblemDocument};
 use crate::http::request::query::Id;
@@ -58,6 +59,19 @@ pub(crate) struct Explanations {
     problems: Vec<Explanation>,
     /// What `code` of an entry of `errors` can be where a recording is refused.
     recording_faults: Vec<FaultExplanation>,
+    /// What `code` of a finding can be: of a recording, of a job's use of it, of a fit.
+    findings: Vec<FindingExplanation>,
+}
+
+/// One code of a finding.
+#[derive(Serialize, ToSchema)]
+pub(crate) struct FindingExplanation {
+    #[schema(example = "gap")]
+    code: &'static str,
+    /// Where nothing lessens it.
+    severity: Severity,
+    #[schema(example = "The recording stopped and started again.")]
+    meaning: &'static str,
 }
 
 /// All codes that a problem can have.
@@ -69,6 +83,13 @@ async fn list_problems() -> Json<Explanations> {
         problems: Code::ALL.iter().copied().map(Explanation::of).collect(),
         recording_faults: faults
             .map(|&(code, meaning)| FaultExplanation { code, meaning })
+            .collect(),
+        findings: (FindingCode::ALL.iter())
+            .map(|code| FindingExplanation {
+                code: code.name(),
+                severity: code.severity(),
+                meaning: code.meaning(),
+            })
             .collect(),
     })
 }

@@ -7,6 +7,7 @@ use serde::de::DeserializeOwned;
 use uuid::Uuid;
 
 use crate::dashboard::{JobView, NamedModel, UsedManeuver, job_page};
+use crate::estimate::Estimate;
 use crate::http::handlers::jobs::job;
 use crate::http::problem::Problem;
 use crate::http::request::query::{JobId, unknown_job};
@@ -48,6 +49,12 @@ pub(super) async fn view(service: &Service, id: Uuid) -> Result<JobView, Problem
         })
         .next_back()
         .unwrap_or_default();
+    let estimate: Option<Estimate> = part(service, id, Part::Estimate).await?;
+    // those of the data are among those of a result; one that was kept before they were has none
+    let findings = match &estimate {
+        Some(estimate) if !estimate.findings.is_empty() => estimate.findings.clone(),
+        _ => findings,
+    };
     Ok(JobView {
         id: id.to_string(),
         maneuvers: maneuvers.collect(),
@@ -66,7 +73,7 @@ pub(super) async fn view(service: &Service, id: Uuid) -> Result<JobView, Problem
             _ => Vec::new(),
         },
         findings,
-        estimate: part(service, id, Part::Estimate).await?,
+        estimate,
         study: part(service, id, Part::Study).await?,
         diagnosis: part(service, id, Part::Diagnosis).await?,
     })

@@ -84,6 +84,7 @@ pub(crate) fn table(
             prior_share: place.and_then(|place| accuracy.prior_shares[place]),
             fixed: unknown.fixed,
             at_bound: place.and_then(|place| accuracy.at_bound[place]),
+            provisional: false,
         }
     };
     unknowns.all.iter().enumerate().map(row).collect()

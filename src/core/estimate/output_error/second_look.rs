@@ -15,7 +15,7 @@ use crate::estimate::report::iteration::Outcome;
 use crate::estimate::report::progress::{Watcher, unobserved};
 use crate::estimate::start::found::Start;
 use crate::estimate::start::multi_start::multi_start;
-use crate::flight::{Finding, Severity};
+use crate::flight::{Finding, FindingCode};
 
 /// An output of which less is explained is looked at.
 const GOOD: f64 = 0.9;
@@ -72,18 +72,15 @@ pub(super) fn with_second_look(
             format!("{STARTS} other starts led to nothing better than -ln L {before:.1}"),
         ),
     };
-    kept.estimate.findings.push(Finding {
-        code: "second_look".to_string(),
-        severity: Severity::Warning,
-        channel: Some(poor.output.clone()),
-        rows: Vec::new(),
-        count: 0,
-        message: format!(
-            "the simulation explained {:.0} % of '{}', where equation error explains at least {:.0} % of each of its equations: a false minimum, or a model that drifts away from what it should follow; {came}",
-            100.0 * poor.explained.max(0.0), poor.output, 100.0 * poor.by_equations
-        ),
-        remedy: "look at the fit; give other start values, or say \"start\": {\"kind\": \"multi_start\"} with more starts, or use the estimator \"filter_error\"".to_string(),
-    });
+    let message = format!(
+        "the simulation explained {:.0} % of '{}', where equation error explains at least {:.0} % of each of its equations: a false minimum, or a model that drifts away from what it should follow; {came}",
+        100.0 * poor.explained.max(0.0),
+        poor.output,
+        100.0 * poor.by_equations
+    );
+    let remedy = "look at the fit; give other start values, or say \"start\": {\"kind\": \"multi_start\"} with more starts, or use the estimator \"filter_error\"";
+    let finding = Finding::new(FindingCode::SecondLook, message, remedy);
+    (kept.estimate.findings).push(finding.of_channel(poor.output).at("/options/start"));
     Ok(kept)
 }
 

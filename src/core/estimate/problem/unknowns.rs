@@ -98,6 +98,16 @@ impl Unknowns {
         Self::of(self.all.iter().map(hold).collect(), self.places.clone())
     }
 
+    /// The same, with the unknowns that `is_meant` picks held at their start.
+    #[must_use]
+    pub fn with_held(&self, is_meant: impl Fn(&Unknown) -> bool) -> Self {
+        let hold = |unknown: &Unknown| Unknown {
+            fixed: unknown.fixed || is_meant(unknown),
+            ..unknown.clone()
+        };
+        Self::of(self.all.iter().map(hold).collect(), self.places.clone())
+    }
+
     /// Unknowns that `is_meant` picks are no less than `least`, and start no lower.
     pub fn raise_lower(&mut self, least: f64, is_meant: impl Fn(&Unknown) -> bool) {
         for unknown in self.all.iter_mut().filter(|unknown| is_meant(unknown)) {

@@ -65,12 +65,12 @@ pub struct Estimate {
     /// What the filter-error estimator adds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub filter: Option<FilterEstimate>,
-    /// What to know before the numbers are used.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub findings: Vec<Finding>,
     /// Modes of the motion, fastest first; none for reconstruction models.
     #[serde(default)]
     pub modes: Vec<Mode>,
+    /// What a reader of these numbers should know: of the data in use, of the job, of the fit.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub findings: Vec<Finding>,
 }
 
 /// What estimates were kept with before there was a choice.
@@ -79,43 +79,11 @@ fn conventional() -> Option<ErrorBoundsKind> {
 }
 
 impl Estimate {
-    /// What a reader of the tables should know beside them.
-    pub fn remarks(&self) -> Vec<String> {
-        let findings = self.findings.iter();
-        let mut remarks: Vec<String> = findings
-            .map(|finding| format!("{}; {}", finding.message, finding.remedy))
-            .collect();
-        if self.error_bounds.is_none() {
-            remarks.push(
-                "an output is reproduced to rounding, as data without noise are: error bounds would mean nothing and are left out".to_string(),
-            );
-        }
-        let identifiability = self.identifiability.as_ref();
-        let Some(seen) = identifiability.map(|both| both.after.as_ref().unwrap_or(&both.before))
-        else {
-            return remarks;
-        };
-        for set in &seen.redundant {
-            let names = set.parameters.join(" + ");
-            remarks.push(format!("the data cannot tell apart: {names}"));
-        }
-        if !seen.unseen.is_empty() {
-            remarks.push(format!("the data cannot see: {}", seen.unseen.join(", ")));
-        }
-        for set in &seen.nearly_collinear {
-            remarks.push(format!(
-                "the data hardly tell apart: {} (condition index {:.0})",
-                set.parameters.join(" + "),
-                set.condition_index
-            ));
-        }
-        remarks
-    }
-
     /// What a reader should know about a row of the parameter table, in words; mostly nothing.
     pub fn remark(&self, row: &ParameterEstimate) -> &'static str {
         match (row.fixed, row.at_bound, row.standard_error) {
             (true, ..) => "fixed",
+            _ if row.provisional => "not converged",
             (_, Some(Bound::Lower), _) => "at its lower bound",
             (_, Some(Bound::Upper), _) => "at its upper bound",
             (_, _, None) if self.error_bounds.is_some() => "not determined by the data",

@@ -39,6 +39,14 @@ impl Outcome {
         }
     }
 
+    /// Whether the solver stopped before it was at a minimum of any kind.
+    pub fn is_short(self) -> bool {
+        matches!(
+            self,
+            Self::Stalled | Self::Diverged | Self::Budget | Self::Cancelled
+        )
+    }
+
     /// Whether the estimate is the minimum that was asked for.
     pub fn is_minimum(self) -> bool {
         matches!(self, Self::Converged | Self::AtBound)

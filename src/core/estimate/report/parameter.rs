@@ -38,6 +38,9 @@ pub struct ParameterEstimate {
     /// The bound at which the parameter is held.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at_bound: Option<Bound>,
+    /// Whether the solver stopped short of a minimum: neither the value nor its standard error is an estimate.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub provisional: bool,
 }
 
 /// One of the two bounds of a parameter.

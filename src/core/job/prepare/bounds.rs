@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::resolve::Stretch;
+use super::stretch::Stretch;
 use crate::estimate::{Noise, NoiseStructure, Options, Unknowns};
 use crate::flight::Fault;
 use crate::model::Model;
@@ -29,7 +29,7 @@ pub(super) fn check_data(
     let segments = all().count();
     if segments > MOST_SEGMENTS {
         let message = format!(
-            "gaps cut the recordings into {segments} segments, at most {MOST_SEGMENTS} are allowed; say \"gaps\": \"join\" with the maneuver, or upload it with even sampling"
+            "gaps cut the recordings into {segments} segments, at most {MOST_SEGMENTS} are allowed; say \"gaps\": \"through\" or \"join\" with the maneuver, or upload it with even sampling"
         );
         faults.push(Fault::new("/maneuvers", JOB_TOO_LARGE, message));
     }
@@ -61,7 +61,7 @@ pub(super) fn check_data(
                 let message = format!(
                     "segment {} is a single sample (row {}) between gaps; leave it out with \"rows\", or say \"gaps\": \"join\" with the maneuver",
                     stretch.label(),
-                    stretch.first_row()
+                    stretch.rows.start + 1
                 );
                 faults.push(Fault::new(
                     format!("/maneuvers/{index}"),

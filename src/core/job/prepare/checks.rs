@@ -6,8 +6,8 @@ use crate::estimate::{
 };
 use crate::flight::Fault;
 use crate::job::no_start::no_measured_state;
-use crate::job::spec::{JobSpec, ModelSource};
-use crate::model::Model;
+use crate::job::spec::{JobKind, JobSpec, ManeuverUse, ModelSource};
+use crate::model::{Model, Per};
 
 /// Variances of noise that leave the likelihood a number.
 const VARIANCES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
@@ -50,6 +50,14 @@ pub(super) fn check_shape(spec: &JobSpec, maneuvers: usize, faults: &mut Vec<Fau
             "unknown_model",
             "name a model of the catalog, or send a document",
         ));
+    }
+}
+
+/// What only one kind of job reads is refused of the others: nothing that is asked for passes in silence.
+pub(super) fn check_kind(spec: &JobSpec, faults: &mut Vec<Fault>) {
+    if spec.kind != JobKind::Diagnose && !spec.candidates.is_empty() {
+        let message = "only a diagnosis tries candidates; say \"kind\": \"diagnose\", or put the edits into \"edits\"";
+        faults.push(Fault::new("/candidates", "bad_option", message));
     }
 }
 
@@ -114,6 +122,32 @@ pub(super) fn check_names(spec: &JobSpec, model: &Model, faults: &mut Vec<Fault>
         if !known.clone().any(|known| known == name) {
             let what = ("input or output", name.as_str());
             unknown_name("/channels", "unknown_channel", what, known, faults);
+        }
+    }
+    for (index, usage) in spec.maneuvers.iter().enumerate() {
+        check_own_names(index, usage, model, faults);
+    }
+}
+
+/// Names that a maneuver says something of for itself.
+fn check_own_names(index: usize, usage: &ManeuverUse, model: &Model, faults: &mut Vec<Fault>) {
+    for name in usage.channels.keys() {
+        let quantities = model.inputs.iter().chain(&model.outputs);
+        let known = quantities.map(|quantity| quantity.name.as_str());
+        if !known.clone().any(|known| known == name) {
+            let what = ("input or output", name.as_str());
+            let pointer = format!("/maneuvers/{index}/channels");
+            unknown_name(&pointer, "unknown_channel", what, known, faults);
+        }
+    }
+    for name in usage.start.keys() {
+        let own = model.parameters.iter();
+        let own = own.filter(|parameter| parameter.document.per == Per::Maneuver);
+        let known = own.map(|parameter| parameter.name.as_str());
+        if !known.clone().any(|known| known == name) {
+            let what = ("parameter of each maneuver's own", name.as_str());
+            let pointer = format!("/maneuvers/{index}/start");
+            unknown_name(&pointer, "unknown_parameter", what, known, faults);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::bounds::JOB_TOO_LARGE;
 use super::checks::{MOST_EDITS, too_many_edits};
-use super::resolve::Stretch;
+use super::stretch::Stretch;
 use crate::diagnose::{Case, Effect, Flight};
 use crate::estimate::{Derivatives, Estimator, Problem, Role};
 use crate::flight::Fault;
@@ -32,9 +32,8 @@ pub(super) fn flight(
             )
         })
         .collect();
-    let formulas = spec
-        .channels
-        .values()
+    let own = &spec.maneuvers[stretch.index].channels;
+    let formulas = (spec.channels.values().chain(own.values()))
         .filter_map(|text| expression::parse(text).ok());
     let used: Vec<String> = formulas
         .flat_map(|tree| {
@@ -80,6 +79,20 @@ pub(super) fn case(
         let message =
             "a diagnosis uses the technique \"forward_sensitivities\"; leave \"derivatives\" out";
         faults.push(Fault::new("/options/derivatives", "bad_option", message));
+    }
+    for (index, usage) in spec.maneuvers.iter().enumerate() {
+        for (is_empty, field) in [
+            (usage.constants.is_empty(), "constants"),
+            (usage.start.is_empty(), "start"),
+        ] {
+            if !is_empty {
+                let message = format!(
+                    "a diagnosis takes one value for all maneuvers; leave \"{field}\" out here, or give it for the whole job"
+                );
+                let pointer = format!("/maneuvers/{index}/{field}");
+                faults.push(Fault::new(pointer, "bad_option", message));
+            }
+        }
     }
     let values = problem.samples() * problem.model.outputs.len();
     if values > MOST_VALUES {

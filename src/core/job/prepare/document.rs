@@ -4,7 +4,7 @@ use super::checks::MOST_EDITS;
 use super::unknown_name::unknown_name;
 use crate::flight::Fault;
 use crate::job::spec::JobSpec;
-use crate::model::{Model, ModelDocument};
+use crate::model::{Model, ModelDocument, Parameter, Per, Start};
 
 /// The declared document with the job's edits and overrides in it.
 pub(super) fn edited(
@@ -32,6 +32,11 @@ pub(super) fn edited(
         let what = ("constant", name.as_str());
         unknown_name("/constants", "unknown_constant", what, known, faults);
     }
+    for (index, usage) in spec.maneuvers.iter().enumerate() {
+        for name in usage.constants.keys() {
+            of_each_maneuver(&mut document, index, name, faults);
+        }
+    }
     for (name, change) in &spec.parameters {
         let Some(parameter) = document.parameters.get_mut(name) else {
             let known = document.parameters.keys().map(String::as_str);
@@ -48,6 +53,38 @@ pub(super) fn edited(
         parameter.prior = change.prior.or(parameter.prior);
     }
     document
+}
+
+/// Turns a constant into what each maneuver has a value of its own of, and nothing is estimated of.
+fn of_each_maneuver(
+    document: &mut ModelDocument,
+    index: usize,
+    name: &str,
+    faults: &mut Vec<Fault>,
+) {
+    if let Some(constant) = document.constants.shift_remove(name) {
+        let parameter = Parameter {
+            unit: constant.unit,
+            start: Start::Value(constant.value),
+            lower: None,
+            upper: None,
+            fixed: true,
+            per: Per::Maneuver,
+            prior: None,
+            description: constant.description,
+        };
+        document.parameters.insert(name.to_string(), parameter);
+        return;
+    }
+    // it is one already where another maneuver has named it
+    let is_one = |parameter: &Parameter| parameter.fixed && parameter.per == Per::Maneuver;
+    if document.parameters.get(name).is_some_and(is_one) {
+        return;
+    }
+    let pointer = format!("/maneuvers/{index}/constants");
+    let known = document.constants.keys().map(String::as_str);
+    let what = ("constant", name);
+    unknown_name(&pointer, "unknown_constant", what, known, faults);
 }
 
 /// The program of a document; faults are where it came from.

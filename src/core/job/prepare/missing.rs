@@ -1,7 +1,7 @@
 //! Samples at which an output has no value: they do not count, and the job's log says how many they are.
 
 use crate::estimate::{Noise, NoiseStructure, Options, Unknowns};
-use crate::flight::{Fault, Finding, Severity};
+use crate::flight::{Fault, Finding, FindingCode, Severity};
 use crate::model::{Jacobian, Model};
 use crate::simulate::Segment;
 
@@ -28,20 +28,18 @@ pub(super) fn check_samples(
             .filter(|segment| missing(segment) > 0)
             .map(|segment| segment.label.as_str())
             .collect();
-        findings.push(Finding {
-            code: "missing_values".to_string(),
-            severity: Severity::Note,
-            channel: Some(output.name.clone()),
-            rows: Vec::new(),
-            count,
-            message: format!(
-                "the output '{}' has no value in {count} of {samples} samples (in {}); they do not count for it, the other {} do",
-                output.name,
-                listed(&concerned),
-                samples - count
-            ),
-            remedy: "nothing, where the channel is recorded at a lower rate; else see what the recording's findings say of it".to_string(),
-        });
+        let message = format!(
+            "the output '{}' has no value in {count} of {samples} samples (in {}); they do not count for it, the other {} do",
+            output.name,
+            listed(&concerned),
+            samples - count
+        );
+        let remedy = "nothing, where the channel is recorded at a lower rate; else see what the recording's findings say of it";
+        let missing = Finding::new(FindingCode::MissingValues, message, remedy);
+        let missing = missing
+            .with_severity(Severity::Note)
+            .of_channel(&output.name);
+        findings.push(Finding { count, ..missing });
     }
     let full = matches!(
         options.noise,

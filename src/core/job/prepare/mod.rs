@@ -1,22 +1,30 @@
 //! From a spec and its data to a plan: all that bad input could break is found here.
 
+mod assumed;
 mod bounds;
 mod checks;
 mod diagnosis;
 mod document;
 mod filter;
+mod gaps;
+mod initial;
 mod missing;
 mod plausible;
+mod recorded;
 mod resolve;
 mod start;
+mod stretch;
 mod study;
+mod twice;
 mod unknown_name;
 
 pub use checks::MOST_MANEUVERS;
 
 use std::sync::Arc;
 
-use resolve::Stretch;
+use initial::FreeInitial;
+use stretch::Stretch;
+use twice::Used;
 
 use super::event::Prepared;
 use super::plan::Plan;
@@ -40,24 +48,33 @@ pub fn prepare(
     let (mut faults, mut findings) = (Vec::new(), Vec::new());
     let document = document::edited(spec, declared, &mut faults);
     checks::check_shape(spec, maneuvers.len(), &mut faults);
+    checks::check_kind(spec, &mut faults);
     let model = document::compiled(&document, spec, declared, &mut faults)?;
     check_settings(spec, &model, &mut faults);
-    let stretches = resolve::stretches(spec, maneuvers, &mut findings, &mut faults);
+    let stretches = gaps::stretches(spec, &model, maneuvers, &mut findings, &mut faults);
     bounds::check_data(&model, &stretches, &mut faults)?;
     let resolved = Resolved::of(spec, &model, &stretches, &mut faults);
     refuse_if_any(faults)?;
+    findings.extend(assumed::findings(spec, declared));
+    findings.extend(resolved.findings(spec, &model, maneuvers));
 
-    let unknowns = start::unknowns(spec, &model, &resolved.fitted)?;
+    let Opened {
+        document,
+        model,
+        unknowns,
+        initial,
+    } = with_unknowns(spec, document, model, &resolved, &mut findings)?;
     let segments = resolved.fitted.into_iter().map(|(segment, _)| segment);
     let segments: Vec<Segment> = segments.collect();
     check_samples(&model, &segments, &unknowns, &spec.options, &mut findings)?;
     bounds::check_unknowns(&model, &segments, &unknowns, &spec.options)?;
     let validation = resolved.predicted.into_iter();
     let validation: Vec<Validation> = validation
-        .map(|held_out| to_predict(spec, &model, held_out))
+        .map(|held_out| to_predict(spec, &model, &initial, held_out))
         .collect::<Result<_, _>>()?;
     filter::check_data(&model, &segments, &unknowns, &spec.options)?;
     findings.extend(plausible::findings(&model, &segments));
+    refuse_if_any(spec.strict.faults(&findings))?;
 
     let problem = Problem::new(model, segments, unknowns, spec.options.clone());
     if spec.kind == JobKind::DerivativeStudy {
@@ -78,6 +95,46 @@ pub fn prepare(
         problem,
         validation,
         case,
+        strict: spec.strict.clone(),
+    })
+}
+
+/// The model with what is unknown of it over the data.
+struct Opened {
+    document: ModelDocument,
+    model: Model,
+    unknowns: Unknowns,
+    /// Parameters of the initial states of parts that begin in mid-motion.
+    initial: Vec<String>,
+}
+
+/// The unknowns; where parts of a recording begin in mid-motion, of the model with their initial states as parameters more.
+fn with_unknowns(
+    spec: &JobSpec,
+    document: ModelDocument,
+    model: Model,
+    resolved: &Resolved<'_, '_>,
+    findings: &mut Vec<Finding>,
+) -> Result<Opened, Vec<Fault>> {
+    let free = FreeInitial::of(spec, &document, &model, &resolved.fitted);
+    findings.extend((free.as_ref()).map(|free| free.finding(spec.kind, &resolved.fitted)));
+    // a diagnosis fits many edits of one model, each to parts that begin alike
+    let Some(free) = free.filter(|_| spec.kind != JobKind::Diagnose) else {
+        let unknowns = start::unknowns(spec, &model, &resolved.fitted)?;
+        return Ok(Opened {
+            document,
+            model,
+            unknowns,
+            initial: Vec::new(),
+        });
+    };
+    let model = Model::compile(&free.document)?;
+    let unknowns = start::unknowns(spec, &model, &resolved.fitted)?;
+    Ok(Opened {
+        unknowns: free.hold(&model, &unknowns),
+        document: free.document,
+        model,
+        initial: free.names,
     })
 }
 
@@ -94,6 +151,7 @@ fn check_settings(spec: &JobSpec, model: &Model, faults: &mut Vec<Fault>) {
     checks::check_options(&spec.options, model, faults);
     filter::check_options(&spec.options, model, faults);
     checks::check_names(spec, model, faults);
+    faults.extend(spec.strict.unknown());
 }
 
 /// What the stretches of the recordings become, by what is done with them.
@@ -132,6 +190,20 @@ impl<'s, 'm> Resolved<'s, 'm> {
         }
         resolved
     }
+
+    /// What is odd about the recordings as they are used.
+    fn findings(&self, spec: &JobSpec, model: &Model, maneuvers: &[Arc<Maneuver>]) -> Vec<Finding> {
+        let all = self.fitted.iter().chain(&self.predicted);
+        let used: Vec<Used<'_, '_>> = all.map(|(segment, stretch)| (segment, *stretch)).collect();
+        let mut findings = Vec::new();
+        for (index, maneuver) in maneuvers.iter().enumerate() {
+            let of_this = used.iter().filter(|(_, stretch)| stretch.index == index);
+            let parts: Vec<Used<'_, '_>> = of_this.copied().collect();
+            findings.extend(recorded::findings(spec, model, index, maneuver, &parts));
+        }
+        findings.extend(twice::findings(spec, &used));
+        findings
+    }
 }
 
 /// Whether the samples that have values are enough, and what is to be said of those that have none.
@@ -152,10 +224,12 @@ fn check_samples(
 fn to_predict(
     spec: &JobSpec,
     model: &Model,
+    initial: &[String],
     held_out: (Segment, &Stretch<'_>),
 ) -> Result<Validation, Vec<Fault>> {
     let unknowns = start::unknowns(spec, model, std::slice::from_ref(&held_out))?;
-    let (segment, _) = held_out;
+    let (segment, stretch) = held_out;
+    let unknowns = initial::hold_predicted(initial, model, (&segment, stretch), &unknowns);
     bounds::check_validation(model, &segment, &unknowns)?;
     Ok(Validation { segment, unknowns })
 }

@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::flight::{Finding, Severity, is_control, is_flow_angle};
+use crate::flight::{Finding, FindingCode, is_control, is_flow_angle};
 use crate::model::{Model, Quantity};
 use crate::simulate::Segment;
 
@@ -16,6 +16,9 @@ const LEAST_DEFLECTION: f64 = 2e-3;
 /// rad/s: more than three turns a second, faster than anything flies that carries these sensors.
 const MOST_RATE: f64 = 20.0;
 
+/// Of the samples, the share that reaches no further: a few that stand for no value, or spikes, tell of no unit.
+const REACHED: f64 = 0.98;
+
 pub(super) fn findings(model: &Model, segments: &[Segment]) -> Vec<Finding> {
     let inputs = (model.inputs.iter().enumerate())
         .map(|(i, input)| (input, range(segments.iter().map(|s| &s.inputs[i]))));
@@ -24,20 +27,39 @@ pub(super) fn findings(model: &Model, segments: &[Segment]) -> Vec<Finding> {
     let inputs: Vec<(&Quantity, Range)> = inputs.collect();
     let idle = (inputs.iter())
         .filter(|(input, _)| input.si == "rad" && is_control(&input.name))
-        .all(|(_, (least, most))| most - least < LEAST_DEFLECTION);
+        .all(|(_, range)| range.moved < LEAST_DEFLECTION);
     (inputs.into_iter().chain(outputs))
         .filter_map(|(quantity, range)| finding(quantity, range, idle))
         .collect()
 }
 
-/// Least and most, SI.
-type Range = (f64, f64);
+/// How far a quantity goes, SI.
+#[derive(Clone, Copy)]
+struct Range {
+    /// From 0, but for the few samples that are furthest.
+    reach: f64,
+    /// From the least to the most.
+    moved: f64,
+}
 
 fn range<'s>(values: impl Iterator<Item = &'s Vec<f64>>) -> Range {
-    let finite = values.flatten().filter(|value| value.is_finite());
-    finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &v| {
-        (least.min(v), most.max(v))
-    })
+    let finite: Vec<f64> = (values.flatten().copied())
+        .filter(|value| value.is_finite())
+        .collect();
+    let (least, most) = finite.iter().fold(
+        (f64::INFINITY, f64::NEG_INFINITY),
+        |(least, most), &value| (f64::min(least, value), f64::max(most, value)),
+    );
+    let mut sizes: Vec<f64> = finite.iter().map(|value| value.abs()).collect();
+    let place = (REACHED * sizes.len() as f64) as usize;
+    let reach = match place < sizes.len() {
+        true => *sizes.select_nth_unstable_by(place, f64::total_cmp).1,
+        false => 0.0,
+    };
+    Range {
+        reach,
+        moved: most - least,
+    }
 }
 
 fn finding(quantity: &Quantity, range: Range, idle: bool) -> Option<Finding> {
@@ -47,17 +69,11 @@ fn finding(quantity: &Quantity, range: Range, idle: bool) -> Option<Finding> {
         Slip::DegreesAsRadians => ("degrees declared as radians", "pi/180"),
         Slip::RadiansAsDegrees => ("radians declared as degrees", "180/pi"),
     };
-    Some(Finding {
-        code: "implausible".to_string(),
-        severity: Severity::Warning,
-        channel: Some(name.clone()),
-        rows: Vec::new(),
-        count: 0,
-        message: format!("{name} {seen}: it looks like {looks}"),
-        remedy: format!(
-            "correct the unit in the recording's header, or say how the channel is made: \"channels\": {{\"{name}\": \"{name}*{formula}\"}}"
-        ),
-    })
+    let message = format!("{name} {seen}: it looks like {looks}");
+    let remedy = format!(
+        "correct the unit in the recording's header, or say how the channel is made: \"channels\": {{\"{name}\": \"{name}*{formula}\"}}"
+    );
+    Some(Finding::new(FindingCode::Implausible, message, remedy).of_channel(name))
 }
 
 enum Slip {
@@ -66,9 +82,9 @@ enum Slip {
 }
 
 /// What is odd about the range of a quantity, and what it looks like; `idle`: no control of the model moves much.
-fn odd(quantity: &Quantity, (least, most): Range, idle: bool) -> Option<(String, Slip)> {
+fn odd(quantity: &Quantity, range: Range, idle: bool) -> Option<(String, Slip)> {
     let name = &quantity.name;
-    let (reach, moved) = (most.max(-least), most - least);
+    let Range { reach, moved } = range;
     let deflects = is_control(name) || is_flow_angle(name);
     let reaches = |unit: &str| format!("reaches {:.0} {unit}", reach.to_degrees());
     match quantity.si.as_str() {

@@ -1,174 +1,10 @@
 //! How a model meets recordings: segments of inputs and measured outputs, made from channels.
 
-use std::ops::Range;
-use std::sync::Arc;
-
-use crate::flight::{Dimension, Fault, Finding, Maneuver, Severity, escape};
-use crate::job::spec::{Gaps, JobSpec, ManeuverUse};
+use super::stretch::Stretch;
+use crate::flight::{Dimension, Fault, escape};
+use crate::job::spec::JobSpec;
 use crate::model::{ChannelFormula, Model, Quantity, Recorded};
-use crate::simulate::{Segment, Steps, Substeps};
-
-/// Some rows of a recording, and what the job makes of them.
-pub(super) struct Stretch<'m> {
-    maneuver: &'m Maneuver,
-    rows: Range<usize>,
-    label: String,
-    steps: Steps,
-}
-
-impl Stretch<'_> {
-    pub(super) fn label(&self) -> &str {
-        &self.label
-    }
-
-    pub(super) fn len(&self) -> usize {
-        self.rows.len()
-    }
-
-    /// Counted from 1.
-    pub(super) fn first_row(&self) -> usize {
-        self.rows.start + 1
-    }
-}
-
-/// Cuts the maneuvers of a job into stretches without gaps.
-pub(super) fn stretches<'m>(
-    spec: &JobSpec,
-    maneuvers: &'m [Arc<Maneuver>],
-    findings: &mut Vec<Finding>,
-    faults: &mut Vec<Fault>,
-) -> Vec<Vec<Stretch<'m>>> {
-    let uses = spec.maneuvers.iter().zip(maneuvers).enumerate();
-    uses.map(
-        |(index, (usage, maneuver))| match rows_in_use(usage, maneuver) {
-            Ok(rows) => cut(usage, maneuver, rows, index, findings),
-            Err(message) => {
-                faults.push(Fault::new(
-                    format!("/maneuvers/{index}/rows"),
-                    "bad_rows",
-                    message,
-                ));
-                Vec::new()
-            }
-        },
-    )
-    .collect()
-}
-
-fn rows_in_use(usage: &ManeuverUse, maneuver: &Maneuver) -> Result<Range<usize>, String> {
-    let Some([first, last]) = usage.rows else {
-        return Ok(0..maneuver.len());
-    };
-    if first < 1 || last > maneuver.len() || first >= last {
-        return Err(format!(
-            "rows {first} to {last} of a recording of {} rows; rows count from 1 and at least two are needed",
-            maneuver.len()
-        ));
-    }
-    Ok(first - 1..last)
-}
-
-fn cut<'m>(
-    usage: &ManeuverUse,
-    maneuver: &'m Maneuver,
-    rows: Range<usize>,
-    index: usize,
-    findings: &mut Vec<Finding>,
-) -> Vec<Stretch<'m>> {
-    let sampling = maneuver.sampling();
-    let name = usage
-        .label
-        .clone()
-        .unwrap_or_else(|| (index + 1).to_string());
-    let parts: Vec<Range<usize>> = (sampling.segments().into_iter())
-        .map(|part| part.start.max(rows.start)..part.end.min(rows.end))
-        .filter(|part| !part.is_empty())
-        .collect();
-    for gap in sampling
-        .gaps
-        .iter()
-        .filter(|gap| rows.start < gap.before && gap.before < rows.end)
-    {
-        findings.push(gap_finding(
-            usage,
-            &name,
-            gap.before,
-            gap.duration,
-            sampling.step,
-        ));
-    }
-    let stretch = |rows: Range<usize>, label: String| Stretch {
-        maneuver,
-        label,
-        steps: if sampling.even || usage.gaps == Gaps::Join {
-            Steps::Even(sampling.step)
-        } else {
-            Steps::Uneven(
-                maneuver.time()[rows.clone()]
-                    .windows(2)
-                    .map(|pair| pair[1] - pair[0])
-                    .collect(),
-            )
-        },
-        rows,
-    };
-    match usage.gaps {
-        Gaps::Join => vec![stretch(rows, name)],
-        Gaps::Split if parts.len() == 1 => parts
-            .into_iter()
-            .map(|part| stretch(part, name.clone()))
-            .collect(),
-        Gaps::Split => parts
-            .into_iter()
-            .enumerate()
-            .map(|(i, part)| stretch(part, format!("{name}.{}", i + 1)))
-            .collect(),
-    }
-}
-
-fn gap_finding(
-    usage: &ManeuverUse,
-    name: &str,
-    before: usize,
-    duration: f64,
-    step: f64,
-) -> Finding {
-    let (done, remedy) = match usage.gaps {
-        Gaps::Split => (
-            "each part is simulated from the initial state that the model gives it",
-            "say \"gaps\": \"join\" beside the maneuver\'s \"id\" (--join on the command line) to run them as one continuous time history, or choose \"rows\"",
-        ),
-        Gaps::Join => (
-            "it is closed up, as if there were none",
-            "leave \"gaps\" out to simulate each part on its own",
-        ),
-    };
-    Finding {
-        code: "gap".to_string(),
-        severity: Severity::Warning,
-        channel: None,
-        rows: vec![before + 1],
-        count: 1,
-        message: format!(
-            "maneuver {name}: {duration:.2} s between rows {before} and {}, where samples are {step} s apart; {done}",
-            before + 1
-        ),
-        remedy: remedy.to_string(),
-    }
-}
-
-impl Recorded for Stretch<'_> {
-    fn time(&self) -> &[f64] {
-        &self.maneuver.time()[self.rows.clone()]
-    }
-    fn channel(&self, name: &str) -> Option<(&[f64], Dimension)> {
-        let channel = self.maneuver.channels().get(name)?;
-        Some((&channel.values[self.rows.clone()], channel.unit.dimension))
-    }
-    fn names(&self) -> Vec<String> {
-        self.maneuver.channels().keys().cloned().collect()
-    }
-}
+use crate::simulate::{Segment, Substeps};
 
 /// A segment under the names of the model, with the recording's other channels behind it.
 pub(super) struct Named<'a> {
@@ -247,11 +83,12 @@ fn samples(
     faults: &mut Vec<Fault>,
 ) -> Vec<f64> {
     let name = &quantity.name;
-    let mapped = spec.channels.get(name);
-    let pointer = if mapped.is_some() {
-        format!("/channels/{}", escape(name))
-    } else {
-        format!("/maneuvers/{index}")
+    let own = spec.maneuvers[index].channels.get(name);
+    let mapped = own.or_else(|| spec.channels.get(name));
+    let pointer = match (own, mapped) {
+        (Some(_), _) => format!("/maneuvers/{index}/channels/{}", escape(name)),
+        (None, Some(_)) => format!("/channels/{}", escape(name)),
+        (None, None) => format!("/maneuvers/{index}"),
     };
     let mut fault = |code: &'static str, message: String| {
         // several stretches of one recording have the same fault
@@ -290,8 +127,11 @@ fn samples(
     if side == Side::Output {
         let missing = values.iter_mut().filter(|value| !value.is_finite());
         missing.for_each(|value| *value = f64::NAN);
+        let inserted = stretch.inserted().iter().cloned().flatten();
+        inserted.for_each(|sample| values[sample] = f64::NAN);
         return values;
     }
+    straight(&mut values, stretch.inserted());
     let missing: Vec<usize> = (0..values.len())
         .filter(|&k| !values[k].is_finite())
         .collect();
@@ -299,7 +139,7 @@ fn samples(
         let message = format!(
             "the model's input '{name}' ('{text}') has no value in {} row(s), first in row {}; {}",
             missing.len(),
-            stretch.rows.start + first + 1,
+            stretch.row(first) + 1,
             if mapped.is_some() {
                 "correct the formula where it gives no number (interpolated(...) fills in between values), or choose \"rows\" without them"
                     .to_string()
@@ -312,4 +152,16 @@ fn samples(
         return fault("missing_values", message);
     }
     values
+}
+
+/// Fills samples that were put into gaps, straight between those at both sides.
+fn straight(values: &mut [f64], inserted: &[std::ops::Range<usize>]) {
+    for range in inserted {
+        let (before, behind) = (values[range.start - 1], values[range.end]);
+        let count = (range.len() + 1) as f64;
+        for (k, value) in values[range.clone()].iter_mut().enumerate() {
+            let share = (k + 1) as f64 / count;
+            *value = (1.0 - share) * before + share * behind;
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! Where the unknowns start: at the numbers of the document, or at what its formulas make of the recordings.
 
-use super::resolve::{Named, Stretch};
+use super::resolve::Named;
+use super::stretch::Stretch;
 use crate::estimate::Unknowns;
 use crate::flight::{Dimension, Fault, escape};
 use crate::job::spec::JobSpec;
@@ -16,9 +17,18 @@ pub(super) fn unknowns(
     let start = |parameter: usize, segment: usize| {
         let info = &model.parameters[parameter];
         let (segment, stretch) = &resolved[segment];
-        let text = match &info.document.start {
+        let usage = &spec.maneuvers[stretch.index];
+        if let Some(value) = usage.constants.get(&info.name) {
+            return Ok(info.unit.to_si(*value));
+        }
+        let own = usage.start.get(&info.name);
+        let text = match own.unwrap_or(&info.document.start) {
             Start::Value(value) => return Ok(info.unit.to_si(*value)),
             Start::FromData(text) => text,
+        };
+        let pointer = match own {
+            Some(_) => format!("/maneuvers/{}/start/{}", stretch.index, escape(&info.name)),
+            None => start_pointer(spec, &info.name),
         };
         let on = Named {
             model,
@@ -26,7 +36,7 @@ pub(super) fn unknowns(
             segment,
         };
         start_from_data(text, &on, info.unit.dimension)
-            .map_err(|(code, message)| Fault::new(start_pointer(spec, &info.name), code, message))
+            .map_err(|(code, message)| Fault::new(pointer, code, message))
     };
     Unknowns::new(model, resolved.len(), start).map_err(|fault| vec![fault])
 }

@@ -2,7 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use super::run;
+use super::finish::finish;
+use super::fit;
 use crate::diagnose::{Inconclusive, Step, diagnose};
 use crate::estimate::Outcome;
 use crate::flight::{Fault, Faults};
@@ -13,7 +14,7 @@ use crate::job::result::JobResult;
 /// Runs the plan of a diagnosis; `watcher` is told of its steps and may stop it.
 ///
 /// # Errors
-/// The declared model cannot be fitted.
+/// The declared model cannot be fitted. A finding that a strict job refuses.
 pub fn run_diagnosis(
     plan: &Plan,
     watcher: &mut dyn FnMut(Option<&Step>) -> ControlFlow<()>,
@@ -23,26 +24,29 @@ pub fn run_diagnosis(
         return Err(Fault::new("/kind", "bad_option", message).into());
     };
     match diagnose(case, watcher) {
-        Ok(conclusion) => Ok(JobResult {
-            estimate: conclusion.estimate,
-            model: conclusion.diagnosis.model.clone(),
-            histories: conclusion.histories,
-            study: None,
-            diagnosis: Some(conclusion.diagnosis),
-        }),
+        Ok(conclusion) => finish(
+            plan,
+            JobResult {
+                estimate: conclusion.estimate,
+                model: conclusion.diagnosis.model.clone(),
+                histories: conclusion.histories,
+                study: None,
+                diagnosis: Some(conclusion.diagnosis),
+            },
+        ),
         Err(Inconclusive::Unfit(why)) => {
             Err(Fault::new("/parameters", "diverged_at_start", why.to_string()).into())
         }
         Err(Inconclusive::NoStart(why)) => Err(no_start(&plan.problem, why).into()),
         // what there is so far is where the declared model starts from
         Err(Inconclusive::Stopped) => {
-            let mut result = run(plan, &mut |_| ControlFlow::Break(()))?;
+            let mut result = fit(plan, &mut |_| ControlFlow::Break(()))?;
             result.estimate.outcome = Outcome::Cancelled;
             result.estimate.reason = format!(
                 "the diagnosis was stopped on request; of the declared model: {}",
                 result.estimate.reason
             );
-            Ok(result)
+            finish(plan, result)
         }
     }
 }

@@ -1,12 +1,15 @@
 //! From a plan to a result: pure, synchronous, deterministic.
 
 mod diagnosis;
+mod finish;
 mod study;
 
 pub use diagnosis::run_diagnosis;
 pub use study::{StudyProgress, run_study};
 
 use std::ops::ControlFlow;
+
+use finish::finish;
 
 use super::no_start::no_start;
 use super::plan::Plan;
@@ -17,8 +20,16 @@ use crate::flight::Faults;
 /// Runs a plan; `watcher` is told of its progress and may stop it.
 ///
 /// # Errors
-/// The start values lead nowhere: there is no iterate to speak of.
+/// The start values lead nowhere: there is no iterate to speak of. A finding that a strict job refuses.
 pub fn run(
+    plan: &Plan,
+    watcher: &mut dyn FnMut(estimate::Progress<'_>) -> ControlFlow<()>,
+) -> Result<JobResult, Faults> {
+    finish(plan, fit(plan, watcher)?)
+}
+
+/// The estimation, and what is predicted with it.
+fn fit(
     plan: &Plan,
     watcher: &mut dyn FnMut(estimate::Progress<'_>) -> ControlFlow<()>,
 ) -> Result<JobResult, Faults> {

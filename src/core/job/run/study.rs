@@ -2,7 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use super::run;
+use super::finish::finish;
+use super::fit;
 use crate::estimate::study::{self, Clock, NoStudy, StudyStep};
 use crate::estimate::{self, Outcome};
 use crate::flight::Faults;
@@ -24,17 +25,17 @@ pub enum StudyProgress<'a> {
 /// Runs a plan and compares the techniques; `observer` may stop it. What there is of an estimate is then kept.
 ///
 /// # Errors
-/// The start values lead nowhere.
+/// The start values lead nowhere. A finding that a strict job refuses.
 pub fn run_study(
     plan: &Plan,
     clock: &dyn Clock,
     observer: &mut dyn FnMut(StudyProgress<'_>) -> ControlFlow<()>,
 ) -> Result<JobResult, Faults> {
-    let mut result = run(plan, &mut |progress| {
+    let mut result = fit(plan, &mut |progress| {
         observer(StudyProgress::Estimation(progress))
     })?;
     if result.estimate.outcome == Outcome::Cancelled {
-        return Ok(result);
+        return finish(plan, result);
     }
     let mut listener = |step: Option<&StudyStep>| {
         observer(step.map_or(StudyProgress::Underway, StudyProgress::Finding))
@@ -50,5 +51,5 @@ pub fn run_study(
             );
         }
     }
-    Ok(result)
+    finish(plan, result)
 }

@@ -1,4 +1,4 @@
-//! `/v1/jobs/{id}/events`: the log of a job, live or page by page, and the iterations in it.
+//! `/v1/jobs/{id}/events`: the log of a job, live or page by page.
 
 use std::convert::Infallible;
 use std::time::Duration;
@@ -15,7 +15,6 @@ use utoipa_axum::routes;
 use uuid::Uuid;
 
 use super::job;
-use crate::estimate::Iteration;
 use crate::http::answer::format::{Format, choose};
 use crate::http::code::Code;
 use crate::http::problem::{Problem, ProblemDocument};
@@ -25,9 +24,7 @@ use crate::job::Event;
 use crate::store::{Signal, StoredEvent};
 
 pub(crate) fn router() -> OpenApiRouter<Server> {
-    OpenApiRouter::new()
-        .routes(routes!(list_events))
-        .routes(routes!(list_iterations))
+    OpenApiRouter::new().routes(routes!(list_events))
 }
 
 /// A comment so often keeps proxies from taking a quiet stream for a dead one.
@@ -142,7 +139,7 @@ fn raw(event: &StoredEvent) -> serde_json::Result<Box<RawValue>> {
     RawValue::from_string(event.to_json())
 }
 
-fn no_store(mut response: Response) -> Response {
+pub(super) fn no_store(mut response: Response) -> Response {
     let value = header::HeaderValue::from_static("no-store");
     response.headers_mut().insert(header::CACHE_CONTROL, value);
     response
@@ -188,32 +185,4 @@ fn follow(
             }
         }
     }
-}
-
-/// The iterations of a job's latest attempt.
-#[derive(Serialize, ToSchema)]
-pub(crate) struct Iterations {
-    #[schema(value_type = Vec<Iteration>)]
-    iterations: Vec<serde_json::Map<String, serde_json::Value>>,
-}
-
-/// The iterations so far, number 0 being the start value.
-#[utoipa::path(get, path = "/v1/jobs/{id}/iterations", tag = "Jobs", operation_id = "listIterations",
-    params(("id" = Uuid, Path)),
-    responses(
-        (status = 200, description = "Those of the latest attempt.", body = Iterations),
-        (status = 404, description = "`unknown_job`", body = ProblemDocument, content_type = "application/problem+json"),
-    ))]
-async fn list_iterations(service: Service, JobId(id): JobId) -> Result<Response, Problem> {
-    job::find(&service, id).await?;
-    let mut iterations = Vec::new();
-    for event in service.store.iterations(id).await? {
-        let mut iteration: serde_json::Map<_, _> = serde_json::from_str(&event.body)?;
-        // the event's type; what is left is the iteration
-        iteration.shift_remove("type");
-        iterations.push(iteration);
-    }
-    Ok(no_store(
-        axum::Json(Iterations { iterations }).into_response(),
-    ))
 }

@@ -10,6 +10,7 @@ use utoipa_axum::routes;
 use uuid::Uuid;
 
 use crate::estimate::Outcome;
+use crate::flight::FindingTally;
 use crate::http::answer::format::{Format, cacheable};
 use crate::http::code::Code;
 use crate::http::problem::{Problem, ProblemDocument};
@@ -62,6 +63,8 @@ pub(crate) struct JobResource {
     faults: Vec<Fault>,
     /// Whether the result links lead to something.
     has_result: bool,
+    /// How many findings the result carries, and the codes of those that matter; the estimate has each with its place.
+    warnings: FindingTally,
     links: JobLinks,
 }
 
@@ -108,15 +111,21 @@ impl JobLinks {
 impl JobResource {
     pub(crate) fn of(job: JobRecord) -> Self {
         let (mut outcome, mut reason, mut faults, mut has_result) = (None, None, Vec::new(), false);
+        let mut warnings = FindingTally::default();
         match job.ending {
             Some(EventBody::Succeeded {
                 outcome: of_solver,
                 reason: why,
+                findings,
             }) => {
                 (outcome, reason, has_result) = (Some(of_solver), Some(why), true);
+                warnings = findings;
             }
-            Some(EventBody::Cancelled { has_result: kept }) => {
-                (outcome, has_result) = (Some(Outcome::Cancelled), kept);
+            Some(EventBody::Cancelled {
+                has_result: kept,
+                findings,
+            }) => {
+                (outcome, has_result, warnings) = (Some(Outcome::Cancelled), kept, findings);
             }
             Some(EventBody::Failed { faults: why }) => faults = why,
             _ => {}
@@ -137,6 +146,7 @@ impl JobResource {
             reason,
             faults,
             has_result,
+            warnings,
         }
     }
 

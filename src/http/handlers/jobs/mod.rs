@@ -5,6 +5,7 @@ pub(super) mod coefficients;
 pub(super) mod events;
 pub(super) mod findings;
 pub(super) mod histories;
+pub(super) mod iterations;
 pub(crate) mod job;
 pub(super) mod rerun;
 pub(super) mod residual_analysis;

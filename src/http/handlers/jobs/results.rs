@@ -13,6 +13,7 @@ use super::job;
 use crate::estimate::{
     Bound, CollinearSet, ErrorBoundsKind, Estimate, FilterEstimate, Outcome, ParameterEstimate,
 };
+use crate::flight::Finding;
 use crate::http::answer::format::{Format, cacheable, choose};
 use crate::http::code::Code;
 use crate::http::handlers::models;
@@ -93,20 +94,35 @@ pub(crate) struct ParameterTable {
     /// With filter error: process noise and gains.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     filter: Option<FilterEstimate>,
+    /// What a reader of these numbers should know: of the data in use, of the job, of the fit.
+    #[serde(default)]
+    findings: Vec<Finding>,
 }
 
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
-struct FormatQuery {
+pub(super) struct FormatQuery {
+    /// Absent: as `Accept` says.
+    #[param(inline)]
+    pub(super) format: Option<Format>,
+}
+
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+struct TableQuery {
     /// Absent: as `Accept` says.
     #[param(inline)]
     format: Option<Format>,
+    /// In CSV: whether the findings stand before the header, each as a line that begins with `#`.
+    #[serde(default)]
+    comments: bool,
 }
 
 /// The parameter table, as JSON or CSV.
 #[utoipa::path(get, path = "/v1/jobs/{id}/parameters", tag = "Results", operation_id = "getParameters",
-    params(("id" = Uuid, Path), FormatQuery),
+    params(("id" = Uuid, Path), TableQuery),
     responses(
         (status = 200, description = "The table.", content((ParameterTable = "application/json"), (String = "text/csv"))),
         (status = 304, description = "As the `ETag` in `If-None-Match`."),
@@ -116,17 +132,30 @@ struct FormatQuery {
 async fn get_parameters(
     service: Service,
     JobId(id): JobId,
-    Parameters(query): Parameters<FormatQuery>,
+    Parameters(query): Parameters<TableQuery>,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
     let format = choose(query.format, &headers, &[Format::Json, Format::Csv])?;
     let estimate = part(&service, id, Part::Estimate).await?;
     let table: ParameterTable = serde_json::from_str(&estimate)?;
     let body = match format {
+        Format::Csv if query.comments => {
+            comments(&table.findings) + &parameters_as_csv(&table.parameters)
+        }
         Format::Csv => parameters_as_csv(&table.parameters),
         _ => serde_json::to_string(&table)?,
     };
     Ok(cacheable(&headers, format, body))
+}
+
+/// Each finding as a line that begins with `#`.
+fn comments(findings: &[Finding]) -> String {
+    let line = |finding: &Finding| {
+        let (severity, code) = (finding.severity.name(), &finding.code);
+        let sentence = finding.sentence().replace(['\r', '\n'], " ");
+        format!("# {severity} {code}: {sentence}\n")
+    };
+    findings.iter().map(line).collect()
 }
 
 fn parameters_as_csv(parameters: &[ParameterEstimate]) -> String {
@@ -140,6 +169,7 @@ fn parameters_as_csv(parameters: &[ParameterEstimate]) -> String {
         "fixed",
         "at_bound",
         "conventional_standard_error",
+        "provisional",
     ];
     let mut csv = CsvWriter::with_header(header);
     for parameter in parameters {
@@ -156,6 +186,11 @@ fn parameters_as_csv(parameters: &[ParameterEstimate]) -> String {
             None => "",
         });
         csv.number(parameter.conventional_standard_error);
+        csv.text(if parameter.provisional {
+            "true"
+        } else {
+            "false"
+        });
         csv.end_row();
     }
     csv.finish()

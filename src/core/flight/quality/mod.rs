@@ -3,36 +3,74 @@
 //! The tests are conservative. A control step, a quantised signal and a steady stretch before the
 //! maneuver are ordinary, and an alarm that is usually false is not read.
 
-mod finding;
+mod accelerations;
+mod air_data;
+mod held;
+mod kinematics;
 mod missing;
+mod record;
 mod repeats;
+mod rows;
+mod sentinel;
 mod spikes;
+mod statistics;
 mod time;
 mod wraps;
 
-use crate::flight::{Finding, Maneuver};
+pub use record::{Record, Series};
 
-/// Everything odd about a maneuver: first the time axis, then channel by channel.
+use std::borrow::Cow;
+
+use super::{Finding, Maneuver};
+
+/// Everything odd about a maneuver: first the time axis, then channel by channel, then channels against each other.
 pub fn quality(maneuver: &Maneuver) -> Vec<Finding> {
-    let segments = maneuver.sampling().segments();
-    let mut findings: Vec<Finding> = time::gaps(maneuver)
-        .into_iter()
-        .chain(time::uneven(maneuver))
+    quality_of(&Record::of(maneuver))
+}
+
+/// Everything odd about a record, as [`quality`] has it.
+pub fn quality_of(record: &Record<'_>) -> Vec<Finding> {
+    let sampling = &record.sampling;
+    let segments = record.segments();
+    let mut findings: Vec<Finding> = (time::gaps(sampling).into_iter())
+        .chain(time::uneven(&record.time, sampling))
+        .chain(time::coarse(sampling))
+        .chain(time::implausible(&record.time, sampling))
         .collect();
-    let repeated = repeats::RepeatedRows::of(maneuver, &segments);
+    let repeated = rows::RepeatedRows::of(record, &segments);
     findings.extend(repeated.finding());
-    for (name, channel) in maneuver.channels() {
-        let values = &channel.values;
+    findings.extend(rows::blocks(record));
+    for series in record.series.iter().filter(|series| series.is_used) {
+        let (name, values) = (series.name, &series.values);
         findings.extend(missing::missing(name, values));
         if let Some(constant) = repeats::constant(name, values) {
             findings.push(constant);
             continue;
         }
-        findings.extend(repeats::stuck(name, values, &segments, &repeated));
-        findings.extend(spikes::spikes(name, values, &segments));
-        findings.extend(wraps::wraps(name, channel));
+        let mut values = Cow::Borrowed(&**values);
+        if let Some((rows, number)) = sentinel::sentinel(series) {
+            findings.push(sentinel::finding(name, &rows, number));
+            // what stands for no value is judged once
+            rows.into_iter()
+                .for_each(|row| values.to_mut()[row] = f64::NAN);
+        }
+        let held = held::held(series, &segments, sampling.step);
+        match held.filter(|_| !repeated.explain(&values)) {
+            Some(held) => findings.push(held),
+            None => findings.extend(repeats::stuck(name, &values, &segments, &repeated)),
+        }
+        findings.extend(spikes::spikes(name, &values, &segments));
+        if series.is_angle {
+            findings.extend(wraps::wraps(name, &values));
+        }
     }
-    findings
+    findings.extend(kinematics::disagreements(record));
+    findings.extend(air_data::disagreements(record));
+    findings.extend(accelerations::disagreements(record));
+    let timed = findings
+        .into_iter()
+        .map(|finding| finding.timed(&record.time));
+    timed.collect()
 }
 
 #[cfg(test)]

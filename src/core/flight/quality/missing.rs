@@ -1,8 +1,6 @@
 //! Samples without a value.
 
-use crate::flight::{Finding, Severity};
-
-use super::finding::finding;
+use crate::flight::{Finding, FindingCode};
 
 pub(super) fn missing(name: &str, values: &[f64]) -> Option<Finding> {
     let rows: Vec<usize> = (0..values.len())
@@ -22,15 +20,8 @@ pub(super) fn missing(name: &str, values: &[f64]) -> Option<Finding> {
             "fill or cut these rows where the channel is an input; leave it out of the outputs where too much is missing",
         )
     };
-    let name = Some(name);
-    Some(finding(
-        "missing_values",
-        Severity::Warning,
-        name,
-        &rows,
-        message,
-        remedy,
-    ))
+    let missing = Finding::new(FindingCode::MissingValues, message, remedy);
+    Some(missing.of_channel(name).at_rows(&rows))
 }
 
 #[cfg(test)]

@@ -2,9 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::flight::{Channel, Finding, Severity};
-
-use super::{super::units::is_angle, finding::finding};
+use crate::flight::{Finding, FindingCode};
 
 /// No aircraft turns by this between two samples of a useful rate (500 deg/s at 25 Hz).
 const LARGE_STEP: f64 = 20.0 * PI / 180.0;
@@ -12,15 +10,13 @@ const LARGE_STEP: f64 = 20.0 * PI / 180.0;
 const LONGEST: usize = 4;
 const WITHIN: f64 = 0.05;
 
-pub(super) fn wraps(name: &str, channel: &Channel) -> Option<Finding> {
-    if !is_angle(channel) {
-        return None;
-    }
+/// Of an angle, rad.
+pub(super) fn wraps(name: &str, values: &[f64]) -> Option<Finding> {
     let mut rows = Vec::new();
     let mut size = 0.0;
     let mut row = 1;
-    while row < channel.values.len() {
-        let (jump, steps) = jump_at(&channel.values, row);
+    while row < values.len() {
+        let (jump, steps) = jump_at(values, row);
         if let Some(turn) = is_wrap(jump, steps) {
             rows.push(row);
             size = turn;
@@ -35,14 +31,11 @@ pub(super) fn wraps(name: &str, channel: &Channel) -> Option<Finding> {
         "the angle wraps {} time(s), jumping by {degrees} deg within a few samples",
         rows.len()
     );
-    Some(finding(
-        "wrap",
-        Severity::Warning,
-        Some(name),
-        &rows,
-        message,
-        "unwrap the angle before the upload (samples inside a jump are false), or do not use it here",
-    ))
+    let remedy = format!(
+        "say \"channels\": {{\"{name}\": \"unwrap({name})\"}} in the job (-c \"{name}=unwrap({name})\"), or do not use it; samples inside a jump are false"
+    );
+    let wrap = Finding::new(FindingCode::Wrap, message, remedy);
+    Some(wrap.of_channel(name).at_rows(&rows))
 }
 
 /// The sum and number of large steps of one direction that begin with the step to `row`.
@@ -70,12 +63,10 @@ fn is_wrap(jump: f64, steps: usize) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::flight::Unit;
 
     fn rows(degrees: &[f64]) -> Vec<usize> {
-        let unit = Unit::parse("deg").unwrap();
-        let channel = Channel::from_recorded("deg", unit, degrees.to_vec());
-        wraps("psi", &channel).map_or(Vec::new(), |finding| finding.rows)
+        let radians: Vec<f64> = degrees.iter().map(|angle| angle.to_radians()).collect();
+        wraps("psi", &radians).map_or(Vec::new(), |finding| finding.rows)
     }
 
     #[test]

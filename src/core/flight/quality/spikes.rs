@@ -7,9 +7,7 @@
 
 use std::ops::Range;
 
-use crate::flight::{Finding, Severity};
-
-use super::finding::finding;
+use crate::flight::{Finding, FindingCode};
 
 /// Heights beyond this many standard deviations of the second difference are spikes. Set on recorded
 /// maneuvers: control inputs and turbulence in them stay below, what is known to be false is above.
@@ -43,14 +41,9 @@ pub(super) fn spikes(name: &str, values: &[f64], segments: &[Range<usize>]) -> O
         "{} sample(s) lie far from their neighbours, measured by the channel's own noise",
         rows.len()
     );
-    Some(finding(
-        "spikes",
-        Severity::Warning,
-        Some(name),
-        &rows,
-        message,
-        "cut these rows at the ends of the recording; inside it, make the cells empty or interpolate",
-    ))
+    let remedy = "cut these rows at the ends of the recording; inside it, make the cells empty or interpolate";
+    let spikes = Finding::new(FindingCode::Spikes, message, remedy);
+    Some(spikes.of_channel(name).at_rows(&rows))
 }
 
 /// One piece between gaps, with what is usual in it.
@@ -78,7 +71,13 @@ impl<'a> Piece<'a> {
         let largest = values
             .iter()
             .fold(0.0, |largest: f64, v| largest.max(v.abs()));
-        let floor = usual.max(quantum(values)?).max(1e-9 * largest);
+        // a signal that mostly rests is measured by its own steps
+        let step = if usual > 0.0 {
+            quantum(values)?
+        } else {
+            usual_step(values)?
+        };
+        let floor = usual.max(step).max(1e-9 * largest);
         Some(Self {
             values,
             second,
@@ -140,6 +139,16 @@ impl<'a> Piece<'a> {
         // A signal that stands still and then moves has no noise to be measured by.
         self.usual > 0.0 && self.second[bend].abs() > AT_ENDS * self.noise(noise_around)
     }
+}
+
+/// The change that half of the channel's changes exceed.
+fn usual_step(values: &[f64]) -> Option<f64> {
+    median_size(
+        values
+            .windows(2)
+            .map(|pair| pair[1] - pair[0])
+            .filter(|change| *change != 0.0),
+    )
 }
 
 /// A change as small as the smaller ones of the channel: its quantisation if it has one.

@@ -1,10 +1,11 @@
-//! Values that repeat exactly: constants, stuck sensors, rows written twice.
+//! Values of one channel that repeat exactly: constants and stuck sensors.
 
 use std::ops::Range;
 
-use crate::flight::{Finding, Maneuver, Severity};
+use crate::flight::{Finding, FindingCode, Severity, is_control};
 
-use super::finding::finding;
+use super::rows::RepeatedRows;
+use super::statistics::{percentile, sorted};
 
 /// A stretch of equal values is long from here on.
 const LONG: usize = 25;
@@ -15,8 +16,12 @@ const RARELY_EQUAL: f64 = 0.05;
 const LONGER_THAN_OTHERS: usize = 5;
 /// Fewer stretches than this are a command (0, step, 0), not a quantised measurement.
 const ENOUGH_STRETCHES: usize = 50;
-/// Rows of fewer changing channels are equal by chance.
-const ENOUGH_CHANNELS: usize = 4;
+/// A signal whose changes turn round less often than this is smooth: it may come to rest.
+const NOISY: f64 = 0.25;
+/// A smooth signal was held where it goes on by so many of its larger steps at once.
+const JUMP: f64 = 5.0;
+/// A quantised signal stands still for so long by chance once in so many recordings.
+const CHANCE: f64 = 1e-3;
 
 /// One value for the whole recording.
 pub(super) fn constant(name: &str, values: &[f64]) -> Option<Finding> {
@@ -26,14 +31,9 @@ pub(super) fn constant(name: &str, values: &[f64]) -> Option<Finding> {
         return None;
     }
     let message = format!("the value is {first} (SI) throughout");
-    Some(finding(
-        "constant",
-        Severity::Note,
-        Some(name),
-        &[0],
-        message,
-        "leave the channel out of the outputs: a constant tells nothing, and may be a sensor out of range",
-    ))
+    let remedy = "leave the channel out of the outputs: a constant tells nothing, and may be a sensor out of range";
+    let constant = Finding::new(FindingCode::Constant, message, remedy);
+    Some(constant.of_channel(name).at_rows(&[0]))
 }
 
 /// Long stretches of one value in a channel that otherwise moves.
@@ -50,6 +50,7 @@ pub(super) fn stuck(
     let stuck: Vec<&Range<usize>> = stuck_among(&stretches)
         .into_iter()
         .filter(|stretch| !repeated.cover(stretch))
+        .filter(|stretch| is_no_rest(name, values, segments, stretch))
         .collect();
     let longest = stuck.iter().max_by_key(|stretch| stretch.len())?;
     let severity = severity_of(stuck.iter().map(|stretch| stretch.start));
@@ -60,14 +61,40 @@ pub(super) fn stuck(
         stuck.len()
     );
     let rows: Vec<usize> = stuck.iter().map(|stretch| stretch.start).collect();
-    Some(finding(
-        "repeated_values",
-        severity,
-        Some(name),
-        &rows,
-        message,
-        "look for a stuck sensor or a lost data link; make the cells empty there, or cut the stretch",
-    ))
+    let remedy = "look for a stuck sensor or a lost data link; make the cells empty there, or cut the stretch";
+    let stuck = Finding::new(FindingCode::RepeatedValues, message, remedy);
+    Some(
+        stuck
+            .with_severity(severity)
+            .of_channel(name)
+            .at_rows(&rows),
+    )
+}
+
+/// Whether a channel that stands still is no signal that has come to rest: it has noise elsewhere, or goes on with a jump.
+fn is_no_rest(
+    name: &str,
+    values: &[f64],
+    segments: &[Range<usize>],
+    stretch: &Range<usize>,
+) -> bool {
+    let changes: Vec<f64> = (segments.iter())
+        .flat_map(|segment| values[segment.clone()].windows(2))
+        .map(|pair| pair[1] - pair[0])
+        .filter(|change| change.is_finite() && *change != 0.0)
+        .collect();
+    let turns = changes.windows(2).filter(|pair| pair[0] * pair[1] < 0.0);
+    if turns.count() as f64 > NOISY * changes.len() as f64 {
+        return true;
+    }
+    // a command may rest and step as it likes
+    let within = segments
+        .iter()
+        .any(|segment| stretch.end < segment.end && segment.contains(&stretch.start));
+    let sizes = sorted(changes.iter().map(|change| change.abs()));
+    let usual = percentile(&sizes, 0.9).unwrap_or(f64::INFINITY);
+    let jumps = within && (values[stretch.end] - values[stretch.end - 1]).abs() > JUMP * usual;
+    jumps && !is_control(name)
 }
 
 /// A stretch at the very start may be the steady state before a simulated maneuver.
@@ -91,12 +118,16 @@ fn stuck_among(stretches: &[Range<usize>]) -> Vec<&Range<usize>> {
     if (equal as f64) < RARELY_EQUAL * samples as f64 {
         return long;
     }
-    // Quantised: one stretch far longer than all others.
+    // Quantised: one stretch far longer than all others, and than the shares of equal neighbours make likely.
+    let share = equal as f64 / samples as f64;
+    let likely = |length: usize| samples as f64 * share.powf(length as f64) > CHANCE;
     let mut by_length: Vec<&Range<usize>> = stretches.iter().collect();
     by_length.sort_by_key(|stretch| std::cmp::Reverse(stretch.len()));
     match by_length.as_slice() {
         [longest, next, ..]
-            if longest.len() >= LONG && longest.len() >= LONGER_THAN_OTHERS * next.len() =>
+            if longest.len() >= LONG
+                && longest.len() >= LONGER_THAN_OTHERS * next.len()
+                && !likely(longest.len()) =>
         {
             vec![*longest]
         }
@@ -120,66 +151,6 @@ fn equal_stretches(values: &[f64], segment: Range<usize>) -> Vec<Range<usize>> {
     stretches
 }
 
-/// Rows that repeat the row before them in every channel that changes at all.
-pub(super) struct RepeatedRows {
-    is_repeated: Vec<bool>,
-}
-
-impl RepeatedRows {
-    pub(super) fn of(maneuver: &Maneuver, segments: &[Range<usize>]) -> Self {
-        let changes = |values: &&Vec<f64>| values.windows(2).any(|pair| pair[0] != pair[1]);
-        let channels = maneuver.channels().values();
-        let changing: Vec<&Vec<f64>> = channels
-            .map(|channel| &channel.values)
-            .filter(|values| changes(values))
-            .collect();
-        let mut is_repeated = vec![changing.len() >= ENOUGH_CHANNELS; maneuver.len()];
-        for segment in segments {
-            is_repeated[segment.start] = false;
-        }
-        for values in changing {
-            for (k, pair) in values.windows(2).enumerate() {
-                is_repeated[k + 1] &= pair[0] == pair[1];
-            }
-        }
-        Self { is_repeated }
-    }
-
-    /// Whether a stretch of equal values is nothing but repeated rows.
-    fn cover(&self, stretch: &Range<usize>) -> bool {
-        self.is_repeated[stretch.start + 1..stretch.end]
-            .iter()
-            .all(|&repeated| repeated)
-    }
-
-    pub(super) fn finding(&self) -> Option<Finding> {
-        let rows: Vec<usize> = (0..self.is_repeated.len())
-            .filter(|&row| self.is_repeated[row])
-            .collect();
-        let moving = self.is_repeated.iter().skip(1).position(|&row| !row)?;
-        let severity = if rows.iter().all(|&row| row <= moving) {
-            Severity::Note
-        } else {
-            Severity::Warning
-        };
-        if rows.is_empty() {
-            return None;
-        }
-        let message = format!(
-            "{} row(s) repeat the row before them in every channel that changes",
-            rows.len()
-        );
-        Some(finding(
-            "repeated_rows",
-            severity,
-            None,
-            &rows,
-            message,
-            "if the recorder wrote a sample more than once, keep the first of each; a lower rate may be the true one",
-        ))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::tests::{maneuver, noise};
@@ -188,7 +159,7 @@ mod tests {
     fn stuck_rows(values: Vec<f64>) -> Vec<(usize, Severity)> {
         let maneuver = maneuver(&[("q", values)]);
         let segments = maneuver.sampling().segments();
-        let repeated = RepeatedRows::of(&maneuver, &segments);
+        let repeated = RepeatedRows::of(&super::super::Record::of(&maneuver), &segments);
         let values = &maneuver.channels()["q"].values;
         let found = stuck("q", values, &segments, &repeated);
         found.map_or(Vec::new(), |finding| {
@@ -222,6 +193,32 @@ mod tests {
     }
 
     #[test]
+    fn an_elevator_that_comes_to_rest_is_none_and_a_frozen_attitude_is_one() {
+        let sweep = |k: usize| (0.0004 * (k * k) as f64).sin();
+        let swept: Vec<f64> = (0..400)
+            .map(|k| if k < 250 { sweep(k) } else { sweep(250) })
+            .collect();
+        let found = |name: &str, values: Vec<f64>| {
+            let maneuver = maneuver(&[(name, values)]);
+            let record = super::super::Record::of(&maneuver);
+            let segments = record.segments();
+            let repeated = RepeatedRows::of(&record, &segments);
+            stuck(name, &record.series[0].values, &segments, &repeated).is_some()
+        };
+        assert!(!found("de", swept.clone()));
+        assert!(!found("theta", swept));
+        let frozen: Vec<f64> = (0..400)
+            .map(|k| (0.05 * f64::from(if (180..240).contains(&k) { 180 } else { k })).sin())
+            .collect();
+        assert!(found("theta", frozen));
+        // a quantised channel that drifts slowly
+        let slow: Vec<f64> = (0..800)
+            .map(|k| (0.03 * f64::from(k) + 0.4 * noise(k as usize)).round())
+            .collect();
+        assert!(!found("y_cg", slow));
+    }
+
+    #[test]
     fn constants_are_notes() {
         let found = constant("gear", &[f64::NAN, 0.0, 0.0]).unwrap();
         assert_eq!(
@@ -230,26 +227,5 @@ mod tests {
         );
         assert_eq!(constant("q", &[0.0, 1.0]), None);
         assert_eq!(constant("q", &[f64::NAN; 3]), None);
-    }
-
-    #[test]
-    fn rows_written_twice_are_seen() {
-        let names = ["a", "b", "c", "d"];
-        let channels: Vec<(&str, Vec<f64>)> = names
-            .iter()
-            .zip([1, 2, 3, 4])
-            .map(|(name, seed)| {
-                let values = (0..100).map(|k| noise(seed * 1000 + if k >= 50 { k - 1 } else { k }));
-                (*name, values.collect())
-            })
-            .collect();
-        let found = |channels: &[(&str, Vec<f64>)]| {
-            let maneuver = maneuver(channels);
-            RepeatedRows::of(&maneuver, &maneuver.sampling().segments()).finding()
-        };
-        let finding = found(&channels).unwrap();
-        assert_eq!((finding.rows.as_slice(), finding.count), (&[51][..], 1));
-        assert_eq!(finding.severity, Severity::Warning);
-        assert_eq!(found(&channels[..3]), None, "too few channels to tell");
     }
 }

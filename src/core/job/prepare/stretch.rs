@@ -1,0 +1,145 @@
+//! Stretches of recordings that are simulated as one: some rows, and what becomes of the gaps among them.
+
+use std::ops::Range;
+
+use indexmap::IndexMap;
+
+use crate::flight::{Dimension, Maneuver};
+use crate::model::Recorded;
+use crate::simulate::Steps;
+
+/// Some rows of a recording, and what the job makes of them.
+pub(super) struct Stretch<'m> {
+    pub maneuver: &'m Maneuver,
+    /// Of the recording, from 0.
+    pub rows: Range<usize>,
+    pub label: String,
+    /// The maneuver's place in the spec.
+    pub index: usize,
+    pub steps: Steps,
+    /// Whether it is what follows a gap of the rows in use.
+    pub is_behind_gap: bool,
+    /// Where gaps are integrated through.
+    filled: Option<Filled>,
+}
+
+/// Rows with samples without values put into their gaps.
+struct Filled {
+    time: Vec<f64>,
+    channels: IndexMap<String, Vec<f64>>,
+    /// The samples that were put in.
+    inserted: Vec<Range<usize>>,
+}
+
+/// A gap that is to be integrated through: the row behind it, and how many samples are put in.
+#[derive(Clone, Copy)]
+pub(super) struct Bridge {
+    pub before: usize,
+    pub samples: usize,
+}
+
+impl<'m> Stretch<'m> {
+    /// Of the maneuver at a place of the spec, at its usual step.
+    pub(super) fn new(
+        index: usize,
+        maneuver: &'m Maneuver,
+        rows: Range<usize>,
+        label: String,
+    ) -> Self {
+        Self {
+            maneuver,
+            rows,
+            label,
+            index,
+            steps: Steps::Even(maneuver.sampling().step),
+            is_behind_gap: false,
+            filled: None,
+        }
+    }
+
+    /// With samples put into gaps, evenly between the rows at both sides.
+    pub(super) fn through(mut self, bridges: &[Bridge]) -> Self {
+        if bridges.is_empty() {
+            return self;
+        }
+        let recorded = self.maneuver.time();
+        let (mut time, mut inserted) = (Vec::new(), Vec::new());
+        // by sample: the row that it is, if any
+        let mut origin: Vec<Option<usize>> = Vec::new();
+        for row in self.rows.clone() {
+            if let Some(bridge) = bridges.iter().find(|bridge| bridge.before == row) {
+                let (from, to) = (recorded[row - 1], recorded[row]);
+                let count = bridge.samples;
+                inserted.push(time.len()..time.len() + count);
+                time.extend(
+                    (1..=count).map(|k| from + (to - from) * k as f64 / (count + 1) as f64),
+                );
+                origin.extend(std::iter::repeat_n(None, count));
+            }
+            time.push(recorded[row]);
+            origin.push(Some(row));
+        }
+        let fill = |values: &[f64]| {
+            let value = |row: &Option<usize>| row.map_or(f64::NAN, |row| values[row]);
+            origin.iter().map(value).collect()
+        };
+        let channels = self.maneuver.channels().iter();
+        let channels = channels.map(|(name, channel)| (name.clone(), fill(&channel.values)));
+        self.filled = Some(Filled {
+            channels: channels.collect(),
+            time,
+            inserted,
+        });
+        self
+    }
+
+    pub(super) fn label(&self) -> &str {
+        &self.label
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.time().len()
+    }
+
+    /// The samples that no row has.
+    pub(super) fn inserted(&self) -> &[Range<usize>] {
+        self.filled.as_ref().map_or(&[], |filled| &filled.inserted)
+    }
+
+    /// The row of the recording that a sample is, from 0; of one that was put in, the row behind it.
+    pub(super) fn row(&self, sample: usize) -> usize {
+        let before = self.inserted().iter();
+        let put_in: usize = before
+            .map(|range| sample.min(range.end).saturating_sub(range.start))
+            .sum();
+        self.rows.start + sample - put_in
+    }
+
+    /// The samples that are rows of the recording, with their rows.
+    pub(super) fn recorded(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let is_row = |sample: &usize| !self.inserted().iter().any(|range| range.contains(sample));
+        (0..self.len())
+            .filter(is_row)
+            .map(|sample| (sample, self.row(sample)))
+    }
+}
+
+impl Recorded for Stretch<'_> {
+    fn time(&self) -> &[f64] {
+        match &self.filled {
+            Some(filled) => &filled.time,
+            None => &self.maneuver.time()[self.rows.clone()],
+        }
+    }
+    fn channel(&self, name: &str) -> Option<(&[f64], Dimension)> {
+        let channel = self.maneuver.channels().get(name)?;
+        let values = match &self.filled {
+            Some(filled) => filled.channels.get(name)?.as_slice(),
+            None => &channel.values[self.rows.clone()],
+        };
+        Some((values, channel.unit.dimension))
+    }
+    fn names(&self) -> Vec<String> {
+        self.maneuver.channels().keys().cloned().collect()
+    }
+}

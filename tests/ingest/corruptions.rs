@@ -1,0 +1,162 @@
+//! Clean recordings with one thing put wrong, fifty times each, by seeds: how often it is found.
+
+use trimtab_core::flight::{Channel, Finding, Maneuver, quality};
+use trimtab_core::model::{Model, catalog};
+use trimtab_core::simulate::Scenario;
+
+const SEEDS: u64 = 50;
+
+/// The bundled elevator maneuver with noise of this seed.
+fn clean(seed: u64) -> Maneuver {
+    let mut scenario: Scenario = toml::from_str(include_str!("../../data/elevator.toml")).unwrap();
+    scenario.seed = seed;
+    let model = Model::compile(&catalog::find("short-period").unwrap()).unwrap();
+    scenario.fly(&model).unwrap()
+}
+
+/// A number from 0 to `below`, scattered by the seed.
+fn draw(seed: u64, salt: u64, below: usize) -> usize {
+    let mixed = (seed * 1000 + salt + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let mixed = (mixed ^ (mixed >> 31)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    ((mixed >> 33) as usize) % below
+}
+
+/// As a recorder writes it: four decimals of the recorded unit.
+fn rounded(channel: &Channel) -> Channel {
+    let unit = channel.unit;
+    let round = |value: &f64| unit.to_si((unit.from_si(*value) * 1e4).round() / 1e4);
+    Channel {
+        values: channel.values.iter().map(round).collect(),
+        ..channel.clone()
+    }
+}
+
+fn corrupted(
+    seed: u64,
+    wrong: &dyn Fn(u64, &mut Vec<f64>, &mut Vec<(String, Channel)>),
+) -> Vec<Finding> {
+    let maneuver = clean(seed);
+    let mut time = maneuver.time().to_vec();
+    let channels = maneuver.channels().iter();
+    let mut channels: Vec<(String, Channel)> = channels
+        .map(|(name, channel)| (name.clone(), rounded(channel)))
+        .collect();
+    wrong(seed, &mut time, &mut channels);
+    quality(&Maneuver::new(time, channels.into_iter().collect()).unwrap())
+}
+
+fn of<'c>(channels: &'c mut [(String, Channel)], name: &str) -> &'c mut Vec<f64> {
+    let channel = channels.iter_mut().find(|(known, _)| known == name);
+    &mut channel.expect("the channel").1.values
+}
+
+type Wrong = dyn Fn(u64, &mut Vec<f64>, &mut Vec<(String, Channel)>);
+
+#[test]
+fn what_was_put_wrong_is_found() {
+    let output = |seed: u64| if draw(seed, 7, 2) == 0 { "alpha" } else { "q" };
+    let held = move |seed: u64, _: &mut Vec<f64>, channels: &mut Vec<(String, Channel)>| {
+        let every = 2 + draw(seed, 1, 9);
+        let values = of(channels, output(seed));
+        (0..values.len()).for_each(|k| values[k] = values[k / every * every]);
+    };
+    let uneven_held = move |seed: u64, _: &mut Vec<f64>, channels: &mut Vec<(String, Channel)>| {
+        let every = 2.3 + draw(seed, 1, 60) as f64 / 10.0;
+        let values = of(channels, output(seed));
+        for k in 0..values.len() {
+            values[k] = values[((k as f64 / every).floor() * every).ceil() as usize];
+        }
+    };
+    let sentinel = move |seed: u64, _: &mut Vec<f64>, channels: &mut Vec<(String, Channel)>| {
+        let number = [-9999.0, -999.25, 1e30, 65535.0, 32767.0][draw(seed, 2, 5)];
+        let name = output(seed);
+        let unit = channels
+            .iter()
+            .find(|(known, _)| known == name)
+            .unwrap()
+            .1
+            .unit;
+        let values = of(channels, name);
+        for place in 0..=draw(seed, 3, 5) as u64 {
+            let row = draw(seed, 10 + place, values.len());
+            values[row] = unit.to_si(number);
+        }
+    };
+    let degrees = move |seed: u64, _: &mut Vec<f64>, channels: &mut Vec<(String, Channel)>| {
+        let down = draw(seed, 4, 2) == 0;
+        let values = of(channels, output(seed));
+        values
+            .iter_mut()
+            .for_each(|v| *v = if down { v.to_radians() } else { v.to_degrees() });
+    };
+    let sign = move |seed: u64, _: &mut Vec<f64>, channels: &mut Vec<(String, Channel)>| {
+        of(channels, output(seed)).iter_mut().for_each(|v| *v = -*v);
+    };
+    let milliseconds = |seed: u64, time: &mut Vec<f64>, _: &mut Vec<(String, Channel)>| {
+        let factor = [1e3, 1e6, 1e-3][draw(seed, 5, 3)];
+        time.iter_mut().for_each(|t| *t *= factor);
+    };
+    let ticks = |seed: u64, time: &mut Vec<f64>, _: &mut Vec<(String, Channel)>| {
+        let tick = [1.0 / 512.0, 0.003, 0.007, 1.0 / 128.0][draw(seed, 6, 4)];
+        time.iter_mut()
+            .for_each(|t| *t = (*t / tick).floor() * tick);
+    };
+    let twice = |seed: u64, _: &mut Vec<f64>, channels: &mut Vec<(String, Channel)>| {
+        let row = 20 + draw(seed, 8, 500);
+        for (_, channel) in channels {
+            channel.values[row] = channel.values[row - 1];
+        }
+    };
+    let block = |seed: u64, _: &mut Vec<f64>, channels: &mut Vec<(String, Channel)>| {
+        let (row, length) = (300 + draw(seed, 8, 100), 40 + draw(seed, 9, 100));
+        for (_, channel) in channels {
+            channel
+                .values
+                .copy_within(row - 200..row - 200 + length, row);
+        }
+    };
+    let frozen = move |seed: u64, _: &mut Vec<f64>, channels: &mut Vec<(String, Channel)>| {
+        let (row, length) = (100 + draw(seed, 8, 300), 26 + draw(seed, 9, 100));
+        let values = of(channels, output(seed));
+        let value = values[row];
+        values[row..row + length].fill(value);
+    };
+    let kinds: [(&str, &[&str], &Wrong); 10] = [
+        ("held", &["held_channel"], &held),
+        (
+            "held, rates that do not divide",
+            &["held_channel"],
+            &uneven_held,
+        ),
+        ("a number for no value", &["sentinel"], &sentinel),
+        ("degrees and radians", &["channels_disagree"], &degrees),
+        ("a sign", &["channels_disagree"], &sign),
+        (
+            "a unit of time",
+            &["implausible_rate", "channels_disagree"],
+            &milliseconds,
+        ),
+        ("a clock in ticks", &["coarse_clock"], &ticks),
+        ("one row twice", &["repeated_rows"], &twice),
+        ("a block of rows twice", &["repeated_rows"], &block),
+        ("a frozen channel", &["repeated_values"], &frozen),
+    ];
+    let mut poor = Vec::new();
+    for (name, codes, wrong) in kinds {
+        let is_found = |seed: &u64| {
+            let found = corrupted(*seed, wrong);
+            found
+                .iter()
+                .any(|finding| codes.contains(&finding.code.as_str()))
+        };
+        let hits = (0..SEEDS).filter(is_found).count();
+        eprintln!("{name}: {hits} of {SEEDS}");
+        if hits < 48 {
+            poor.push(format!("{name}: {hits} of {SEEDS}"));
+        }
+    }
+    let clean = (0..SEEDS).flat_map(|seed| corrupted(seed, &|_, _, _| {}));
+    let alarms: Vec<Finding> = clean.filter(Finding::is_warning).collect();
+    eprintln!("nothing wrong: {} warnings in {SEEDS}", alarms.len());
+    assert!(poor.is_empty() && alarms.is_empty(), "{poor:?} {alarms:?}");
+}
