@@ -56,6 +56,22 @@ fn solve(options: Value) -> JobResult {
     job::run(&plan, &mut |_| ControlFlow::Continue(())).unwrap_or_else(|f| panic!("{f:#?}"))
 }
 
+/// Nothing is said of steps, of instability or of a poor fit.
+fn assert_no_doubt(result: &JobResult) {
+    let found = &result.estimate.findings;
+    for code in [
+        "step_too_long",
+        "mode_at_edge",
+        "unstable_model",
+        "second_look",
+    ] {
+        assert!(
+            found.iter().all(|finding| finding.code != code),
+            "{found:#?}"
+        );
+    }
+}
+
 #[test]
 fn output_error_says_that_it_cannot_follow_and_what_filter_error_finds() {
     let result = solve(json!({"input_interpolation": "hold"}));
@@ -87,11 +103,7 @@ fn output_error_says_that_it_cannot_follow_and_what_filter_error_finds() {
         );
         assert!(error < 0.05 * truth.abs(), "{name} ± {error}");
     }
-    assert!(
-        filtered.estimate.findings.is_empty(),
-        "{:#?}",
-        filtered.estimate.findings
-    );
+    assert_no_doubt(&filtered);
 }
 
 /// The same equations, stable: nothing to say.
@@ -118,9 +130,5 @@ fn a_stable_model_has_no_such_finding() {
     let options = json!({"options": {"input_interpolation": "hold"}});
     let plan = plan(stable, options, &[maneuver]);
     let result = job::run(&plan, &mut |_| ControlFlow::Continue(())).unwrap();
-    assert!(
-        result.estimate.findings.is_empty(),
-        "{:#?}",
-        result.estimate.findings
-    );
+    assert_no_doubt(&result);
 }
