@@ -13,7 +13,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use trimtab_core::flight::{Channel, Maneuver, Unit};
 use trimtab_core::model::{Model, ModelDocument, catalog};
-use trimtab_core::simulate::{InputInterpolation, Integrator, Segment, Steps, simulate};
+use trimtab_core::simulate::{InputInterpolation, Integrator, Segment, Steps, Substeps, simulate};
 
 const STEP: f64 = 0.05;
 const SAMPLES: usize = 1200;
@@ -192,6 +192,7 @@ fn answer(model: &Model, inputs: &[Vec<f64>], parameters: &[f64]) -> Vec<Vec<f64
         label: String::new(),
         time: (0..fine).map(|i| i as f64 * step).collect(),
         steps: Steps::Even(step),
+        substeps: Substeps::default(),
         inputs: inputs.iter().map(between).collect(),
         measured: Vec::new(),
     };

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use trimtab_core::estimate::{Options, Problem, Unknowns};
 use trimtab_core::model::{Model, ModelDocument, Start, catalog};
-use trimtab_core::simulate::{Segment, Steps, simulate};
+use trimtab_core::simulate::{Segment, Steps, Substeps, simulate};
 
 /// As many samples as Machado's tables are made with.
 pub(crate) const SAMPLES: usize = 1502;
@@ -335,6 +335,7 @@ pub(crate) fn made(
         label: "1".into(),
         time: (0..SAMPLES).map(|k| k as f64 * step).collect(),
         steps: Steps::Even(step),
+        substeps: Substeps::default(),
         inputs: (model.inputs.iter().enumerate())
             .map(|(i, input)| inputs(&input.name, i))
             .collect(),

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use trimtab_core::estimate::{Estimate, Outcome};
 use trimtab_core::flight::{Channel, Maneuver};
 use trimtab_core::model::{Model, catalog};
-use trimtab_core::simulate::{InputInterpolation, Integrator, Segment, Steps, simulate};
+use trimtab_core::simulate::{InputInterpolation, Integrator, Segment, Steps, Substeps, simulate};
 
 /// Of some 150 estimates with exact bounds, one beyond 4 is to be expected in a hundred sets of seeds.
 const WITHIN_STANDARD_ERRORS: f64 = 4.0;
@@ -115,6 +115,7 @@ fn reconstruction(
         label: String::new(),
         time: flight.time().to_vec(),
         steps: Steps::Even(step),
+        substeps: Substeps::default(),
         inputs,
         measured: Vec::new(),
     };

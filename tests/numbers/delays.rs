@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use trimtab_core::flight::{Channel, Maneuver, Unit};
 use trimtab_core::model::{Model, ModelDocument};
 use trimtab_core::simulate::{
-    Columns, InputInterpolation, Integrator, Segment, Sensitivities, Steps, simulate,
+    Columns, InputInterpolation, Integrator, Segment, Sensitivities, Steps, Substeps, simulate,
 };
 
 /// Multiples of the mean step: negative, zero, whole ones and others, longer than a block, longer than the recording.
@@ -49,6 +49,7 @@ fn segments() -> [Segment; 2] {
             label: "test".into(),
             time: (0..130).map(|k| 0.04 * k as f64).collect(),
             steps,
+            substeps: Substeps::default(),
             inputs: vec![wave(0.11), wave(0.05)],
             measured: vec![vec![0.0; 130]; 3],
         }

@@ -12,7 +12,7 @@ use trimtab_core::estimate::{
     output_error,
 };
 use trimtab_core::model::{Model, Start, catalog};
-use trimtab_core::simulate::{InputInterpolation, Integrator, Segment, Steps, simulate};
+use trimtab_core::simulate::{InputInterpolation, Integrator, Segment, Steps, Substeps, simulate};
 
 /// A segment in which every input moves, deterministic; what is measured is still to be made.
 fn segment(model: &Model, samples: usize, uneven: bool) -> Segment {
@@ -30,6 +30,7 @@ fn segment(model: &Model, samples: usize, uneven: bool) -> Segment {
     Segment {
         label: "1".into(),
         time: (0..samples).map(|k| k as f64 * step).collect(),
+        substeps: Substeps::default(),
         steps: if uneven {
             Steps::Uneven((0..samples - 1).map(length).collect())
         } else {

@@ -6,7 +6,7 @@ use trimtab_core::flight::Maneuver;
 use trimtab_core::flight::Unit;
 use trimtab_core::model::{Edit, EditKind, Model, ModelDocument, Start, catalog};
 use trimtab_core::simulate::{
-    InputInterpolation, Integrator, Scenario, ScenarioEffect, Segment, Steps, simulate,
+    InputInterpolation, Integrator, Scenario, ScenarioEffect, Segment, Steps, Substeps, simulate,
 };
 
 const STEP: f64 = 0.02;
@@ -75,6 +75,7 @@ fn outputs(document: &ModelDocument, values: &[(&str, f64)]) -> IndexMap<String,
         label: String::new(),
         time: (0..COUNT).map(|k| k as f64 * STEP).collect(),
         steps: Steps::Even(STEP),
+        substeps: Substeps::default(),
         inputs: (model.inputs.iter())
             .map(|quantity| (0..COUNT).map(|k| input(&quantity.name, k)).collect())
             .collect(),

@@ -2,7 +2,8 @@
 
 use trimtab_core::model::{Model, ModelDocument, Start, catalog};
 use trimtab_core::simulate::{
-    Columns, InputInterpolation, Integrator, Outputs, Segment, Sensitivities, Steps, simulate,
+    Columns, InputInterpolation, Integrator, Outputs, Segment, Sensitivities, Steps, Substeps,
+    simulate,
 };
 
 const SAMPLES: usize = 150;
@@ -83,6 +84,7 @@ fn segment(model: &Model) -> Segment {
         time: (0..SAMPLES).map(time).collect(),
         // listed steps: no model goes by a constant matrix
         steps: Steps::Uneven(steps.clone()),
+        substeps: Substeps::default(),
         inputs: series(model.inputs.len()),
         measured: series(model.outputs.len()),
     }

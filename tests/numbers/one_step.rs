@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use trimtab_core::model::{Model, ModelDocument, Start, catalog};
 use trimtab_core::simulate::{
-    Columns, InputInterpolation, Integrator, Outputs, Segment, Sensitivities, Steps,
+    Columns, InputInterpolation, Integrator, Outputs, Segment, Sensitivities, Steps, Substeps,
 };
 
 /// Both ways do the same operations in another order: some hundred roundings of 1e-16 a step over 200 steps of
@@ -32,6 +32,7 @@ fn segment(model: &Model, steps: Steps, samples: usize) -> Segment {
         label: "test".into(),
         time: (0..samples).map(|k| k as f64 * STEP).collect(),
         steps,
+        substeps: Substeps::default(),
         inputs: series(model.inputs.len()),
         measured: series(model.outputs.len()),
     }

@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 use trimtab_core::model::{Model, catalog};
 use trimtab_core::simulate::{
-    Columns, InputInterpolation, Integrator, Segment, Sensitivities, Steps, simulate,
+    Columns, InputInterpolation, Integrator, Segment, Sensitivities, Steps, Substeps, simulate,
 };
 
 /// The two differ by rounding alone: the complex step has no truncation error at this size, and
@@ -32,6 +32,7 @@ fn segment(model: &Model, samples: usize) -> Segment {
         label: "test".into(),
         time: (0..samples).map(|k| k as f64 * step).collect(),
         steps: Steps::Even(step),
+        substeps: Substeps::default(),
         inputs: series(model.inputs.len()),
         measured: series(model.outputs.len()),
     }

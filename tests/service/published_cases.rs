@@ -24,7 +24,8 @@ async fn estimate(server: &Server, name: &str, case: &Case, method: &str) -> Est
         "model": case.model,
         "channels": case.channels,
         "maneuvers": maneuvers,
-        "options": {"method": method, "start": {"kind": "document"}},
+        // the reference takes one step a sample
+        "options": {"method": method, "start": {"kind": "document"}, "steps_per_sample": 1},
     });
     let id = server.submit(&spec).await;
     let done = server.wait(&id).await;

@@ -6,7 +6,7 @@ use indexmap::IndexMap;
 use crate::estimate::Role;
 use crate::flight::Dimension;
 use crate::model::{Model, Recorded};
-use crate::simulate::{Segment, Steps};
+use crate::simulate::{Segment, Steps, Substeps};
 
 /// One continuous stretch of a recording.
 #[derive(Clone, PartialEq, Debug)]
@@ -50,6 +50,7 @@ impl Flight {
             label: self.label.clone(),
             time: self.time.clone(),
             steps: self.steps.clone(),
+            substeps: Substeps::default(),
             inputs,
             measured: model.outputs.iter().map(values).collect::<Result<_, _>>()?,
         })

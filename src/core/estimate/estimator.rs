@@ -2,10 +2,10 @@
 
 use crate::estimate::answer::Solution;
 use crate::estimate::equation_error::equation_error;
-use crate::estimate::filter_error::filter_error;
+use crate::estimate::filter_error::finer_steps::filter_error_in_steps;
 use crate::estimate::findings::findings;
 use crate::estimate::options::estimator::Estimator;
-use crate::estimate::output_error::second_try;
+use crate::estimate::output_error::finer_steps::from_start;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::progress::{Progress, Watcher};
@@ -17,8 +17,8 @@ use crate::flight::FindingCode;
 /// There is nothing to begin with: why.
 pub fn estimate(problem: &Problem, watcher: &mut Watcher<'_>) -> Result<Solution, Unusable> {
     let mut solution = match problem.options.estimator {
-        Estimator::OutputError => second_try::from_start(problem, watcher),
-        Estimator::FilterError => filter_error(problem, &mut |iteration| {
+        Estimator::OutputError => from_start(problem, watcher),
+        Estimator::FilterError => filter_error_in_steps(problem, &mut |iteration| {
             watcher(Progress::Iteration(iteration))
         }),
         Estimator::EquationError => equation_error(problem, &mut |iteration| {

@@ -67,11 +67,13 @@ pub use options::estimator::Estimator;
 pub use options::process_noise::ProcessNoise;
 pub use options::role::Role;
 pub use options::start::StartMethod;
+pub use options::steps::{Auto, StepsPerSample};
 pub use options::technique::{Derivatives, Scaling};
 pub use options::{Method, Noise, NoiseStructure, Options};
 pub use output_error::output_error;
 pub use prediction::{Validation, predict};
 pub use problem::Problem;
+pub use problem::substeps::TooStiff;
 pub use problem::unknowns::{Unknown, Unknowns};
 pub use problem::unusable::Unusable;
 pub use report::collinear::CollinearSet;
@@ -82,6 +84,7 @@ pub use report::history::{OutputSeries, Series, TimeHistory};
 pub use report::identifiability::{
     CorrelatedPair, DataInformation, Identifiability, NearlyCollinearSet,
 };
+pub use report::integration::{HalvedSteps, Integration};
 pub use report::iteration::{Iteration, Outcome};
 pub use report::mode::{Measure, Mode};
 pub use report::parameter::{Bound, ParameterEstimate};

@@ -103,6 +103,14 @@ codes! {
     UnstableModel "unstable_model" Warning;
     /// The solver stopped short of a minimum: the numbers are not an estimate, and their error bounds mean little.
     NotConverged "not_converged" Fault;
+    /// The integration steps are too long for the accuracy of the estimate: with half their length a parameter would move by more than a tenth of its standard error.
+    StepTooLong "step_too_long" Warning;
+    /// The fastest motion of the estimate is at the edge of what an integration step can follow.
+    ModeAtEdge "mode_at_edge" Warning;
+    /// The model is so unstable with its start values that no simulation follows the motion.
+    UnstableModel "unstable_model" Warning;
+    /// A fit was poor beside what equation error reaches, and other starts were tried.
+    SecondLook "second_look" Warning;
     /// A parameter is held at a bound.
     AtBound "at_bound" Note;
     /// The data cannot tell some parameters apart.

@@ -16,6 +16,7 @@
 //! are evaluated side by side, as those of the forward sensitivities are.
 
 use super::method::{InputInterpolation, Integrator, Stage};
+use super::refined::Refined;
 use super::segment::Segment;
 use super::side_by_side::{SPAN, SideBySide};
 use super::simulation::{Diverged, initial_state};
@@ -103,6 +104,9 @@ impl<'m> Adjoint<'m> {
         parameters: &[f64],
         mut sink: impl FnMut(usize, &[f64]),
     ) -> Result<Checkpoints, Diverged> {
+        let refined = Refined::of(segment, self.interpolation);
+        let refined = refined.as_ref();
+        let segment = refined.map_or(segment, |refined| &refined.segment);
         self.stepper.set_parameters(parameters);
         self.outputs.set_parameters(parameters);
         let mut state = initial_state(self.model, parameters);
@@ -115,14 +119,17 @@ impl<'m> Adjoint<'m> {
             let len = SPAN.min(segment.len() - first);
             self.integrate(segment, first, len, &mut elapsed, &mut state);
             if state.iter().any(|x| !x.is_finite()) {
-                return Err(Diverged { sample: first });
+                return Err(Diverged { sample: first }.in_samples(refined));
             }
             self.evaluate(segment, first, len, false);
             for k in 0..len {
+                let Some(number) = number(refined, first + k) else {
+                    continue;
+                };
                 for (i, y) in sample.iter_mut().enumerate() {
                     *y = self.outputs.result(0, i)[k];
                 }
-                sink(first + k, &sample);
+                sink(number, &sample);
             }
         }
         Ok(kept)
@@ -139,6 +146,9 @@ impl<'m> Adjoint<'m> {
         gradient: &mut [f64],
     ) {
         let n = self.model.states.len();
+        let refined = Refined::of(segment, self.interpolation);
+        let refined = refined.as_ref();
+        let segment = refined.map_or(segment, |refined| &refined.segment);
         self.stepper.set_parameters(parameters);
         self.dynamics.set_parameters(parameters);
         self.observation.set_parameters(parameters);
@@ -160,10 +170,16 @@ impl<'m> Adjoint<'m> {
             self.integrate(segment, first, len, &mut elapsed, &mut state);
             self.evaluate(segment, first, len, true);
             for k in 0..len {
-                for (i, y) in y.iter_mut().enumerate() {
-                    *y = self.outputs.result(0, i)[k];
+                match number(refined, first + k) {
+                    Some(number) => {
+                        for (i, y) in y.iter_mut().enumerate() {
+                            *y = self.outputs.result(0, i)[k];
+                        }
+                        seed(number, &y, &mut y_bar);
+                    }
+                    // nothing is measured between samples
+                    None => y_bar.fill(0.0),
                 }
-                seed(first + k, &y, &mut y_bar);
                 for (to, &value) in self.seeds.iter_mut().zip(&y_bar) {
                     to[k] = value;
                 }
@@ -325,6 +341,14 @@ impl<'m> Adjoint<'m> {
         let own = [&self.stage_states, &self.slopes, &self.seeds];
         let own: usize = own.iter().map(|all| size_of_val(all.as_slice())).sum();
         own + self.dynamics.bytes() + self.observation.bytes() + self.outputs.bytes()
+    }
+}
+
+/// The recorded sample that an integration step begins at, where there is one.
+fn number(refined: Option<&Refined>, step: usize) -> Option<usize> {
+    match refined {
+        Some(refined) => refined.sample(step),
+        None => Some(step),
     }
 }
 

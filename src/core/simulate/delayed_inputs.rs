@@ -31,6 +31,7 @@ pub(crate) fn driven<'s>(model: &Model, segment: &'s Segment, delays: &[f64]) ->
         label: String::new(),
         time: segment.time.clone(),
         steps: segment.steps.clone(),
+        substeps: segment.substeps,
         inputs,
         // nothing that is driven looks at what is measured
         measured: Vec::new(),

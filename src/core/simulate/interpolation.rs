@@ -184,6 +184,7 @@ fn hermite(s: f64, h: f64) -> ([f64; 4], [f64; 4]) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::segment::Substeps;
     use super::*;
 
     fn axes() -> [Axis; 2] {
@@ -193,6 +194,7 @@ mod tests {
                 label: String::new(),
                 time: vec![0.0; 20],
                 steps,
+                substeps: Substeps::default(),
                 inputs: Vec::new(),
                 measured: Vec::new(),
             })

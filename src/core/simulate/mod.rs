@@ -1,6 +1,6 @@
 //! Outputs of a model for parameters and a maneuver, and their sensitivities.
 //!
-//! dx/dt = f(x, u, θ), x(0) = x0(θ), y_k = g(x_k, u_k, θ), stepped once a sample by an explicit method.
+//! dx/dt = f(x, u, θ), x(0) = x0(θ), y_k = g(x_k, u_k, θ), stepped by an explicit method, once a sample or more often.
 //! [`simulate`] gives y for any kind of number; [`Sensitivities`] gives y and ∂y/∂θ, the adjoint the
 //! product (∂y/∂θ)ᵀ ȳ alone. A [`Scenario`] makes a maneuver of known truth. Inputs and outputs that the model delays
 //! are delayed here: inputs before a run, outputs behind it.
@@ -23,7 +23,9 @@ mod one_step_recursion;
 mod output_rows;
 mod outputs;
 mod pack;
+mod rates;
 mod recursion;
+mod refined;
 mod scenario;
 mod segment;
 mod sensitivity;
@@ -44,11 +46,13 @@ pub(crate) use march::{March, Standing};
 pub use method::{InputInterpolation, Integrator};
 pub use outputs::Outputs;
 pub(crate) use pack::{PACK, Pack, multiply_add, packs};
+pub use rates::Rates;
+pub(crate) use rates::StateMatrixAt;
 pub use scenario::{
     InputDesign, NoiseColour, Scenario, ScenarioChannel, ScenarioEffect, ScenarioError,
     ScenarioInput, ScenarioOutput,
 };
-pub use segment::{Segment, Steps};
+pub use segment::{Segment, Steps, Substeps};
 pub use sensitivity::Sensitivities;
 pub use simulation::{Diverged, initial_state, simulate};
 pub(crate) use stepper::{Stepper, between};

@@ -1,9 +1,10 @@
-//! One integration step of a model that is affine in states and inputs, as a constant matrix:
+//! From one sample to the next in a model that is affine in states and inputs, as a constant matrix:
 //! x(k+1) = M z(k) with z(k) = (x(k), u(k), u(k+1), 1).
 //!
-//! With K_s the matrix of stage s, K_s = A Y_s + (0, (1 - σ_s) B, σ_s B, c), where Y_s = E + h a_s K_(s-1), E
-//! picks x out of z and σ_s is the share of the later input; M = E + h Σ w_s K_s. The derivative by a
-//! parameter follows by the product rule.
+//! With K_s the matrix of stage s, K_s = A Y_s + (0, (1 - σ_s) B, σ_s B, c), where Y_s = X + h a_s K_(s-1), X is
+//! the matrix of the state before the step and σ_s is the share of the later input; a step makes X + h Σ w_s K_s of it.
+//! It begins with E, which picks x out of z, and is M behind the last of the steps that lie between two samples: their
+//! number costs nothing along the samples. The derivative by a parameter follows by the product rule.
 
 use super::method::{InputInterpolation, Stage};
 use crate::model::{Affine, Coefficient, Factor, Model, Workspace};
@@ -15,7 +16,30 @@ const MOST_FACTORS: usize = 32;
 
 type Term = (Coefficient, f64);
 
-/// The matrix M for one θ and one length of step.
+/// The way from one sample to the next.
+#[derive(Clone, Copy)]
+pub(super) struct Stride {
+    /// s
+    pub length: f64,
+    /// Integration steps.
+    pub count: usize,
+    pub stages: &'static [Stage],
+    pub interpolation: InputInterpolation,
+}
+
+impl Stride {
+    fn step(&self) -> f64 {
+        self.length / self.count as f64
+    }
+
+    /// The share of the later sample at a stage of one of the steps.
+    fn share(&self, part: usize, stage: &Stage) -> f64 {
+        let node = (part as f64 + stage.node) / self.count as f64;
+        self.interpolation.share_of_next(node)
+    }
+}
+
+/// The matrix M for one θ, one distance of samples and one number of steps between them.
 pub(super) struct OneStep<'m> {
     affine: &'m Affine,
     workspace: Workspace<f64>,
@@ -23,7 +47,7 @@ pub(super) struct OneStep<'m> {
     inputs: usize,
     /// M, row by row.
     matrix: Vec<f64>,
-    /// Y_s, stage by stage.
+    /// Y_s, step by step and stage by stage.
     at: Vec<Vec<f64>>,
     /// The coefficients of A, B and c.
     own: Vec<Term>,
@@ -56,52 +80,46 @@ impl<'m> OneStep<'m> {
         &self.matrix
     }
 
-    /// Works out M for θ and the step `h`.
-    pub(super) fn set(
-        &mut self,
-        parameters: &[f64],
-        h: f64,
-        stages: &[Stage],
-        interpolation: InputInterpolation,
-    ) {
+    /// Works out M for θ.
+    pub(super) fn set(&mut self, parameters: &[f64], stride: &Stride) {
         self.affine
             .program
             .set_parameters(&mut self.workspace, parameters);
         self.own = self.terms(None);
-        let unit = self.unit();
-        self.matrix.clone_from(&unit);
+        self.matrix = self.unit();
         self.at.clear();
-        let mut slope = vec![0.0; unit.len()];
-        for stage in stages {
-            let mut at = unit.clone();
-            add(h * stage.advance, &slope, &mut at);
-            slope.fill(0.0);
-            let share = interpolation.share_of_next(stage.node);
-            self.apply(&self.own, share, &at, &mut slope);
-            add(h * stage.weight, &slope, &mut self.matrix);
-            self.at.push(at);
+        let mut slope = vec![0.0; self.matrix.len()];
+        let h = stride.step();
+        for part in 0..stride.count {
+            let before = self.matrix.clone();
+            for stage in stride.stages {
+                let mut at = before.clone();
+                add(h * stage.advance, &slope, &mut at);
+                slope.fill(0.0);
+                self.apply(&self.own, stride.share(part, stage), &at, &mut slope);
+                add(h * stage.weight, &slope, &mut self.matrix);
+                self.at.push(at);
+            }
         }
     }
 
-    /// ∂M/∂θ_p, row by row, for the θ and the step that are set.
-    pub(super) fn derivative(
-        &self,
-        parameter: usize,
-        h: f64,
-        stages: &[Stage],
-        interpolation: InputInterpolation,
-    ) -> Vec<f64> {
+    /// ∂M/∂θ_p, row by row, for the θ that is set and the same stride.
+    pub(super) fn derivative(&self, parameter: usize, stride: &Stride) -> Vec<f64> {
         let terms = self.terms(Some(parameter));
         let size = self.states * self.factors();
         let (mut slope, mut sum) = (vec![0.0; size], vec![0.0; size]);
-        for (stage, at) in stages.iter().zip(&self.at) {
-            let mut change = vec![0.0; size];
-            add(h * stage.advance, &slope, &mut change);
-            slope.fill(0.0);
-            let share = interpolation.share_of_next(stage.node);
-            self.apply(&terms, share, at, &mut slope);
-            self.apply_states(&change, &mut slope);
-            add(h * stage.weight, &slope, &mut sum);
+        let h = stride.step();
+        let mut at = self.at.iter();
+        for part in 0..stride.count {
+            let before = sum.clone();
+            for (stage, at) in stride.stages.iter().zip(&mut at) {
+                let mut change = before.clone();
+                add(h * stage.advance, &slope, &mut change);
+                slope.fill(0.0);
+                self.apply(&terms, stride.share(part, stage), at, &mut slope);
+                self.apply_states(&change, &mut slope);
+                add(h * stage.weight, &slope, &mut sum);
+            }
         }
         sum
     }

@@ -4,7 +4,7 @@ use multiversion::multiversion;
 
 use super::aligned::Aligned;
 use super::columns::Columns;
-use super::one_step::OneStep;
+use super::one_step::{OneStep, Stride};
 use super::pack::{PACK, Pack, multiply_add};
 use super::segment::Segment;
 use super::trajectory::Trajectory;
@@ -22,12 +22,11 @@ pub(super) struct OneStepRecursion {
 }
 
 impl OneStepRecursion {
-    /// Works out ∂M/∂θ for the θ and the step that are set.
+    /// Works out ∂M/∂θ for the θ that is set.
     pub(super) fn set(
         &mut self,
         one_step: &OneStep<'_>,
-        h: f64,
-        trajectory: &Trajectory<'_>,
+        stride: &Stride,
         columns: &Columns,
         width: usize,
     ) {
@@ -37,8 +36,7 @@ impl OneStepRecursion {
         let size = one_step.matrix().len();
         self.change = Aligned::zeros(width * size);
         for (column, &parameter) in columns.dynamic.iter().enumerate() {
-            let derivative =
-                one_step.derivative(parameter, h, trajectory.stages, trajectory.interpolation());
+            let derivative = one_step.derivative(parameter, stride);
             let to = &mut self.change[column / PACK * size..];
             for (to, value) in to.iter_mut().zip(derivative) {
                 to[column % PACK] = value;

@@ -2,6 +2,7 @@
 
 use super::linearised::Linearised;
 use super::method::{InputInterpolation, Integrator};
+use super::refined::Refined;
 use super::segment::Segment;
 use super::simulation::{Diverged, simulate};
 use super::trajectory::Trajectory;
@@ -14,6 +15,8 @@ pub struct Outputs<'m> {
     interpolation: InputInterpolation,
     trajectory: Trajectory<'m>,
     outputs: Linearised<'m>,
+    /// See [`Self::passed`].
+    passed: Vec<(usize, Vec<f64>)>,
 }
 
 impl<'m> Outputs<'m> {
@@ -29,6 +32,7 @@ impl<'m> Outputs<'m> {
             interpolation,
             trajectory: Trajectory::new(model, integrator, interpolation),
             outputs: Linearised::new(&model.observation, 1),
+            passed: Vec::new(),
         }
     }
 
@@ -43,23 +47,58 @@ impl<'m> Outputs<'m> {
         parameters: &[f64],
         mut sink: impl FnMut(usize, &[&[f64]]),
     ) -> Result<(), Diverged> {
+        self.passed.clear();
         if !self.model.delays.is_empty() {
             self.run_delayed(segment, parameters, sink);
             return Ok(());
         }
+        let refined = match self.trajectory.stride_of(segment) {
+            Some(_) => None,
+            None => Refined::of(segment, self.interpolation),
+        };
+        let samples = segment.len();
+        let segment = refined.as_ref().map_or(segment, |refined| &refined.segment);
         self.trajectory.start(segment, parameters);
         self.outputs.set_parameters(parameters);
+        let results = self.outputs.results();
+        let mut kept: Vec<Vec<f64>> = vec![Vec::new(); results];
+        let mut next = 0;
         for first in (0..segment.len()).step_by(BLOCK) {
             let len = BLOCK.min(segment.len() - first);
-            self.trajectory.advance(segment, first, len)?;
+            let advanced = self.trajectory.advance(segment, first, len);
+            advanced.map_err(|diverged| diverged.in_samples(refined.as_ref()))?;
+            let sample = refined
+                .as_ref()
+                .map_or(first, |refined| refined.sample_from(first));
+            self.passed.push((sample, self.trajectory.first_state()));
             self.outputs.evaluate(0, len, &self.trajectory);
-            let outputs: Vec<&[f64]> = (0..self.outputs.results())
-                .map(|output| &self.outputs.over_block(0, output)[..len])
-                .collect();
-            sink(first, &outputs);
+            let over_block = |output: usize| &self.outputs.over_block(0, output)[..len];
+            let Some(refined) = &refined else {
+                let outputs: Vec<&[f64]> = (0..results).map(over_block).collect();
+                sink(first, &outputs);
+                continue;
+            };
+            // of the steps, those that are at a sample
+            let until = refined.sample_from(first + len);
+            for (output, kept) in kept.iter_mut().enumerate() {
+                let at = refined.at[next + kept.len()..until].iter();
+                kept.extend(at.map(|&at| over_block(output)[at - first]));
+            }
+            if until - next >= BLOCK || until == samples {
+                let outputs: Vec<&[f64]> = kept.iter().map(Vec::as_slice).collect();
+                sink(next, &outputs);
+                kept.iter_mut().for_each(Vec::clear);
+                next = until;
+            }
         }
         Ok(())
     }
+
+    /// States that the last run went through, each with the sample it was at or came to next: one for some dozen steps.
+    pub(crate) fn passed(&self) -> &[(usize, Vec<f64>)] {
+        &self.passed
+    }
+
     /// Delayed outputs look back and ahead: the whole segment is one block.
     fn run_delayed(
         &self,

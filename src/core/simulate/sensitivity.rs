@@ -8,6 +8,9 @@
 //! Where the model is affine in states and inputs, one step is a constant matrix (`OneStep`): passes 1 and 3
 //! are then products with it, and there are no Jacobians of f to evaluate.
 //!
+//! Where there are several integration steps between samples, blocks are of steps, and only what is at a sample is handed
+//! on.
+//!
 //! The derivative is that of the discretised model, exact but for rounding. Memory does not grow with the
 //! length of the recording.
 
@@ -19,6 +22,7 @@ use super::linearised::Linearised;
 use super::method::{InputInterpolation, Integrator};
 use super::output_rows::OutputRows;
 use super::pack::Pack;
+use super::refined::{Refined, Thinning};
 use super::segment::Segment;
 use super::simulation::Diverged;
 use super::state_sensitivities::StateSensitivities;
@@ -78,6 +82,14 @@ impl<'m> Sensitivities<'m> {
         if let Some(line) = &mut self.delay_line {
             line.start(segment, parameters, &delays);
         }
+        let refined = match self.trajectory.stride_of(segment) {
+            Some(_) => None,
+            None => Refined::of(segment, self.trajectory.interpolation()),
+        };
+        let mut thinning = refined
+            .as_ref()
+            .map(|refined| (refined, Thinning::new(self.columns)));
+        let segment = refined.as_ref().map_or(segment, |refined| &refined.segment);
         self.trajectory.start(segment, parameters);
         if self.trajectory.one_step().is_none() {
             self.dynamics.set_parameters(parameters);
@@ -94,7 +106,8 @@ impl<'m> Sensitivities<'m> {
         self.rows.place(true, &self.observation, BLOCK);
         for first in (0..segment.len()).step_by(BLOCK) {
             let len = BLOCK.min(segment.len() - first);
-            self.trajectory.advance(segment, first, len)?;
+            let advanced = self.trajectory.advance(segment, first, len);
+            advanced.map_err(|diverged| diverged.in_samples(refined.as_ref()))?;
             if self.trajectory.one_step().is_none() {
                 for stage in 0..self.trajectory.stages.len() {
                     self.dynamics.evaluate(stage, len, &self.trajectory);
@@ -121,9 +134,13 @@ impl<'m> Sensitivities<'m> {
                 columns: self.columns,
                 rows: &rows,
             };
-            match &mut self.delay_line {
-                Some(line) => line.pass(&block, &mut sink),
-                None => sink(&block),
+            let mut hand_on = |block: &Block<'_>| match &mut self.delay_line {
+                Some(line) => line.pass(block, &mut sink),
+                None => sink(block),
+            };
+            match &mut thinning {
+                Some((refined, thinning)) => thinning.pass(refined, &block, hand_on),
+                None => hand_on(&block),
             }
             self.states.carry_over();
         }

@@ -3,6 +3,7 @@
 use super::delayed_inputs::driven;
 use super::interpolation::Axis;
 use super::method::{InputInterpolation, Integrator};
+use super::refined::Refined;
 use super::segment::Segment;
 use super::stepper::Stepper;
 use crate::model::{Model, Scalar};
@@ -13,6 +14,15 @@ use crate::model::{Model, Scalar};
 pub struct Diverged {
     /// Index of the first sample at which something is not finite, as far as it is known.
     pub sample: usize,
+}
+
+impl Diverged {
+    /// The same, found among the steps of a refined segment.
+    pub(super) fn in_samples(self, refined: Option<&Refined>) -> Self {
+        Self {
+            sample: refined.map_or(self.sample, |refined| refined.sample_from(self.sample)),
+        }
+    }
 }
 
 /// Simulates a segment and hands the outputs of each sample to `sink`.

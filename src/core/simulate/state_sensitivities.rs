@@ -81,9 +81,8 @@ impl StateSensitivities {
             }
         }
         match (trajectory.one_step(), &mut self.general) {
-            (Some((one_step, h)), _) => {
-                self.one_step
-                    .set(one_step, h, trajectory, columns, self.width);
+            (Some((one_step, stride)), _) => {
+                self.one_step.set(one_step, stride, columns, self.width);
             }
             (None, General::StageByStage(stages)) => stages.place(true, dynamics, BLOCK),
             (None, General::Composed(_)) => {}
@@ -129,7 +128,7 @@ impl StateSensitivities {
 #[cfg(test)]
 mod tests {
     use super::super::method::{InputInterpolation, Integrator};
-    use super::super::segment::Steps;
+    use super::super::segment::{Steps, Substeps};
     use super::*;
     use crate::model::{Start, catalog};
 
@@ -145,6 +144,7 @@ mod tests {
             label: "test".into(),
             time: (0..SAMPLES).map(|k| k as f64).collect(),
             steps: Steps::Uneven(steps),
+            substeps: Substeps::default(),
             inputs: (0..model.driven_inputs())
                 .map(|channel| (0..SAMPLES).map(|k| wave(channel, k)).collect())
                 .collect(),

@@ -1,4 +1,4 @@
-//! One integration step, for any kind of number.
+//! From one sample to the next, for any kind of number.
 
 use super::method::{InputInterpolation, Integrator, Stage};
 use super::segment::Segment;
@@ -46,10 +46,26 @@ impl<'m, T: Scalar> Stepper<'m, T> {
         &self.workspace
     }
 
-    /// From sample `k`, at `elapsed` seconds since the start, to the next.
+    /// From sample `k`, at `elapsed` seconds since the start, to the next: in as many steps as the segment says.
     pub(crate) fn step(&mut self, segment: &Segment, k: usize, elapsed: f64, state: &mut [T]) {
+        let count = segment.substeps.within(segment.steps.length(k));
+        for part in 0..count {
+            self.part(segment, k, (part, count), elapsed, state);
+        }
+    }
+
+    /// Part `part` of the `count` steps from sample `k` to the next.
+    pub(crate) fn part(
+        &mut self,
+        segment: &Segment,
+        k: usize,
+        (part, count): (usize, usize),
+        elapsed: f64,
+        state: &mut [T],
+    ) {
         let n = state.len();
-        let h = segment.steps.length(k);
+        let h = segment.steps.length(k) / count as f64;
+        let elapsed = elapsed + h * part as f64;
         self.sum.fill(T::from_f64(0.0));
         for (s, stage) in self.stages.iter().enumerate() {
             let at = &mut self.stage_states[s * n..(s + 1) * n];
@@ -64,7 +80,8 @@ impl<'m, T: Scalar> Stepper<'m, T> {
             self.dynamics
                 .states(&mut self.workspace)
                 .copy_from_slice(at);
-            let share = self.interpolation.share_of_next(stage.node);
+            let node = (part as f64 + stage.node) / count as f64;
+            let share = self.interpolation.share_of_next(node);
             for (to, samples) in self
                 .dynamics
                 .inputs(&mut self.workspace)

@@ -4,7 +4,7 @@ use multiversion::multiversion;
 
 use super::aligned::Aligned;
 use super::method::{InputInterpolation, Integrator, Stage};
-use super::one_step::{MOST_STATES, OneStep};
+use super::one_step::{MOST_STATES, OneStep, Stride};
 use super::segment::{Segment, Steps};
 use super::simulation::{Diverged, initial_state};
 use super::stepper::{Stepper, between};
@@ -17,8 +17,8 @@ pub(super) struct Trajectory<'m> {
     pub stages: &'static [Stage],
     stepper: Stepper<'m, f64>,
     one_step: Option<OneStep<'m>>,
-    /// The constant step, where the model and the segment have one.
-    even: Option<f64>,
+    /// The way from sample to sample, where one matrix serves the whole segment.
+    stride: Option<Stride>,
     /// The state at the first sample behind the block.
     state: Vec<f64>,
     elapsed: f64,
@@ -52,7 +52,7 @@ impl<'m> Trajectory<'m> {
             stages,
             stepper: Stepper::new(model, integrator, interpolation),
             one_step: OneStep::of(model),
-            even: None,
+            stride: None,
             state: Vec::new(),
             elapsed: 0.0,
             shares: shares.collect(),
@@ -67,18 +67,36 @@ impl<'m> Trajectory<'m> {
     pub(super) fn start(&mut self, segment: &Segment, parameters: &[f64]) {
         self.state = initial_state(self.model, parameters);
         self.elapsed = 0.0;
-        self.even = None;
-        if let (Some(one_step), &Steps::Even(h)) = (&mut self.one_step, &segment.steps) {
-            one_step.set(parameters, h, self.stages, self.interpolation);
-            self.even = Some(h);
+        self.stride = self.stride_of(segment);
+        if let (Some(one_step), Some(stride)) = (&mut self.one_step, &self.stride) {
+            one_step.set(parameters, stride);
         } else {
             self.stepper.set_parameters(parameters);
         }
     }
 
+    /// The way from sample to sample of a segment, if one matrix serves all of it: the segment then need not be refined.
+    pub(super) fn stride_of(&self, segment: &Segment) -> Option<Stride> {
+        match (&self.one_step, &segment.steps) {
+            (Some(_), &Steps::Even(length)) => Some(Stride {
+                length,
+                count: segment.substeps.within(length),
+                stages: self.stages,
+                interpolation: self.interpolation,
+            }),
+            _ => None,
+        }
+    }
+
     /// The one-step map of the segment, if one serves all of it.
-    pub(super) fn one_step(&self) -> Option<(&OneStep<'m>, f64)> {
-        self.one_step.as_ref().zip(self.even)
+    pub(super) fn one_step(&self) -> Option<(&OneStep<'m>, &Stride)> {
+        self.one_step.as_ref().zip(self.stride.as_ref())
+    }
+
+    /// The state at the first sample of the block.
+    pub(super) fn first_state(&self) -> Vec<f64> {
+        let states = self.stage_states[..self.state.len()].iter();
+        states.map(|values| values[0]).collect()
     }
 
     pub(super) fn interpolation(&self) -> InputInterpolation {
@@ -87,7 +105,7 @@ impl<'m> Trajectory<'m> {
 
     /// Stages whose states, inputs and times are known at each sample.
     fn known_stages(&self) -> usize {
-        if self.even.is_some() {
+        if self.stride.is_some() {
             1
         } else {
             self.stages.len()
@@ -105,8 +123,8 @@ impl<'m> Trajectory<'m> {
         len: usize,
     ) -> Result<(), Diverged> {
         self.place_inputs(segment, first, len);
-        if let Some(h) = self.even {
-            self.multiply(segment, first, len, h);
+        if let Some(stride) = self.stride {
+            self.multiply(segment, first, len, stride.length);
         } else {
             self.integrate(segment, first, len);
         }

@@ -7,6 +7,7 @@ use nalgebra::DMatrix;
 use crate::estimate::accuracy::coloured_residuals::Colour;
 use crate::estimate::accuracy::error_bounds::ErrorBounds;
 use crate::estimate::accuracy::fit::{fits, histories};
+use crate::estimate::accuracy::halved_steps::integration;
 use crate::estimate::accuracy::identifiability::data_information;
 use crate::estimate::accuracy::modes::modes;
 use crate::estimate::descent::Descent;
@@ -17,6 +18,7 @@ use crate::estimate::problem::unknowns::Unknowns;
 use crate::estimate::report::estimate::Estimate;
 use crate::estimate::report::history::TimeHistory;
 use crate::estimate::report::identifiability::Identifiability;
+use crate::estimate::report::iteration::Outcome;
 use crate::estimate::report::parameter::{Bound, ParameterEstimate};
 use table::{Accuracy, table};
 
@@ -37,6 +39,26 @@ impl Solution {
     /// The row of the parameter table that belongs to a place of θ.
     pub fn row(&self, unknowns: &Unknowns, place: usize) -> &ParameterEstimate {
         &self.estimate.parameters[unknowns.free[place]]
+    }
+
+    /// Whether it may take the place of one with longer integration steps: that was no minimum either, or this is one.
+    pub(crate) fn may_follow(&self, before: &Self) -> bool {
+        let outcome = self.estimate.outcome;
+        !before.estimate.outcome.is_minimum()
+            || outcome.is_minimum()
+            || outcome == Outcome::Cancelled
+    }
+
+    /// The same, as the end of a way whose beginning was another solution.
+    pub(crate) fn following(mut self, before: Self) -> Self {
+        let (first, last) = (before.estimate, &mut self.estimate);
+        last.findings.splice(0..0, first.findings);
+        last.evaluations += first.evaluations;
+        last.simulations += first.simulations;
+        if let (Some(first), Some(last)) = (first.identifiability, &mut last.identifiability) {
+            last.before = first.before;
+        }
+        self
     }
 }
 
@@ -70,6 +92,9 @@ pub(crate) fn answer_to(asked: Asked<'_>, problem: &Problem, descent: Descent<'_
     let histories = histories(problem, &at.theta);
     let colour = Colour::of(&histories);
     let bounds = ErrorBounds::at(problem, &mut evaluator, &at, &colour, &histories);
+    let has_states = !problem.model.states.is_empty();
+    let integration =
+        has_states.then(|| integration(problem, &mut evaluator, &at, &bounds, &histories));
     let before = first_information.and_then(|first| data_information(problem, &first));
     let estimates = problem.options.max_iterations > 0;
     let identifiability = before.map(|before| Identifiability {
@@ -92,6 +117,7 @@ pub(crate) fn answer_to(asked: Asked<'_>, problem: &Problem, descent: Descent<'_
         colour: &colour,
     };
     let estimate = Estimate {
+        integration,
         parameters: table(asked.problem, &asked.theta, &accuracy),
         correlation: asked.correlation(problem, &bounds),
         identifiability,
@@ -131,8 +157,7 @@ impl Ending<'_> {
             .map(|place| name(place).0)
             .collect();
         let collinear = self.bounds.collinear(name);
-        let method = problem.options.method;
-        let (outcome, reason) = self.stopped.say(method, self.iterations, &held, &collinear);
+        let (outcome, reason) = self.stopped.say(self.iterations, &held, &collinear);
         Estimate {
             outcome,
             reason,
@@ -150,9 +175,10 @@ impl Ending<'_> {
             identifiability: None,
             prediction: Vec::new(),
             samples: problem.samples(),
+            integration: None,
+            findings: Vec::new(),
             filter: None,
             modes: modes(problem, self.theta, self.bounds),
-            findings: Vec::new(),
         }
     }
 }

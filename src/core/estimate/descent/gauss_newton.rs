@@ -1,6 +1,7 @@
 //! Gauss-Newton or Levenberg-Marquardt on the likelihood concentrated in R.
 
 use super::Descent;
+use super::fallback::Fallback;
 use super::iterate::{Iterate, Taken};
 use super::search::{Nothing, Search};
 use super::stopped::Stopped;
@@ -9,7 +10,8 @@ use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::progress::Observer;
 
-/// Goes down from a θ until there is a reason to stop.
+/// Goes down from a θ until there is a reason to stop. Where one method has not ended when half of the budget is used up,
+/// the other begins at the start again.
 ///
 /// # Errors
 /// This θ gives no cost.
@@ -19,11 +21,14 @@ pub(crate) fn descend<'p>(
     observer: &mut Observer<'_>,
 ) -> Result<Descent<'p>, Unusable> {
     let mut evaluator = Evaluator::on_all_cores(problem);
+    let start = theta.clone();
     let mut current = Iterate::at(problem, &mut evaluator, theta)?;
     let first_information = Some(current.information.clone());
-    let mut search = Search::new(problem);
+    let mut fallback = Fallback::new(&problem.options);
+    let mut search = Search::new(problem, fallback.method());
     let mut taken = Taken::default();
     let mut iteration = 0;
+    let mut spent: Option<Iterate> = None;
     let stopped = loop {
         if observer(&current.report(problem, iteration, &taken)).is_break() {
             break Stopped::OnRequest;
@@ -38,7 +43,22 @@ pub(crate) fn descend<'p>(
         if iteration == problem.options.max_iterations {
             break Stopped::Budget { distance };
         }
-        match search.onward(&mut evaluator, &current, newton) {
+        if fallback.turns_at(iteration)
+            && let Ok(first) = Iterate::at(problem, &mut evaluator, start.clone())
+        {
+            search = Search::new(problem, fallback.method());
+            spent = Some(std::mem::replace(&mut current, first));
+            taken = Taken::default();
+            iteration += 1;
+            continue;
+        }
+        let mut found = search.onward(&mut evaluator, &current, newton);
+        if let Err(nothing) = found {
+            search = Search::new(problem, fallback.turn());
+            let other = search.onward(&mut evaluator, &current, newton);
+            found = other.map_err(|other| other.or(nothing));
+        }
+        match found {
             Ok(found) => {
                 (current, taken) = *found;
                 iteration += 1;
@@ -47,6 +67,13 @@ pub(crate) fn descend<'p>(
             Err(Nothing { in_range: false }) => break Stopped::Diverged,
         }
     };
+    // neither method has ended: what came nearest
+    let ended = matches!(stopped, Stopped::Minimum { .. });
+    if let Some(spent) =
+        spent.filter(|spent| !ended && spent.weighting.cost < current.weighting.cost)
+    {
+        current = spent;
+    }
     Ok(Descent {
         evaluator,
         first_information,

@@ -28,6 +28,8 @@ pub(crate) struct Taken {
     /// Of the step, in standard errors.
     pub length: f64,
     pub damping: f64,
+    /// Of the damped step, what was taken.
+    pub share: f64,
     pub halvings: usize,
 }
 

@@ -1,8 +1,9 @@
 //! From one θ to the next until there is a reason to stop. The cost never rises from one iterate to the next, but for
-//! rounding.
+//! rounding, and where the other method begins anew.
 
 pub(super) mod acceleration;
 pub(super) mod damping;
+pub(super) mod fallback;
 pub(super) mod gauss_newton;
 pub(super) mod iterate;
 pub mod quasi_newton;

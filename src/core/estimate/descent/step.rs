@@ -52,6 +52,14 @@ impl Newton {
         whole
     }
 
+    /// How much the quadratic model of the cost falls along a step s, the `share` t of one that was made with a damping λ:
+    /// (1 - t/2) |gᵀ s| + ½ λ sᵀ D s, D the diagonal of the information matrix and g the gradient.
+    pub(crate) fn promised(&self, step: &DVector<f64>, damping: f64, share: f64) -> f64 {
+        let step = step.select_rows(&self.moving);
+        let scaled = step.component_div(self.hessian.scale());
+        (1.0 - 0.5 * share) * self.descent.dot(&step) + 0.5 * damping * scaled.norm_squared()
+    }
+
     /// Length of the undamped step in standard errors: √(gᵀ H⁻¹ g).
     pub(crate) fn distance(&self) -> f64 {
         self.hessian

@@ -1,6 +1,5 @@
 //! Why a solver ended, and what to say of it.
 
-use crate::estimate::options::Method;
 use crate::estimate::report::collinear::CollinearSet;
 use crate::estimate::report::iteration::Outcome;
 
@@ -18,7 +17,6 @@ impl Stopped {
     /// The outcome, and what to say of it.
     pub(crate) fn say(
         &self,
-        method: Method,
         iterations: usize,
         held: &[String],
         collinear: &[CollinearSet],
@@ -37,14 +35,8 @@ impl Stopped {
                 (Outcome::Budget, reason)
             }
             Self::Stalled { distance } => {
-                let remedy = match method {
-                    Method::GaussNewton => {
-                        "; try the method levenberg_marquardt, or other start values"
-                    }
-                    Method::LevenbergMarquardt => "; try other start values",
-                };
                 let reason = format!(
-                    "no step lowers the cost any more, though the next one would be {distance:.1e} standard errors long{remedy}"
+                    "no step lowers the cost any more, though the next one would be {distance:.1e} standard errors long; try other start values"
                 );
                 (Outcome::Stalled, reason)
             }

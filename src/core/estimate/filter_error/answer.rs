@@ -9,12 +9,16 @@ use super::layout::Layout;
 use crate::estimate::accuracy::coloured_residuals::Colour;
 use crate::estimate::accuracy::error_bounds::ErrorBounds;
 use crate::estimate::accuracy::fit::histories_of;
+use crate::estimate::accuracy::halved_steps::{shifts_of, step, steps_per_sample};
 use crate::estimate::answer::table::{Accuracy, table};
 use crate::estimate::answer::{Ending, Solution, rows};
 use crate::estimate::descent::stopped::Stopped;
 use crate::estimate::problem::Problem;
+use crate::estimate::problem::substeps::halved;
 use crate::estimate::report::estimate::Estimate;
 use crate::estimate::report::filter::{FilterEstimate, Pole, ProcessNoiseEstimate, SegmentGain};
+use crate::estimate::report::integration::Integration;
+use crate::simulate::StateMatrixAt;
 
 pub(super) fn answer(
     evaluator: &mut FilterEvaluator<'_>,
@@ -53,6 +57,7 @@ pub(super) fn answer(
         colour: &Colour::of(&histories),
     };
     let estimate = Estimate {
+        integration: Some(integration(problem, at, bounds)),
         parameters: table(problem, theta, &accuracy),
         filter: Some(FilterEstimate {
             process_noise: process_noise(problem, layout, at, bounds),
@@ -66,6 +71,34 @@ pub(super) fn answer(
         covariance: at.weighting.covariance.clone(),
         estimate,
         histories,
+    }
+}
+
+/// How the model was stepped, and where the estimate would go with steps half as long.
+fn integration(problem: &Problem, at: &Iterate, bounds: &ErrorBounds) -> Integration {
+    let theta = &at.xi[..problem.unknowns.len()];
+    let (mut fastest, mut parameters): (f64, _) = (0.0, Vec::new());
+    for (index, segment) in problem.segments.iter().enumerate() {
+        problem.unknowns.parameters(index, theta, &mut parameters);
+        let mut matrix = StateMatrixAt::new(&problem.model, &parameters);
+        let rates = matrix.rates_at_start(segment, &parameters);
+        fastest = fastest.max(rates.fastest * step(segment));
+    }
+    let mut finer = problem.clone();
+    for segment in &mut finer.segments {
+        segment.substeps = halved(segment);
+    }
+    let there = FilterEvaluator::new(&finer).and_then(|mut evaluator| {
+        Iterate::at(&mut evaluator, at.xi.clone(), at.gain_noise.clone())
+    });
+    let halved = there.ok().map(|there| {
+        let change = &there.descent - &at.descent;
+        shifts_of(&bounds.covariance, &bounds.standard_errors, &change)
+    });
+    Integration {
+        steps_per_sample: steps_per_sample(problem),
+        fastest,
+        halved: halved.filter(|halved| halved.most.is_finite()),
     }
 }
 
@@ -109,11 +142,13 @@ fn segment_gain(problem: &Problem, index: usize, gain: &Gain) -> SegmentGain {
     let identity = DMatrix::<f64>::identity(states, states);
     // one step of the integrator is the Taylor series of exp(A Δt) up to its order
     let order = problem.options.integrator.stage_count();
-    let flow = &gain.a * segment.steps.length(0);
+    let length = segment.steps.length(0);
+    let count = segment.substeps.within(length);
+    let flow = &gain.a * (length / count as f64);
     let step = (1..=order).rev().fold(identity.clone(), |sum, term| {
         &identity + &flow * sum / term as f64
     });
-    let error = step * (identity - &gain.k * &gain.c);
+    let error = (0..count).fold(identity - &gain.k * &gain.c, |error, _| &step * error);
     SegmentGain {
         segment: segment.label.clone(),
         gain: rows(&gain.k),

@@ -38,7 +38,7 @@ pub(super) struct Iterate {
     /// Reduced where the gain is at its limit, as the next two are.
     pub information: DMatrix<f64>,
     relaxation: Option<DMatrix<f64>>,
-    descent: DVector<f64>,
+    pub descent: DVector<f64>,
     /// By place: the bound against which the descent direction pushes.
     pub held: Vec<Option<Bound>>,
     pub limit: Limit,

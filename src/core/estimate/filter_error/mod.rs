@@ -12,6 +12,7 @@
 
 mod answer;
 mod evaluation;
+pub(super) mod finer_steps;
 mod gain;
 mod iterate;
 mod layout;
@@ -26,7 +27,9 @@ mod start;
 use crate::estimate::accuracy::error_bounds::ErrorBounds;
 use crate::estimate::answer::Solution;
 use crate::estimate::descent::damping;
+use crate::estimate::descent::fallback::Fallback;
 use crate::estimate::descent::iterate::Taken;
+use crate::estimate::descent::search::Nothing;
 use crate::estimate::descent::stopped::Stopped;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
@@ -34,7 +37,7 @@ use crate::estimate::report::progress::Observer;
 use iterate::{GainNoise, Iterate};
 use limit::restore;
 use relaxation::relaxed;
-use search::{Nothing, Trial, search};
+use search::{Trial, search};
 
 pub use evaluation::{FilterEquations, FilterEvaluator};
 
@@ -60,7 +63,8 @@ pub fn filter_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
     restore(&mut evaluator, &mut xi, &gain_noise.inverse, &[])?;
     let mut current = Iterate::at(&mut evaluator, xi, gain_noise)?;
     let mut taken = Taken::default();
-    let mut damping = damping::start(problem.options.method);
+    let mut fallback = Fallback::new(&problem.options);
+    let mut damping = damping::start(fallback.method());
     let mut iteration = 0;
     let stopped = loop {
         let report = current.report(&evaluator, iteration, &taken);
@@ -78,7 +82,20 @@ pub fn filter_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
         if iteration == problem.options.max_iterations {
             break Stopped::Budget { distance };
         }
-        let found = search(&mut evaluator, &current, damping);
+        if fallback.turns_at(iteration) {
+            damping = damping::start(fallback.method());
+        }
+        let way = (fallback.method(), &mut damping);
+        let mut found = search(&mut evaluator, &current, way);
+        // while R has still to follow, that is what comes next
+        if let Err(nothing) = found
+            && lag <= problem.options.tolerance
+        {
+            let method = fallback.turn();
+            damping = damping::start(method);
+            let other = search(&mut evaluator, &current, (method, &mut damping));
+            found = other.map_err(|other| other.or(nothing));
+        }
         let (lower, how) = match found {
             Ok(found) => found,
             // nothing is left to gain with this R in the gain, but R itself still has to follow
@@ -87,11 +104,7 @@ pub fn filter_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
                     xi: current.xi.clone(),
                     weighting: current.weighting.clone(),
                 };
-                let how = Taken {
-                    damping,
-                    ..Taken::default()
-                };
-                (here, how)
+                (here, Taken::default())
             }
             Err(Nothing { in_range: true }) => break Stopped::Stalled { distance },
             Err(Nothing { in_range: false }) => break Stopped::Diverged,
@@ -99,7 +112,6 @@ pub fn filter_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
         let Ok(next) = relaxed(&mut evaluator, &current, lower) else {
             break Stopped::Stalled { distance };
         };
-        damping = damping::eased(how.damping);
         (current, taken) = (next, how);
         iteration += 1;
     };

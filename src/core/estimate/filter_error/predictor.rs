@@ -1,6 +1,6 @@
 //! One-step predictions along a segment, and their sensitivities.
 //!
-//! y_k = g(x_k, u_k), e_k = z_k - y_k, x_(k+1) = Φ(x_k + K e_k), Φ one step of the integrator. The derivative is that of
+//! y_k = g(x_k, u_k), e_k = z_k - y_k, x_(k+1) = Φ(x_k + K e_k), Φ the way to the next sample by the integrator. The derivative is that of
 //! this recursion, exact but for rounding: ∂x⁺ = ∂x + ∂K e - K ∂y, then through each stage of the step.
 
 use nalgebra::DMatrix;
@@ -73,8 +73,12 @@ impl<'p> Predictor<'p> {
             }
             correct(&mut state, gain, &sample.innovations);
             tangent.correct(&gain.k, changes, &sample.innovations, &sample.slopes);
-            self.stepper.step(segment, k, elapsed, &mut state);
-            self.propagate(segment, (k, elapsed), &mut tangent);
+            let count = segment.substeps.within(segment.steps.length(k));
+            for part in 0..count {
+                let part = (part, count);
+                self.stepper.part(segment, k, part, elapsed, &mut state);
+                self.propagate(segment, (k, elapsed), part, &mut tangent);
+            }
             elapsed += segment.steps.length(k);
         }
     }
@@ -129,19 +133,28 @@ impl<'p> Predictor<'p> {
         }
     }
 
-    /// Takes the tangent through the stages of the step that the stepper has just made from sample `k`.
-    fn propagate(&mut self, segment: &Segment, (k, elapsed): (usize, f64), tangent: &mut Tangent) {
+    /// Takes the tangent through the stages of the step that the stepper has just made, one of the `count` from sample
+    /// `k` to the next.
+    fn propagate(
+        &mut self,
+        segment: &Segment,
+        (k, elapsed): (usize, f64),
+        (part, count): (usize, usize),
+        tangent: &mut Tangent,
+    ) {
         if tangent.width == 0 {
             return;
         }
         let model = &self.problem.model;
         let states = model.states.len();
-        let h = segment.steps.length(k);
+        let h = segment.steps.length(k) / count as f64;
+        let elapsed = elapsed + h * part as f64;
         let program = &model.dynamics_jacobian.program;
         tangent.begin_step();
         for (s, stage) in self.stepper.stages.iter().enumerate() {
             let at = &self.stepper.stage_states[s * states..(s + 1) * states];
-            let share = self.stepper.interpolation.share_of_next(stage.node);
+            let node = (part as f64 + stage.node) / count as f64;
+            let share = self.stepper.interpolation.share_of_next(node);
             let workspace = &mut self.dynamics_slopes;
             let time = elapsed + h * stage.node;
             place(program, workspace, at, segment, (k, share), time);

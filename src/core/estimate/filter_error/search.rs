@@ -7,7 +7,7 @@ use super::iterate::Iterate;
 use super::limit::restore;
 use crate::estimate::descent::damping;
 use crate::estimate::descent::iterate::Taken;
-use crate::estimate::descent::search::{MOST_TRIALS, ROUNDING};
+use crate::estimate::descent::search::{MOST_TRIALS, Nothing, ROUNDING, Way, gain};
 use crate::estimate::descent::step::length;
 use crate::estimate::likelihood::weighting::Weighting;
 use crate::estimate::options::Method;
@@ -19,45 +19,42 @@ pub(super) struct Trial {
     pub weighting: Weighting,
 }
 
-/// No unknowns of lower cost were found; were there any that could be predicted with?
-pub(super) struct Nothing {
-    pub in_range: bool,
-}
-
-/// Looks for unknowns of lower cost: by halving the step (Gauss-Newton) or by damping it more (Levenberg-Marquardt).
+/// Looks for unknowns of lower cost, in the ways of output error ([`Way`]). The damping becomes what the next step is to
+/// begin with.
 pub(super) fn search(
     evaluator: &mut FilterEvaluator<'_>,
     current: &Iterate,
-    start_damping: f64,
+    (method, damping): (Method, &mut f64),
 ) -> Result<(Trial, Taken), Nothing> {
     let Some(newton) = &current.newton else {
         return Err(Nothing { in_range: true });
     };
-    let problem = evaluator.problem;
     let most = current.weighting.cost + ROUNDING * (1.0 + current.weighting.cost.abs());
-    let (mut damping, mut share) = (start_damping, 1.0);
     let mut in_range = false;
     for halvings in 0..MOST_TRIALS {
-        let step = current.step(evaluator, newton, damping) * share;
-        if let Ok(trial) = trial(evaluator, current, &step) {
+        let ways = Way::of_trial(method, *damping, halvings);
+        let tried = ways.into_iter().filter_map(|way| {
+            let step = current.step(evaluator, newton, way.damping) * way.share;
+            let trial = trial(evaluator, current, &step).ok()?;
             in_range = true;
-            if trial.weighting.cost <= most {
-                let moved = trial.xi.iter().zip(&current.xi).map(|(a, b)| a - b);
-                let mut moved = DVector::from_iterator(step.len(), moved);
-                // these follow from the others, and count with them
-                current.limit.places.iter().for_each(|&i| moved[i] = 0.0);
-                let length = length(&moved, &current.information);
-                let taken = Taken {
-                    length,
-                    damping,
-                    halvings,
-                };
-                return Ok((trial, taken));
-            }
-        }
-        match problem.options.method {
-            Method::GaussNewton => share *= 0.5,
-            Method::LevenbergMarquardt => damping = damping::raised(damping),
+            (trial.weighting.cost <= most).then_some((trial, way))
+        });
+        let best = tried.min_by(|a, b| a.0.weighting.cost.total_cmp(&b.0.weighting.cost));
+        if let Some((trial, way)) = best {
+            let moved = trial.xi.iter().zip(&current.xi).map(|(a, b)| a - b);
+            let mut moved = DVector::from_iterator(trial.xi.len(), moved);
+            // these follow from the others, and count with them
+            current.limit.places.iter().for_each(|&i| moved[i] = 0.0);
+            let taken = Taken {
+                length: length(&moved, &current.information),
+                damping: way.damping,
+                share: way.share,
+                halvings,
+            };
+            let promised = newton.promised(&moved, way.damping, way.share);
+            let costs = (current.weighting.cost, trial.weighting.cost);
+            *damping = damping::eased(way.damping, gain(costs, promised));
+            return Ok((trial, taken));
         }
     }
     Err(Nothing { in_range })

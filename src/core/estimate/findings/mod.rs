@@ -7,6 +7,8 @@
 mod convergence;
 mod identifiability;
 mod input_interpolation;
+mod steps;
+mod unstable;
 
 use crate::estimate::answer::Solution;
 use crate::estimate::problem::Problem;
@@ -20,6 +22,10 @@ pub(super) fn findings(problem: &Problem, solution: &Solution) -> Vec<Finding> {
         convergence::findings(&solution.estimate, estimated),
         identifiability::findings(&solution.estimate),
         input_interpolation::findings(problem, solution),
+        steps::findings(problem, &solution.estimate),
+        unstable::finding(problem, &solution.estimate)
+            .into_iter()
+            .collect(),
     ];
     checks.into_iter().flatten().collect()
 }

@@ -5,6 +5,7 @@ pub(super) mod estimator;
 pub(super) mod process_noise;
 pub(super) mod role;
 pub(super) mod start;
+pub(super) mod steps;
 pub(super) mod technique;
 
 use indexmap::IndexMap;
@@ -16,6 +17,7 @@ use error_bounds::ErrorBoundsKind;
 use estimator::Estimator;
 use process_noise::ProcessNoise;
 use start::StartMethod;
+use steps::StepsPerSample;
 use technique::Derivatives;
 
 /// How an estimation goes about it. Each option has a default.
@@ -30,6 +32,8 @@ pub struct Options {
     pub method: Method,
     /// How the model is stepped through time.
     pub integrator: Integrator,
+    /// How many integration steps lie between two samples.
+    pub steps_per_sample: StepsPerSample,
     /// What inputs do between samples.
     pub input_interpolation: InputInterpolation,
     /// What is known of the measurement noise.
@@ -63,6 +67,7 @@ impl Default for Options {
             start: StartMethod::default(),
             method: Method::default(),
             integrator: Integrator::default(),
+            steps_per_sample: StepsPerSample::default(),
             input_interpolation: InputInterpolation::default(),
             noise: Noise::default(),
             error_bounds: ErrorBoundsKind::default(),
@@ -74,7 +79,8 @@ impl Default for Options {
     }
 }
 
-/// How a step is made from gradient and information matrix.
+/// How a step is made from gradient and information matrix. Where one method finds no lower cost, or has not converged
+/// when half of at least 20 iterations are used up, the other is tried: from there, or from the start again.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
@@ -84,6 +90,15 @@ pub enum Method {
     LevenbergMarquardt,
     /// Full step, halved while the cost rises.
     GaussNewton,
+}
+
+impl Method {
+    pub(crate) fn other(self) -> Self {
+        match self {
+            Self::LevenbergMarquardt => Self::GaussNewton,
+            Self::GaussNewton => Self::LevenbergMarquardt,
+        }
+    }
 }
 
 /// The covariance R of the measurement noise.

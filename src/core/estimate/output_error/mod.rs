@@ -1,6 +1,8 @@
 //! The output-error method: the likelihood of the simulation's residuals, concentrated in R, at its greatest.
 
-pub(super) mod second_try;
+pub(super) mod finer_steps;
+mod second_look;
+mod second_try;
 
 use crate::estimate::answer::{Solution, answer};
 use crate::estimate::descent::{gauss_newton, quasi_newton};

@@ -20,7 +20,7 @@ const FLAT: f64 = 0.01;
 
 /// # Errors
 /// The start gives no cost.
-pub(crate) fn from_start(
+pub(super) fn from_start(
     problem: &Problem,
     watcher: &mut Watcher<'_>,
 ) -> Result<Solution, Unusable> {
@@ -71,15 +71,15 @@ pub(crate) fn from_start(
 }
 
 /// A descent from one start.
-struct Run {
-    solution: Solution,
+pub(super) struct Run {
+    pub solution: Solution,
     /// Slope of the cost at the end, [`Iteration::gradient_norm`].
     slope: f64,
 }
 
 impl Run {
     /// `number` is that of the first iterate: a second run counts on from the first.
-    fn from(
+    pub(super) fn from(
         problem: &Problem,
         start: &Start,
         number: usize,

@@ -1,6 +1,7 @@
 //! An estimation problem: a model, its data, its unknowns, and how to go about it. Built once, then only read.
 
 pub(super) mod missing;
+pub(crate) mod substeps;
 pub(super) mod unknowns;
 pub(super) mod unusable;
 
@@ -9,6 +10,7 @@ use crate::flight::Unit;
 use crate::model::{Model, ParameterInfo};
 use crate::simulate::{Columns, Segment, delay_out_of_bounds};
 use missing::counts;
+use substeps::TooStiff;
 use unknowns::Unknowns;
 use unusable::Unusable;
 
@@ -29,8 +31,19 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Lays out which parameters each output is differentiated by. Unknowns must be laid out over these segments.
-    pub fn new(model: Model, segments: Vec<Segment>, unknowns: Unknowns, options: Options) -> Self {
+    /// Lays out which parameters each output is differentiated by, and how many integration steps lie between samples.
+    /// Unknowns must be laid out over these segments.
+    pub fn new(
+        model: Model,
+        mut segments: Vec<Segment>,
+        unknowns: Unknowns,
+        options: Options,
+    ) -> Self {
+        let (theta, mut parameters) = (unknowns.start(), Vec::new());
+        for (index, segment) in segments.iter_mut().enumerate() {
+            unknowns.parameters(index, &theta, &mut parameters);
+            segment.substeps = substeps::chosen(&model, segment, &parameters, &options);
+        }
         let is_free = |parameter: &usize| {
             unknowns
                 .all
@@ -48,6 +61,11 @@ impl Problem {
             columns,
             counts,
         }
+    }
+
+    /// What is too fast, at the start values, for the integration steps that are left to us to choose.
+    pub fn too_stiff(&self) -> Option<TooStiff> {
+        substeps::too_stiff(self)
     }
 
     /// Samples over all segments.

@@ -7,6 +7,7 @@ use super::collinear::CollinearSet;
 use super::filter::FilterEstimate;
 use super::fit::OutputFit;
 use super::identifiability::Identifiability;
+use super::integration::Integration;
 use super::iteration::Outcome;
 use super::mode::Mode;
 use super::number::null_as_nan;
@@ -58,6 +59,9 @@ pub struct Estimate {
     pub prediction: Vec<Prediction>,
     /// Samples used, over all segments.
     pub samples: usize,
+    /// How the model was stepped through time; none with equation error, which does not step it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub integration: Option<Integration>,
     /// What the filter-error estimator adds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub filter: Option<FilterEstimate>,

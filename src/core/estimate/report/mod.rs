@@ -7,6 +7,7 @@ pub(super) mod filter;
 pub(super) mod fit;
 pub(super) mod history;
 pub(super) mod identifiability;
+pub(super) mod integration;
 pub(super) mod iteration;
 pub(super) mod mode;
 mod number;

@@ -4,7 +4,7 @@
 mod automatic;
 mod equation_error;
 pub(super) mod found;
-mod multi_start;
+pub(super) mod multi_start;
 mod nelder_mead;
 pub(super) mod shooting;
 

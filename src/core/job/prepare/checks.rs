@@ -80,6 +80,10 @@ pub(super) fn check_options(options: &Options, model: &Model, faults: &mut Vec<F
         let message = format!("max_iterations must be from 0 to {MOST_ITERATIONS}");
         faults.push(Fault::new("/options/max_iterations", "bad_option", message));
     }
+    if let Some(message) = options.steps_per_sample.fault() {
+        let pointer = "/options/steps_per_sample";
+        faults.push(Fault::new(pointer, "bad_option", message));
+    }
     if let Some(message) = options.derivatives.fault() {
         let pointer = "/options/derivatives/step";
         faults.push(Fault::new(pointer, "bad_option", message));
@@ -157,4 +161,19 @@ pub(super) fn check_estimator(problem: &Problem) -> Result<(), Vec<Fault>> {
         return Err(vec![no_measured_state(problem)]);
     }
     Ok(())
+}
+
+/// Motions must be such that steps can follow them.
+pub(super) fn check_stiffness(problem: &Problem) -> Result<(), Vec<Fault>> {
+    let Some(found) = problem.too_stiff() else {
+        return Ok(());
+    };
+    let state = &problem.model.states[found.state].name;
+    let message = format!(
+        "with the start values '{state}' moves at {:.3e} 1/s, which takes {:.0} integration steps from one sample of segment {} to the next, or too many in all; give the state its steady value as a quantity, start closer, or say \"steps_per_sample\"",
+        found.rate,
+        found.steps.ceil(),
+        problem.segments[found.segment].label
+    );
+    Err(vec![Fault::new("/model/states", "too_stiff", message)])
 }

@@ -80,6 +80,7 @@ pub fn prepare(
     if spec.kind == JobKind::DerivativeStudy {
         study::check(&problem)?;
     }
+    checks::check_stiffness(&problem)?;
     checks::check_estimator(&problem)?;
     let case = match spec.kind {
         JobKind::Diagnose => {

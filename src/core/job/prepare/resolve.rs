@@ -4,7 +4,7 @@ use super::stretch::Stretch;
 use crate::flight::{Dimension, Fault, escape};
 use crate::job::spec::JobSpec;
 use crate::model::{ChannelFormula, Model, Quantity, Recorded};
-use crate::simulate::Segment;
+use crate::simulate::{Segment, Substeps};
 
 /// A segment under the names of the model, with the recording's other channels behind it.
 pub(super) struct Named<'a> {
@@ -53,6 +53,7 @@ pub(super) fn segment(
         label: stretch.label.clone(),
         time: stretch.time().to_vec(),
         steps: stretch.steps.clone(),
+        substeps: Substeps::default(),
     }
 }
 

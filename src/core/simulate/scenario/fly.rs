@@ -11,7 +11,7 @@ use super::noise::NoiseColour;
 use crate::flight::{Channel, Dimension, Maneuver, Unit};
 use crate::model::{ChannelFormula, Model, Recorded, Start};
 use crate::simulate::method::{InputInterpolation, Integrator};
-use crate::simulate::segment::{Segment, Steps};
+use crate::simulate::segment::{Segment, Steps, Substeps};
 use crate::simulate::simulation::simulate_disturbed;
 
 /// Integration steps between two samples: the truth is finer than what is recorded of it.
@@ -208,6 +208,7 @@ impl Scenario {
             label: String::new(),
             time: (0..fine).map(|i| i as f64 * step).collect(),
             steps: Steps::Even(step),
+            substeps: Substeps::default(),
             inputs: inputs.iter().map(between).collect(),
             measured: Vec::new(),
         };

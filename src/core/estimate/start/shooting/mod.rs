@@ -24,7 +24,6 @@ use std::ops::ControlFlow;
 
 use nalgebra::DVector;
 
-use crate::estimate::descent::damping;
 use crate::estimate::descent::gauss_newton::descend;
 use crate::estimate::descent::step::{Newton, advanced, held};
 use crate::estimate::evaluation::evaluator::Evaluator;
@@ -54,7 +53,9 @@ const CLOSED: f64 = 1.0;
 const MOST_DESCENTS: usize = 4;
 const DESCENT_ITERATIONS: usize = 20;
 
-/// The damping falls to this share after a step that succeeds.
+/// The damping starts here, grows by a factor after a step that fails, and falls to a share after one that succeeds.
+const DAMPING_START: f64 = 1e-3;
+const DAMPING_RAISED: f64 = 10.0;
 const DAMPING_EASED: f64 = 0.1;
 const MOST_TRIALS: usize = 10;
 
@@ -198,7 +199,7 @@ fn close(
 ) -> Closed {
     let mut evaluator = Evaluator::new(cut.problem);
     let constants = cost_of_constants(cut.problem);
-    let (mut damping, mut penalty) = (damping::START, PENALTY_START);
+    let (mut damping, mut penalty) = (DAMPING_START, PENALTY_START);
     let (mut steps, mut descents) = (0, 0);
     let mut stopped = false;
     let mut best: Option<(f64, Vec<f64>)> = None;
@@ -213,7 +214,7 @@ fn close(
         for _ in 0..most {
             let before = point.merit(penalty);
             let Some(next) = step(cut, &point, noise, penalty, &mut damping) else {
-                damping = damping::START;
+                damping = DAMPING_START;
                 break;
             };
             point = next;
@@ -285,7 +286,7 @@ fn step(
                 return Some(next);
             }
         }
-        *damping = damping::raised(*damping);
+        *damping = (*damping * DAMPING_RAISED).max(DAMPING_START);
     }
     None
 }
