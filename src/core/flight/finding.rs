@@ -17,7 +17,8 @@ pub enum Severity {
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Finding {
     /// A stable word: `gap`, `uneven_sampling`, `missing_values`, `repeated_values`, `repeated_rows`, `spikes`, `wrap`,
-    /// `constant`, `implausible`.
+    /// `constant`, `implausible`; of the file: `left_out`, `renamed`, `no_unit`, `recognised`, `absent`, `encoding`,
+    /// `zero_bytes`, `footer`, `incomplete_line`, `repeated_header`, `repeated_time`, `no_time_yet`.
     #[schema(example = "gap")]
     pub code: String,
     /// Whether it changes results.

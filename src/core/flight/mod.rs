@@ -16,6 +16,9 @@ mod sampling;
 mod shown;
 mod si_name;
 mod unit;
+mod unit_spelling;
+mod unit_symbols;
+mod unit_words;
 
 pub use aircraft::Aircraft;
 pub use convention::{is_control, is_flow_angle, is_motion};
