@@ -42,7 +42,9 @@ fn say(file: &Path, findings: &[Finding]) {
 /// The faults of a file, and the draft of a mapping where that can mend them.
 pub(super) fn refused(file: &Path, error: &IngestError) -> Failure {
     let faults = Failure::faults(&file.display().to_string(), error.faults());
-    let draft = error.draft().and_then(|draft| Mapping::from_json(draft).ok());
+    let draft = error
+        .draft()
+        .and_then(|draft| Mapping::from_json(draft).ok());
     match draft {
         None => faults,
         Some(draft) => Failure::new(format!(

@@ -152,7 +152,9 @@ fn shorten(text: &mut String) {
 
 impl From<IngestError> for Problem {
     fn from(error: IngestError) -> Self {
-        let draft = error.draft().and_then(|draft| serde_json::from_str(draft).ok());
+        let draft = error
+            .draft()
+            .and_then(|draft| serde_json::from_str(draft).ok());
         Self {
             mapping: draft,
             ..Self::of_faults(Code::InvalidManeuver, error.into_faults())

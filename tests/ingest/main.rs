@@ -8,3 +8,6 @@ mod common {
 
 mod flight_data;
 mod formats;
+mod kinds;
+mod layouts;
+mod zz_cases;

@@ -82,7 +82,9 @@ impl Unit {
         }
         // a fault of what was written is told in its own words
         Self::of_symbols(&plain).map_err(|fault| match as_written {
-            Err(UnitError::Malformed { text, why }) if !matches!(fault, UnitError::Unknown { .. }) => {
+            Err(UnitError::Malformed { text, why })
+                if !matches!(fault, UnitError::Unknown { .. }) =>
+            {
                 UnitError::Malformed { text, why }
             }
             _ => fault,

@@ -5,7 +5,7 @@ use super::unit_words::{QUALIFIERS, WHOLE, WORDS};
 
 /// The same unit in symbols, as far as they are known; what is not stays as it is written.
 pub(super) fn plain(text: &str) -> String {
-    let text = without_brackets(text.trim());
+    let text = without_brackets(text.trim()).trim_matches(['_', '\u{200b}']);
     if let Some(symbols) = as_a_whole(text) {
         return symbols.to_string();
     }
@@ -62,9 +62,12 @@ fn in_symbols(text: &str) -> String {
             let (word, behind) = rest.split_at(end);
             rest = behind;
             match word.to_lowercase().as_str() {
-                "per" => replace_blanks(&mut plain, "/"),
-                "squared" | "sq" if is_behind_symbol => replace_blanks(&mut plain, "^2"),
-                "cubed" if is_behind_symbol => replace_blanks(&mut plain, "^3"),
+                "per" => {
+                    replace_blanks(&mut plain, "/");
+                    rest = rest.trim_start();
+                }
+                "squared" | "sq" if ends_with_symbol(&plain) => replace_blanks(&mut plain, "^2"),
+                "cubed" if ends_with_symbol(&plain) => replace_blanks(&mut plain, "^3"),
                 _ => plain.push_str(&symbol(word, is_compound)),
             }
             is_behind_symbol = true;
@@ -127,6 +130,10 @@ pub(super) fn number_length(text: &str) -> usize {
     }
 }
 
+fn ends_with_symbol(plain: &str) -> bool {
+    plain.trim_end().ends_with(is_of_word)
+}
+
 fn replace_blanks(plain: &mut String, with: &str) {
     plain.truncate(plain.trim_end().len());
     plain.push_str(with);
@@ -148,9 +155,6 @@ fn is_of_word(c: char) -> bool {
 /// The symbol that a word means; the word itself where none is known.
 fn symbol(word: &str, is_compound: bool) -> String {
     let word = word.replace(['º', '˚'], "°");
-    if meaning(&word).is_some() {
-        return word;
-    }
     match word.as_str() {
         // siemens are not recorded in flight; M alone may be a Mach number
         "S" => return "s".to_string(),
@@ -163,16 +167,22 @@ fn symbol(word: &str, is_compound: bool) -> String {
     if let Some((_, symbol)) = WORDS.iter().find(|(written, _)| *written == lower) {
         return (*symbol).to_string();
     }
+    if meaning(&word).is_some() {
+        return word;
+    }
     in_another_case(&word, &lower).map_or(word, str::to_string)
 }
 
 /// The one symbol that differs from a word in case only. Where case tells two apart there is none.
 fn in_another_case(word: &str, lower: &str) -> Option<&'static str> {
-    if matches!(word, "Mm" | "Ms" | "Mg" | "M" | "H") {
+    if matches!(word, "Mm" | "Ms" | "Mg" | "M" | "H" | "nm") {
         return None;
     }
     let mut found: Option<&'static str> = None;
-    for candidate in SYMBOLS.iter().filter(|symbol| symbol.to_lowercase() == lower) {
+    for candidate in SYMBOLS
+        .iter()
+        .filter(|symbol| symbol.to_lowercase() == lower)
+    {
         match found {
             Some(other) if meaning(other) != meaning(candidate) => return None,
             Some(_) => {}
@@ -202,7 +212,12 @@ pub(super) fn suggestion(symbol: &str) -> Option<&'static str> {
         _ => 2,
     };
     spellings
-        .map(|(written, symbol)| (strsim::osa_distance(&lower, &written.to_lowercase()), symbol))
+        .map(|(written, symbol)| {
+            (
+                strsim::osa_distance(&lower, &written.to_lowercase()),
+                symbol,
+            )
+        })
         .filter(|&(distance, _)| distance <= allowed)
         .min_by_key(|&(distance, _)| distance)
         .map(|(_, symbol)| symbol)
@@ -227,6 +242,8 @@ mod tests {
             ("ºC", "degC"),
             ("ft msl", "ft"),
             ("kt_IAS", "kt"),
+            ("__deg", "deg"),
+            ("_kias", "kt"),
             ("[deg]", "deg"),
             ("FT-LBS", "ft*lbf"),
             ("Nm", "N*m"),

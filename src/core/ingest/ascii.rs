@@ -119,7 +119,11 @@ mod tests {
         "channels": {"alpha": {"from": "fdata(:,3)", "unit": "deg"}, "mach": {"from": "(:,2)", "unit": "-"}}}"#;
 
     fn read_text(text: &str, limits: &Limits) -> Result<Maneuver, IngestError> {
-        read(text.as_bytes(), &Mapping::from_json(MAPPING).unwrap(), limits)
+        read(
+            text.as_bytes(),
+            &Mapping::from_json(MAPPING).unwrap(),
+            limits,
+        )
     }
 
     #[test]

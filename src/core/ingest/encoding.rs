@@ -96,7 +96,13 @@ impl Encoding {
             _ => {}
         }
         let head = &bytes[..bytes.len().min(4096)];
-        let zeros = |from: usize| head.iter().skip(from).step_by(2).filter(|&&b| b == 0).count();
+        let zeros = |from: usize| {
+            head.iter()
+                .skip(from)
+                .step_by(2)
+                .filter(|&&b| b == 0)
+                .count()
+        };
         let pairs = head.len() / 2;
         // of Latin text every other byte is zero
         if pairs >= 4 && zeros(1) * 10 > pairs * 9 && zeros(0) * 10 < pairs {
@@ -142,7 +148,10 @@ fn without_zeros<'a>(bytes: &'a [u8], findings: &mut Vec<Finding>) -> Result<Cow
         "nothing needs to be done where the recording ends before them",
     ));
     let mut kept = Vec::with_capacity(bytes.len() - zeros + 1);
-    for part in bytes.split(|&byte| byte == 0).filter(|part| !part.is_empty()) {
+    for part in bytes
+        .split(|&byte| byte == 0)
+        .filter(|part| !part.is_empty())
+    {
         if !kept.is_empty() && !kept.ends_with(b"\n") {
             kept.push(b'\n');
         }
@@ -161,7 +170,8 @@ fn utf16(body: &[u8], is_big: bool) -> Result<String, Fault> {
         }
     });
     let text: Result<String, _> = char::decode_utf16(units).collect();
-    let text = text.map_err(|_| of_file(code::NOT_UTF8, "this is not UTF-16; save the file as UTF-8"))?;
+    let text =
+        text.map_err(|_| of_file(code::NOT_UTF8, "this is not UTF-16; save the file as UTF-8"))?;
     Ok(text.trim_start_matches('\u{feff}').replace('\0', ""))
 }
 
@@ -180,7 +190,11 @@ fn windows_1252(bytes: &[u8]) -> String {
         },
         _ => char::from(byte),
     };
-    bytes.iter().filter(|&&byte| byte != 0).map(character).collect()
+    bytes
+        .iter()
+        .filter(|&&byte| byte != 0)
+        .map(character)
+        .collect()
 }
 
 #[cfg(test)]
@@ -210,8 +224,14 @@ mod tests {
         ] {
             assert_eq!(read(bytes, charset), (expected.to_string(), encoding));
         }
-        assert_eq!(text(b"a", Some("ebcdic")).err().unwrap().code, code::NOT_UTF8);
-        assert_eq!(text(b"a\xb0", Some("utf-8")).err().unwrap().code, code::NOT_UTF8);
+        assert_eq!(
+            text(b"a", Some("ebcdic")).err().unwrap().code,
+            code::NOT_UTF8
+        );
+        assert_eq!(
+            text(b"a\xb0", Some("utf-8")).err().unwrap().code,
+            code::NOT_UTF8
+        );
     }
 
     #[test]
@@ -219,7 +239,10 @@ mod tests {
         let decoded = text(b"t,a\n0,1\n\0\0\0\0", None).unwrap();
         assert_eq!(decoded.text, "t,a\n0,1\n");
         assert_eq!(decoded.findings[0].code, "zero_bytes");
-        assert_eq!(text(b"t,a\n0,1\0\0\x001,2\n", None).unwrap().text, "t,a\n0,1\n1,2\n");
+        assert_eq!(
+            text(b"t,a\n0,1\0\0\x001,2\n", None).unwrap().text,
+            "t,a\n0,1\n1,2\n"
+        );
         assert_eq!(text(&[0; 99], None).err().unwrap().code, code::EMPTY_BODY);
     }
 }

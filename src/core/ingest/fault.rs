@@ -48,7 +48,10 @@ impl IngestError {
         if faults.is_empty() {
             Ok(())
         } else {
-            Err(Self { faults, draft: None })
+            Err(Self {
+                faults,
+                draft: None,
+            })
         }
     }
 }

@@ -60,7 +60,9 @@ impl<'a> Label<'a> {
         let (stem, word) = self.name.rsplit_once(['_', ' ', '-'])?;
         // deg_s, rad_sec
         let (stem, word) = match stem.rsplit_once(['_', ' ']) {
-            Some((stem, rate)) if ["s", "sec"].contains(&word) && UNITS_IN_NAMES.contains(&rate) => {
+            Some((stem, rate))
+                if ["s", "sec"].contains(&word) && UNITS_IN_NAMES.contains(&rate) =>
+            {
                 (stem, &self.name[stem.len() + 1..])
             }
             _ => (stem, word),
@@ -69,7 +71,11 @@ impl<'a> Label<'a> {
         let is_word = UNITS_IN_NAMES.contains(&lower.as_str())
             || ["deg_s", "rad_s", "deg_sec", "rad_sec", "ft_s", "m_s"].contains(&lower.as_str());
         let is_of_time = ["s", "ms", "us", "ns"].contains(&lower.as_str())
-            && Self { name: stem, unit: "" }.is_called_time_or_stamp();
+            && Self {
+                name: stem,
+                unit: "",
+            }
+            .is_called_time_or_stamp();
         (!stem.is_empty() && (is_word || is_of_time)).then_some(word)
     }
 
@@ -84,7 +90,14 @@ impl<'a> Label<'a> {
 
     /// A calendar date, a column of which goes with one of times of day.
     pub(super) fn is_called_date(&self) -> bool {
-        self.is_called(&["date", "lcldate", "localdate", "utcdate", "gpsdate", "datum"])
+        self.is_called(&[
+            "date",
+            "lcldate",
+            "localdate",
+            "utcdate",
+            "gpsdate",
+            "datum",
+        ])
     }
 
     /// The week of the satellites' clock.
@@ -105,18 +118,58 @@ impl<'a> Label<'a> {
 }
 
 /// What loggers call the time, without what is between the words.
-const CLOCKS: [&str; 38] = [
-    "timestamp", "timestamps", "datetime", "elapsed", "elapsedtime", "relativetime", "reltime", "timesincestart",
-    "timesinceboot", "timesincelaunch", "simtime", "simulationtime", "systemtime", "systime", "utc", "utctime", "gpstime",
-    "lcltime", "localtime", "zulutime", "irigtime", "irig", "clock", "timeus", "timems", "times", "timesec", "timesecs",
-    "seconds", "secs", "tow", "gpstow", "itow", "zeit", "temps", "tiempo", "tempo", "sessiontime",
+const CLOCKS: [&str; 43] = [
+    "timestamp",
+    "timestamps",
+    "datetime",
+    "elapsed",
+    "elapsedtime",
+    "relativetime",
+    "reltime",
+    "timesincestart",
+    "timesinceboot",
+    "timesincelaunch",
+    "simtime",
+    "simulationtime",
+    "systemtime",
+    "systime",
+    "utc",
+    "utctime",
+    "gpstime",
+    "lcltime",
+    "localtime",
+    "zulutime",
+    "irigtime",
+    "irig",
+    "clock",
+    "timeus",
+    "timems",
+    "times",
+    "timesec",
+    "timesecs",
+    "seconds",
+    "secs",
+    "tow",
+    "gpstow",
+    "itow",
+    "zeit",
+    "temps",
+    "tiempo",
+    "tempo",
+    "sessiontime",
+    "realtime",
+    "totltime",
+    "missntime",
+    "xvalue",
+    "flighttime",
 ];
 
 /// Words that are nothing but units.
 const UNITS_IN_NAMES: [&str; 38] = [
-    "deg", "degs", "degrees", "rad", "rads", "radians", "dps", "degps", "radps", "mps", "fps", "kt", "kts", "kias", "kcas",
-    "ktas", "mph", "kmh", "kph", "fpm", "ft", "feet", "meters", "metres", "hpa", "kpa", "psi", "psf", "inhg", "degc", "degf",
-    "rpm", "pct", "percent", "lbs", "lbf", "kg", "volts",
+    "deg", "degs", "degrees", "rad", "rads", "radians", "dps", "degps", "radps", "mps", "fps",
+    "kt", "kts", "kias", "kcas", "ktas", "mph", "kmh", "kph", "fpm", "ft", "feet", "meters",
+    "metres", "hpa", "kpa", "psi", "psf", "inhg", "degc", "degf", "rpm", "pct", "percent", "lbs",
+    "lbf", "kg", "volts",
 ];
 
 fn is_unit(text: &str) -> bool {

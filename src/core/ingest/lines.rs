@@ -97,7 +97,8 @@ impl<'a> Iterator for Lines<'a> {
 
 /// Whether a line has nothing but blanks; a look at its first byte tells of most that it has.
 pub(super) fn is_blank(line: &str) -> bool {
-    !matches!(line.as_bytes().first(), Some(first) if first.is_ascii_graphic()) && line.trim().is_empty()
+    !matches!(line.as_bytes().first(), Some(first) if first.is_ascii_graphic())
+        && line.trim().is_empty()
 }
 
 /// What spreadsheets write into cells: a row that begins with one is no comment.

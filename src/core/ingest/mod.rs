@@ -34,6 +34,7 @@ mod matrix;
 mod name;
 mod note;
 mod quality;
+mod quick;
 mod reading;
 mod recording;
 mod stamp;

@@ -89,7 +89,9 @@ impl Clock {
     /// Seconds since the first time stamp.
     fn seconds(&mut self, stamp: Option<Stamp>) -> Result<f64, Option<String>> {
         let stamp = stamp.ok_or_else(|| Some("is not a time stamp like that of the first row; write all alike, as in 2026-11-21T12:00:00.123Z or 12:00:00.123".to_string()))?;
-        self.watch.seconds(stamp).map_err(|why| Some(format!("does not fit: {why}")))
+        self.watch
+            .seconds(stamp)
+            .map_err(|why| Some(format!("does not fit: {why}")))
     }
 }
 
@@ -113,10 +115,22 @@ mod tests {
     #[test]
     fn an_epoch_keeps_its_last_digits() {
         let unit = |text| Unit::parse(text).unwrap();
-        let mut clock = Clock::new(Time::Epoch { at: 0, unit: unit("ns") }, Marks::POINT);
+        let mut clock = Clock::new(
+            Time::Epoch {
+                at: 0,
+                unit: unit("ns"),
+            },
+            Marks::POINT,
+        );
         assert_eq!(clock.read("1795255200123456789", ""), Ok(0.0));
         assert_eq!(clock.read("1795255200123456796", ""), Ok(7.0 * 1e-9));
-        let mut clock = Clock::new(Time::Epoch { at: 0, unit: unit("s") }, Marks::POINT);
+        let mut clock = Clock::new(
+            Time::Epoch {
+                at: 0,
+                unit: unit("s"),
+            },
+            Marks::POINT,
+        );
         assert_eq!(clock.read("1795255200.123456789", ""), Ok(0.0));
         assert_eq!(clock.read("\"1795255201.123456799\"", ""), Ok(1.000_000_01));
         assert_eq!(clock.read("", ""), Err(None));
@@ -125,7 +139,14 @@ mod tests {
     #[test]
     fn a_week_is_counted_on() {
         let unit = Unit::parse("s").unwrap();
-        let mut clock = Clock::new(Time::Week { week: 0, at: 1, unit }, Marks::POINT);
+        let mut clock = Clock::new(
+            Time::Week {
+                week: 0,
+                at: 1,
+                unit,
+            },
+            Marks::POINT,
+        );
         assert_eq!(clock.read("604799.5", "2300"), Ok(604_799.5));
         assert_eq!(clock.read("0.5", "2301"), Ok(604_800.5));
     }

@@ -104,7 +104,9 @@ impl<'a> Found<'a> {
         let is_parted = |mark, decimal| without_thousands(cell.text, mark, decimal).is_some();
         let kind = match (points, commas) {
             (0, 0) => return,
-            (1, 0) if is_parted('.', Decimal::Comma) && !cell.text.starts_with('0') => &mut self.point_or_thousands,
+            (1, 0) if is_parted('.', Decimal::Comma) && !cell.text.starts_with('0') => {
+                &mut self.point_or_thousands
+            }
             (1, 0) => &mut self.point,
             (0, 1) if may_be_thousands(cell.text) => &mut self.comma_or_thousands,
             (0, 1) => &mut self.comma,
@@ -133,10 +135,18 @@ impl<'a> Found<'a> {
             (self.point, self.thousands_by_point),
             (self.thousands_by_comma, self.thousands_by_point),
             // 1,5 and 1.234 would be 1.5 and 1234, where nothing else has marks between thousands
-            (self.comma, self.point_or_thousands.filter(|_| self.thousands_by_point.is_none())),
+            (
+                self.comma,
+                self.point_or_thousands
+                    .filter(|_| self.thousands_by_point.is_none()),
+            ),
         ];
-        let (one, other) = pairs.into_iter().find_map(|(one, other)| Some((one?, other?)))?;
-        let is_last = self.last.is_some_and(|last| std::ptr::eq(last.text, one.text));
+        let (one, other) = pairs
+            .into_iter()
+            .find_map(|(one, other)| Some((one?, other?)))?;
+        let is_last = self
+            .last
+            .is_some_and(|last| std::ptr::eq(last.text, one.text));
         let (later, earlier) = if is_last { (one, other) } else { (other, one) };
         let why = format!(
             " and {} in line {} cannot both have a decimal mark; write all numbers with points, or all with commas",
@@ -147,7 +157,12 @@ impl<'a> Found<'a> {
     }
 
     fn verdict(self) -> Result<Marks, Fault> {
-        let marks = |decimal, has_thousands| Ok(Marks { decimal, has_thousands });
+        let marks = |decimal, has_thousands| {
+            Ok(Marks {
+                decimal,
+                has_thousands,
+            })
+        };
         if self.thousands_by_point.is_some() {
             return marks(Decimal::Comma, true);
         }
@@ -175,7 +190,8 @@ mod tests {
     use super::*;
 
     fn of(text: &str) -> Result<(Decimal, bool), String> {
-        let marks = of_rows(&Lines::of(text), Delimiter::Byte(b';')).map_err(|fault| fault.message)?;
+        let marks =
+            of_rows(&Lines::of(text), Delimiter::Byte(b';')).map_err(|fault| fault.message)?;
         Ok((marks.decimal, marks.has_thousands))
     }
 
@@ -222,7 +238,10 @@ mod tests {
             "1;1,5\n2;1.5",
             "line 2, column 2: '1.5' and '1,5' in line 1",
         );
-        refused("1;1,5\n2;1.234", "line 2, column 2: '1.234' and '1,5' in line 1");
+        refused(
+            "1;1,5\n2;1.234",
+            "line 2, column 2: '1.234' and '1,5' in line 1",
+        );
         refused(
             "1;1,2,3",
             "line 1, column 2: '1,2,3' has more than one separator",

@@ -104,7 +104,10 @@ impl Delimiter {
             let behind = begin + 1 + close + 1;
             let blanks = match self {
                 Self::Blanks => 0,
-                _ => bytes[behind..].iter().take_while(|&&byte| byte == b' ').count(),
+                _ => bytes[behind..]
+                    .iter()
+                    .take_while(|&&byte| byte == b' ')
+                    .count(),
             };
             let end = behind + blanks;
             if bytes.get(end).is_none_or(|&byte| is_end(byte)) {
@@ -141,10 +144,20 @@ mod tests {
         let cells = |delimiter: Delimiter, line: &'static str| delimiter.cells(line).join("#");
         let comma = Delimiter::Byte(b',');
         assert_eq!(cells(comma, "a,\"b,c\",d"), "a#\"b,c\"#d");
-        assert_eq!(cells(comma, "a, \"b \"\"x\"\",c\" ,d,"), "a# \"b \"\"x\"\",c\" #d#");
-        assert_eq!(cells(comma, "0,\"1"), "0#\"1", "a forgotten quote protects nothing");
+        assert_eq!(
+            cells(comma, "a, \"b \"\"x\"\",c\" ,d,"),
+            "a# \"b \"\"x\"\",c\" #d#"
+        );
+        assert_eq!(
+            cells(comma, "0,\"1"),
+            "0#\"1",
+            "a forgotten quote protects nothing"
+        );
         assert_eq!(cells(comma, "0,\"1\"x,2"), "0#\"1\"x#2");
-        assert_eq!(cells(Delimiter::Blanks, "  0.0\t 1.5  \"a b\" "), "0.0#1.5#\"a b\"");
+        assert_eq!(
+            cells(Delimiter::Blanks, "  0.0\t 1.5  \"a b\" "),
+            "0.0#1.5#\"a b\""
+        );
         assert_eq!(cells(Delimiter::Bars, "| 0.0 | 1.5 |"), " 0.0 # 1.5 ");
         assert_eq!(cells(Delimiter::Bars, "0.0|1.5"), "0.0#1.5");
     }

@@ -15,10 +15,14 @@ const ASKED_FOR: &str = "?";
 pub(super) fn of(titles: &Titles, limits: &Limits) -> Mapping {
     let mut names = Names::new(limits);
     let mut draft = Draft::default();
-    let time = (0..titles.width).find(|&at| titles.stamp(at).is_some() || titles.any_label(at).is_called_time_or_stamp());
+    let time = (0..titles.width)
+        .find(|&at| titles.stamp(at).is_some() || titles.any_label(at).is_called_time_or_stamp());
     for at in 0..titles.width {
         let label = titles.any_label(at);
-        let is_once = (0..titles.width).filter(|&other| titles.title(other) == titles.title(at)).count() == 1;
+        let is_once = (0..titles.width)
+            .filter(|&other| titles.title(other) == titles.title(at))
+            .count()
+            == 1;
         let from = match titles.title(at) {
             title if !title.is_empty() && is_once => title.to_string(),
             _ => format!("(:,{})", at + 1),
@@ -31,8 +35,15 @@ pub(super) fn of(titles: &Titles, limits: &Limits) -> Mapping {
         };
         if Some(at) == time {
             draft.time(&from, unit);
-        } else if !titles.is_text(at) && !titles.has_dates(at) && (!titles.title(at).is_empty() || titles.names.is_none()) {
-            let name = names.take_like(if label.name.is_empty() { "channel" } else { label.name });
+        } else if !titles.is_text(at)
+            && !titles.has_dates(at)
+            && (!titles.title(at).is_empty() || titles.names.is_none())
+        {
+            let name = names.take_like(if label.name.is_empty() {
+                "channel"
+            } else {
+                label.name
+            });
             draft.channel(&name, &from, unit);
         }
     }

@@ -9,7 +9,10 @@ pub(super) const LONGEST_FOOTER: usize = 200;
 
 /// Whether there is nothing but delimiters and blanks.
 pub(super) fn is_empty(text: &str, delimiter: Delimiter) -> bool {
-    delimiter.cells(text).iter().all(|cell| cell.trim().is_empty())
+    delimiter
+        .cells(text)
+        .iter()
+        .all(|cell| cell.trim().is_empty())
 }
 
 pub(super) fn incomplete(line: usize) -> Finding {
@@ -23,15 +26,20 @@ pub(super) fn incomplete(line: usize) -> Finding {
 
 /// Whether the last number of a text has fewer digits behind its point than those of the lines before it all have.
 pub(super) fn has_fewer_digits(text: &str, delimiter: Delimiter) -> bool {
-    let lines = text.rsplit(['\n', '\r']).filter(|line| !line.trim().is_empty());
+    let lines = text
+        .rsplit(['\n', '\r'])
+        .filter(|line| !line.trim().is_empty());
     let digits = lines.take(11).map(|line| {
         let cells = delimiter.cells(line);
         let last = cells.last().map_or("", |cell| cell.trim());
-        last.split_once(['.', ',']).map_or(0, |(_, digits)| digits.len())
+        last.split_once(['.', ','])
+            .map_or(0, |(_, digits)| digits.len())
     });
     let digits: Vec<usize> = digits.collect();
     match digits.split_first() {
-        Some((last, before)) if before.len() >= 3 => before.iter().all(|count| *count == before[0] && count > last),
+        Some((last, before)) if before.len() >= 3 => before
+            .iter()
+            .all(|count| *count == before[0] && count > last),
         _ => false,
     }
 }
@@ -51,7 +59,10 @@ pub(super) fn footer(lines: &[Line]) -> Option<Finding> {
 
 pub(super) fn repeated_header(lines: &[usize]) -> Option<Finding> {
     let first = lines.first()?;
-    let message = format!("the header stands again in {} line(s), first in line {first}: it is passed over", lines.len());
+    let message = format!(
+        "the header stands again in {} line(s), first in line {first}: it is passed over",
+        lines.len()
+    );
     let remedy = "the recording began anew there; look for a gap";
     Some(note("repeated_header", Severity::Note, message, remedy))
 }

@@ -44,7 +44,12 @@ pub(in super::super) fn inspect(
     let column = |at: usize| InspectedColumn {
         title: table.titles.title(at).to_string(),
         unit: table.titles.any_label(at).unit.to_string(),
-        first: table.titles.first_said(at).unwrap_or_default().trim().to_string(),
+        first: table
+            .titles
+            .first_said(at)
+            .unwrap_or_default()
+            .trim()
+            .to_string(),
     };
     Ok(Inspection {
         written: written(&table, decoded.encoding),
@@ -63,7 +68,9 @@ fn written(table: &Table, encoding: &str) -> Vec<(&'static str, String)> {
         (Decimal::Comma, true) => "commas, points between thousands",
     };
     let line = |row: &Option<(Line, Vec<&str>)>| {
-        row.as_ref().map_or("none".to_string(), |(line, _)| format!("line {}", line.number))
+        row.as_ref().map_or("none".to_string(), |(line, _)| {
+            format!("line {}", line.number)
+        })
     };
     let mut written = vec![
         ("encoding", encoding.to_string()),
@@ -72,7 +79,11 @@ fn written(table: &Table, encoding: &str) -> Vec<(&'static str, String)> {
         ("names", line(names)),
         ("units", line(units)),
     ];
-    let described: Vec<String> = table.descriptions.iter().map(|line| line.number.to_string()).collect();
+    let described: Vec<String> = table
+        .descriptions
+        .iter()
+        .map(|line| line.number.to_string())
+        .collect();
     if !described.is_empty() {
         written.push(("other lines of the header", described.join(", ")));
     }

@@ -20,13 +20,18 @@ mod repeated;
 mod report;
 mod rows;
 mod sample;
+mod sample_rows;
+mod samples;
 mod table;
 mod time;
 mod titles;
+mod trouble;
 
 pub(super) use inspection::inspect;
 pub use inspection::{InspectedColumn, Inspection};
 pub(super) use read::read;
 
+#[cfg(test)]
+mod mapped_tests;
 #[cfg(test)]
 mod tests;

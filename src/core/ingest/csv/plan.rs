@@ -28,6 +28,21 @@ pub(super) struct Column {
     pub(super) is_needed: bool,
 }
 
+impl Column {
+    /// Applies signs for no value and the factor to recorded numbers.
+    pub(super) fn apply(&self, values: &mut [f64]) {
+        for no_value in &self.no_values {
+            if let NoValue::Number(number) = no_value {
+                let without = values.iter_mut().filter(|value| *value == number);
+                without.for_each(|value| *value = f64::NAN);
+            }
+        }
+        if self.factor != 1.0 {
+            values.iter_mut().for_each(|value| *value *= self.factor);
+        }
+    }
+}
+
 /// Columns by what becomes of them.
 pub(super) struct Plan {
     pub(super) time: Time,
@@ -47,7 +62,11 @@ impl Plan {
     ///
     /// # Errors
     /// Every fault of the mapping at its place. There is no time.
-    pub(super) fn of(titles: &Titles, mapping: &Mapping, limits: &Limits) -> Result<Self, IngestError> {
+    pub(super) fn of(
+        titles: &Titles,
+        mapping: &Mapping,
+        limits: &Limits,
+    ) -> Result<Self, IngestError> {
         let mut faults = Vec::new();
         let time = time::of(titles, &mapping.time, &mut faults);
         let mut making = Making {
@@ -57,7 +76,10 @@ impl Plan {
             names: Names::new(limits),
             taken: vec![None; titles.width],
             plan: Self {
-                time: time.unwrap_or(Time::Even { start: 0.0, step: 1.0 }),
+                time: time.unwrap_or(Time::Even {
+                    start: 0.0,
+                    step: 1.0,
+                }),
                 columns: Vec::new(),
                 left_out: Vec::new(),
                 renamed: Vec::new(),
@@ -166,7 +188,9 @@ impl Making<'_, '_> {
     /// All other columns, as their titles say.
     fn others(&mut self) {
         // names that need no change go first: no title takes one that another has
-        let all: Vec<usize> = (0..self.titles.width).filter(|&at| self.taken[at].is_none()).collect();
+        let all: Vec<usize> = (0..self.titles.width)
+            .filter(|&at| self.taken[at].is_none())
+            .collect();
         let is_clear = |at: &usize| is_identifier(self.titles.any_label(*at).name);
         let (clear, others): (Vec<usize>, Vec<usize>) = all.into_iter().partition(is_clear);
         for at in clear.into_iter().chain(others) {
@@ -175,8 +199,13 @@ impl Making<'_, '_> {
                 Ok(None) => {}
                 Err((code, message)) => {
                     let label = self.titles.any_label(at);
-                    let is_clear = is_identifier(label.name) && label.name.len() <= self.limits.max_name_length;
-                    let place = if is_clear { label.name.to_string() } else { (at + 1).to_string() };
+                    let is_clear = is_identifier(label.name)
+                        && label.name.len() <= self.limits.max_name_length;
+                    let place = if is_clear {
+                        label.name.to_string()
+                    } else {
+                        (at + 1).to_string()
+                    };
                     let message = format!("column {}: {message}", at + 1);
                     let fault = Fault::new(pointer(["columns", &place]), code, message);
                     let title = match self.titles.title(at) {
@@ -187,7 +216,9 @@ impl Making<'_, '_> {
                 }
             }
         }
-        self.plan.left_out.sort_by(|(_, one), (_, other)| place_of(one).cmp(&place_of(other)));
+        self.plan
+            .left_out
+            .sort_by(|(_, one), (_, other)| place_of(one).cmp(&place_of(other)));
     }
 
     /// The channel of a column; `None` where there is nothing in it.
@@ -203,10 +234,15 @@ impl Making<'_, '_> {
         }
         let label = self.titles.label(at)?;
         if label.name.len() > self.limits.max_name_length {
-            return Err(self.names.take(label.name).err().unwrap_or((code::NAME_TOO_LONG, String::new())));
+            return Err(self
+                .names
+                .take(label.name)
+                .err()
+                .unwrap_or((code::NAME_TOO_LONG, String::new())));
         }
         let unit = RecordedUnit::parse(label.unit)?;
-        if self.titles.is_text(at) {
+        let is_stamp = self.titles.stamp(at).is_some() || self.titles.has_dates(at);
+        if self.titles.is_text(at) || is_stamp {
             let cell = quoted(self.titles.first_said(at).unwrap_or_default().trim());
             return Err((code::NOT_A_NUMBER, format!("{cell} is not a number")));
         }
@@ -234,7 +270,11 @@ impl Making<'_, '_> {
 
 /// What a name is made of.
 fn readable<'a>(label: &Label<'a>, title: &'a str) -> &'a str {
-    if label.name.is_empty() { title } else { label.name }
+    if label.name.is_empty() {
+        title
+    } else {
+        label.name
+    }
 }
 
 /// The number of the column that a fault is about.

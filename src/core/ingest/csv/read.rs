@@ -14,8 +14,8 @@ use super::super::{
 use super::{
     clock, draft,
     plan::{Column, Plan},
-    repeated, report,
-    rows::{self, Samples, Unreadable},
+    repeated, report, rows,
+    samples::{Samples, Unreadable},
     table::Table,
 };
 use crate::flight::{Fault, Maneuver};
@@ -37,7 +37,11 @@ pub(in super::super) fn read(
     let table = Table::find(&decoded.text, mapping, limits)?;
     let mut reading = read_table(&table, limits).map_err(|error| {
         let says_all = mapping.is_some_and(|mapping| !mapping.channels.is_empty());
-        if says_all { error } else { error.with_draft(draft::of(&table.titles, limits).to_json()) }
+        if says_all {
+            error
+        } else {
+            error.with_draft(draft::of(&table.titles, limits).to_json())
+        }
     })?;
     reading.findings.splice(0..0, decoded.findings);
     Ok(reading)
@@ -51,7 +55,12 @@ fn read_table(table: &Table, limits: &Limits) -> Result<Reading, IngestError> {
     let mut faults = std::mem::take(&mut samples.faults);
     if faults.is_empty() {
         let said = table.mapping.time.repeated;
-        faults.extend(repeated::resolve(&mut samples, said, &written.time).err().into_iter().flatten());
+        faults.extend(
+            repeated::resolve(&mut samples, said, &written.time)
+                .err()
+                .into_iter()
+                .flatten(),
+        );
     }
     let mut left_out = plan.left_out.clone();
     for (column, unreadable) in plan.columns.iter().zip(&samples.unreadable) {
@@ -76,7 +85,12 @@ fn read_table(table: &Table, limits: &Limits) -> Result<Reading, IngestError> {
 }
 
 fn not_readable(column: &Column, unreadable: &Unreadable) -> Fault {
-    let Unreadable { row, line, cell, count } = unreadable;
+    let Unreadable {
+        row,
+        line,
+        cell,
+        count,
+    } = unreadable;
     let (cell, name) = (quoted(cell), &column.name);
     let more = match count - 1 {
         0 => String::new(),
@@ -86,12 +100,19 @@ fn not_readable(column: &Column, unreadable: &Unreadable) -> Fault {
         "line {line}: {cell} in column '{name}' {}{more}; where it stands for no value, say so in a mapping: missing = [...]",
         clock::NOT_A_NUMBER
     );
-    Fault::new(pointer(["rows", &row.to_string(), name]), code::NOT_A_NUMBER, message)
+    Fault::new(
+        pointer(["rows", &row.to_string(), name]),
+        code::NOT_A_NUMBER,
+        message,
+    )
 }
 
 fn maneuver(columns: Vec<Column>, samples: Samples) -> Result<Maneuver, IngestError> {
     let mut channels = IndexMap::with_capacity(columns.len());
-    let readable = columns.into_iter().zip(samples.values).zip(samples.unreadable);
+    let readable = columns
+        .into_iter()
+        .zip(samples.values)
+        .zip(samples.unreadable);
     for ((column, values), unreadable) in readable {
         if unreadable.is_none() {
             channels.insert(column.name, column.unit.channel(values));

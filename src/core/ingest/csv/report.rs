@@ -21,20 +21,39 @@ pub(super) fn findings(table: &Table, plan: &Plan, left_out: &[(String, Fault)])
     }
     if !left_out.is_empty() {
         let why = |(title, fault): &(String, Fault)| {
-            let why = fault.message.split_once(": ").map_or(fault.message.as_str(), |(_, why)| why);
+            let why = fault
+                .message
+                .split_once(": ")
+                .map_or(fault.message.as_str(), |(_, why)| why);
             let why = why.split(';').next().unwrap_or(why);
             format!("{title} ({why})")
         };
-        let message = format!("{} column(s) are left out: {}", left_out.len(), listed(left_out.iter().map(why)));
+        let message = format!(
+            "{} column(s) are left out: {}",
+            left_out.len(),
+            listed(left_out.iter().map(why))
+        );
         let remedy = "write a mapping to have them; `trimtab inspect` prints a draft of it";
         let mut finding = note("left_out", Severity::Warning, message, remedy);
         finding.count = left_out.len();
         findings.push(finding);
     }
     if !plan.renamed.is_empty() {
-        let pairs = plan.renamed.iter().map(|(title, name)| format!("{} is {name}", quoted(title)));
-        let message = format!("{} title(s) are no names for equations: {}", plan.renamed.len(), listed(pairs));
-        findings.push(note("renamed", Severity::Note, message, "other names can be given in a mapping"));
+        let pairs = plan
+            .renamed
+            .iter()
+            .map(|(title, name)| format!("{} is {name}", quoted(title)));
+        let message = format!(
+            "{} title(s) are no names for equations: {}",
+            plan.renamed.len(),
+            listed(pairs)
+        );
+        findings.push(note(
+            "renamed",
+            Severity::Note,
+            message,
+            "other names can be given in a mapping",
+        ));
     }
     if !plan.without_unit.is_empty() {
         let message = format!(
@@ -45,15 +64,30 @@ pub(super) fn findings(table: &Table, plan: &Plan, left_out: &[(String, Fault)])
         findings.push(note("no_unit", Severity::Note, message, remedy));
     }
     if !plan.absent.is_empty() {
-        let message = format!("the file does not have {}, which the mapping names", listed(plan.absent.iter().cloned()));
-        findings.push(note("absent", Severity::Note, message, "nothing needs to be done where the model does not need them"));
+        let message = format!(
+            "the file does not have {}, which the mapping names",
+            listed(plan.absent.iter().cloned())
+        );
+        findings.push(note(
+            "absent",
+            Severity::Note,
+            message,
+            "nothing needs to be done where the model does not need them",
+        ));
     }
     findings
 }
 
 fn listed(names: impl ExactSizeIterator<Item = String>) -> String {
     let more = names.len().saturating_sub(LISTED);
-    let names: Vec<String> = names.take(LISTED).map(|name| short_message(&name)).collect();
+    let names: Vec<String> = names
+        .take(LISTED)
+        .map(|name| short_message(&name))
+        .collect();
     let names = names.join(", ");
-    if more > 0 { format!("{names} and {more} more") } else { names }
+    if more > 0 {
+        format!("{names} and {more} more")
+    } else {
+        names
+    }
 }

@@ -1,62 +1,21 @@
 //! The rows of a table: one a sample, each cell a number, a time stamp, or nothing.
 
-use crate::flight::{Fault, Finding};
-
 use super::super::{
-    cell::{Decimal, Marks, number, quick_number, unquote},
-    code,
-    fault::{CELLS_LISTED, pointer},
+    cell::{Decimal, number, unquote},
+    fault::CELLS_LISTED,
     lines::{Line, Lines},
     mapping::NoValue,
-    text::quoted,
+    quick::quick_number,
 };
 use super::{
     clock::{Clock, NOT_A_NUMBER},
     delimiter::Delimiter,
     ending,
     plan::{Column, Plan},
+    samples::{Samples, Unreadable},
     time::Time,
+    trouble::{Trouble, Written},
 };
-
-/// How a table is written.
-pub(super) struct Written<'a> {
-    pub(super) delimiter: Delimiter,
-    pub(super) marks: Marks,
-    pub(super) width: usize,
-    /// Lines that are no rows wherever they stand again: those of the header.
-    pub(super) header: Vec<&'a str>,
-    /// What the column of time is called.
-    pub(super) time: String,
-    /// The text does not end with a line's end.
-    pub(super) is_cut_off: bool,
-}
-
-/// The samples of a table, as recorded.
-pub(super) struct Samples {
-    /// Seconds; not yet in order.
-    pub(super) time: Vec<f64>,
-    /// For each column of the plan.
-    pub(super) values: Vec<Vec<f64>>,
-    /// The line of each sample.
-    pub(super) lines: Vec<u32>,
-    /// The row of each sample, from 1.
-    pub(super) rows: Vec<u32>,
-    /// For each column of the plan: what in it is neither a number nor a sign for no value.
-    pub(super) unreadable: Vec<Option<Unreadable>>,
-    pub(super) findings: Vec<Finding>,
-    /// Of rows and times, by row.
-    pub(super) faults: Vec<(usize, Fault)>,
-}
-
-/// Cells of a column that cannot be read.
-#[derive(Clone)]
-pub(super) struct Unreadable {
-    pub(super) row: usize,
-    pub(super) line: usize,
-    /// The first of them.
-    pub(super) cell: String,
-    pub(super) count: usize,
-}
 
 /// What is to be done with a cell.
 #[derive(Clone, Copy)]
@@ -67,15 +26,6 @@ enum Cell {
     Day,
     /// A channel's; which of the plan's columns it is.
     Channel(usize),
-}
-
-/// Why a line is no sample.
-enum Trouble {
-    Length(usize),
-    NoTime,
-    Time(String, String),
-    /// Nothing but delimiters.
-    Empty,
 }
 
 /// Reads all rows; `capacity` is about how many there are.
@@ -131,7 +81,11 @@ impl<'a> Reader<'a> {
             clock: Clock::new(plan.time, written.marks),
             samples: Samples {
                 time: Vec::with_capacity(capacity),
-                values: plan.columns.iter().map(|_| Vec::with_capacity(capacity)).collect(),
+                values: plan
+                    .columns
+                    .iter()
+                    .map(|_| Vec::with_capacity(capacity))
+                    .collect(),
                 lines: Vec::with_capacity(capacity),
                 rows: Vec::with_capacity(capacity),
                 unreadable: vec![None; plan.columns.len()],
@@ -195,7 +149,12 @@ impl<'a> Reader<'a> {
 
     /// Reads a line into [`Self::row`]; its time.
     fn sample(&mut self, line: Line<'a>) -> Result<f64, Trouble> {
-        let &Written { delimiter, marks, width, .. } = self.written;
+        let &Written {
+            delimiter,
+            marks,
+            width,
+            ..
+        } = self.written;
         let text = delimiter.without_ends(line.text);
         let bytes = text.as_bytes();
         // blanks part cells before they are read: a number ends with its cell
@@ -204,7 +163,11 @@ impl<'a> Reader<'a> {
             Delimiter::Bars => (b'|', false),
             Delimiter::Blanks => (0, true),
         };
-        let point = if marks.decimal == Decimal::Comma { b',' } else { b'.' };
+        let point = if marks.decimal == Decimal::Comma {
+            b','
+        } else {
+            b'.'
+        };
         let (mut time, mut time_cell, mut day_cell) = (None, "", "");
         let (mut from, mut count) = (0, 0);
         loop {
@@ -218,7 +181,11 @@ impl<'a> Reader<'a> {
                 Cell::Time => !marks.has_thousands && self.clock.takes_numbers(),
                 Cell::Day | Cell::Skip => false,
             };
-            let quick = if is_number { quick_number(rest, end_of_number, point) } else { None };
+            let quick = if is_number {
+                quick_number(rest, end_of_number, point)
+            } else {
+                None
+            };
             let length = match (quick, cell) {
                 (Some((value, length)), Cell::Channel(at)) => {
                     self.row[at] = value;
@@ -229,7 +196,11 @@ impl<'a> Reader<'a> {
                     length
                 }
                 (None, _) => {
-                    let length = if is_parted { rest.len() } else { delimiter.cell_end(rest) };
+                    let length = if is_parted {
+                        rest.len()
+                    } else {
+                        delimiter.cell_end(rest)
+                    };
                     let said = &text[from..from + length];
                     match cell {
                         Cell::Channel(at) => self.read_cell(at, said),
@@ -245,30 +216,46 @@ impl<'a> Reader<'a> {
             if end >= bytes.len() {
                 let is_behind_last = count == width + 1 && text[from..].trim().is_empty();
                 if count != width && !is_behind_last {
-                    return Err(if ending::is_empty(text, delimiter) { Trouble::Empty } else { Trouble::Length(count) });
+                    return Err(if ending::is_empty(text, delimiter) {
+                        Trouble::Empty
+                    } else {
+                        Trouble::Length(count)
+                    });
                 }
                 break;
             }
             let blanks = |byte: &&u8| byte.is_ascii_whitespace();
-            from = if is_parted { end + bytes[end..].iter().take_while(blanks).count() } else { end + 1 };
+            from = if is_parted {
+                end + bytes[end..].iter().take_while(blanks).count()
+            } else {
+                end + 1
+            };
         }
         if self.time.column().is_none() && self.unreadable.len() == self.columns.len() {
-            return Err(if ending::is_empty(text, delimiter) { Trouble::Empty } else { Trouble::Time(String::new(), NOT_A_NUMBER.to_string()) });
+            return Err(if ending::is_empty(text, delimiter) {
+                Trouble::Empty
+            } else {
+                Trouble::Time(String::new(), NOT_A_NUMBER.to_string())
+            });
         }
         match time {
             Some(time) => Ok(time),
-            None => self.clock.read(time_cell, day_cell).map_err(|why| match why {
-                None if ending::is_empty(text, delimiter) => Trouble::Empty,
-                None => Trouble::NoTime,
-                Some(why) => Trouble::Time(time_cell.trim().to_string(), why),
-            }),
+            None => self
+                .clock
+                .read(time_cell, day_cell)
+                .map_err(|why| match why {
+                    None if ending::is_empty(text, delimiter) => Trouble::Empty,
+                    None => Trouble::NoTime,
+                    Some(why) => Trouble::Time(time_cell.trim().to_string(), why),
+                }),
         }
     }
 
     /// A cell that the quick way did not read.
     fn read_cell(&mut self, at: usize, cell: &'a str) {
         let said = unquote(cell);
-        let is_no_value = |no_value: &NoValue| matches!(no_value, NoValue::Word(word) if word.trim() == said);
+        let is_no_value =
+            |no_value: &NoValue| matches!(no_value, NoValue::Word(word) if word.trim() == said);
         let value = if self.columns[at].no_values.iter().any(is_no_value) {
             Some(f64::NAN)
         } else {
@@ -286,19 +273,38 @@ impl<'a> Reader<'a> {
         let last = self.samples.rows.last().map_or(0, |&row| row as usize);
         if self.written.is_cut_off {
             let is_short = |trouble: &(usize, Line, Trouble)| matches!(trouble.2, Trouble::Length(found) if found < width);
-            if self.troubles.last().is_some_and(|trouble| trouble.0 == self.row_number && is_short(trouble)) {
+            if self
+                .troubles
+                .last()
+                .is_some_and(|trouble| trouble.0 == self.row_number && is_short(trouble))
+            {
                 if let Some((_, line, _)) = self.troubles.pop() {
                     self.samples.findings.push(ending::incomplete(line.number));
                 }
-            } else if last == self.row_number && ending::has_fewer_digits(text, self.written.delimiter) {
-                self.samples.findings.push(ending::incomplete(self.samples.lines.last().map_or(0, |&line| line as usize)));
-                self.drop_last();
+            } else if last == self.row_number
+                && ending::has_fewer_digits(text, self.written.delimiter)
+            {
+                self.samples.findings.push(ending::incomplete(
+                    self.samples.lines.last().map_or(0, |&line| line as usize),
+                ));
+                self.samples.drop_last();
             }
         }
         let last = self.samples.rows.last().map_or(0, |&row| row as usize);
-        let begin = self.troubles.iter().position(|(row, ..)| *row > last).unwrap_or(self.troubles.len());
-        let is_footer = last > 0 && self.troubles[begin..].iter().all(|(_, line, trouble)| self.is_footer(line, trouble));
-        let footer: Vec<_> = if is_footer { self.troubles.drain(begin..).collect() } else { Vec::new() };
+        let begin = self
+            .troubles
+            .iter()
+            .position(|(row, ..)| *row > last)
+            .unwrap_or(self.troubles.len());
+        let is_footer = last > 0
+            && self.troubles[begin..]
+                .iter()
+                .all(|(_, line, trouble)| self.is_footer(line, trouble));
+        let footer: Vec<_> = if is_footer {
+            self.troubles.drain(begin..).collect()
+        } else {
+            Vec::new()
+        };
         let footer: Vec<Line> = footer.into_iter().map(|(_, line, _)| line).collect();
         self.samples.findings.extend(ending::footer(&footer));
     }
@@ -307,69 +313,31 @@ impl<'a> Reader<'a> {
     fn is_footer(&self, line: &Line, trouble: &Trouble) -> bool {
         let cells = self.written.delimiter.cells(line.text);
         let cell = cells.get(self.time.column().unwrap_or(0)).or(cells.first());
-        matches!(trouble, Trouble::Length(_) | Trouble::Time(..)) && cell.is_some_and(|cell| ending::begins_with_word(cell))
+        matches!(trouble, Trouble::Length(_) | Trouble::Time(..))
+            && cell.is_some_and(|cell| ending::begins_with_word(cell))
     }
 
-    fn drop_last(&mut self) {
-        let samples = &mut self.samples;
-        samples.time.pop();
-        samples.lines.pop();
-        samples.rows.pop();
-        for values in &mut samples.values {
-            values.pop();
-        }
-    }
-
-    fn samples(mut self) -> Samples {
-        let told: Vec<(usize, Fault)> = self.troubles.iter().take(CELLS_LISTED).map(|(row, line, trouble)| (*row, self.fault(*row, line, trouble))).collect();
-        let Samples { findings, time, values, .. } = &mut self.samples;
-        findings.extend(ending::repeated_header(&self.repeated_headers));
-        findings.extend(ending::no_time_yet(self.without_time));
+    fn samples(self) -> Samples {
+        let mut samples = self.samples;
+        let told = self.troubles.iter().take(CELLS_LISTED);
+        let fault = |(row, line, trouble): &(usize, Line, Trouble)| {
+            (*row, trouble.fault(*row, line, self.written))
+        };
+        samples.faults = told.map(fault).collect();
+        samples
+            .findings
+            .extend(ending::repeated_header(&self.repeated_headers));
+        samples
+            .findings
+            .extend(ending::no_time_yet(self.without_time));
         if let Time::Even { start, step } = self.time {
-            for (k, time) in time.iter_mut().enumerate() {
+            for (k, time) in samples.time.iter_mut().enumerate() {
                 *time = start + k as f64 * step;
             }
         }
-        for (column, values) in self.columns.iter().zip(values) {
-            for no_value in &column.no_values {
-                if let NoValue::Number(number) = no_value {
-                    values.iter_mut().filter(|value| *value == number).for_each(|value| *value = f64::NAN);
-                }
-            }
-            if column.factor != 1.0 {
-                values.iter_mut().for_each(|value| *value *= column.factor);
-            }
+        for (column, values) in self.columns.iter().zip(&mut samples.values) {
+            column.apply(values);
         }
-        self.samples.faults = told;
-        self.samples
-    }
-
-    fn fault(&self, row: usize, line: &Line, trouble: &Trouble) -> Fault {
-        let number = line.number;
-        let name = &self.written.time;
-        let in_row = || pointer(["rows", &row.to_string()]);
-        let in_cell = || pointer(["rows", &row.to_string(), name]);
-        match trouble {
-            Trouble::Length(found) => {
-                let width = self.written.width;
-                let with_decimal_commas = if self.written.delimiter == Delimiter::Byte(b',') && *found > width {
-                    "; where numbers have decimal commas, separate cells by semicolons"
-                } else {
-                    ""
-                };
-                let message = format!(
-                    "line {number}: row {row} has {found} cell(s) where the header has {width} columns; write one cell for each, empty where there is no value{with_decimal_commas}; if the table ends here, cut the file there"
-                );
-                Fault::new(in_row(), code::ROW_LENGTH, message)
-            }
-            Trouble::NoTime | Trouble::Empty => {
-                let message = format!("line {number}: time is missing or not a number in row {row}; every row needs a time");
-                Fault::new(in_cell(), code::TIME_MISSING, message)
-            }
-            Trouble::Time(cell, why) => {
-                let message = format!("line {number}: {} in column '{name}' {why}", quoted(cell));
-                Fault::new(in_cell(), code::NOT_A_NUMBER, message)
-            }
-        }
+        samples
     }
 }

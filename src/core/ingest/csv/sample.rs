@@ -22,7 +22,8 @@ pub(super) enum Held {
 impl Held {
     pub(super) fn by(cell: &str) -> Self {
         let text = unquote(cell);
-        if is_missing(text) || text.eq_ignore_ascii_case("nan") || text.eq_ignore_ascii_case("inf") {
+        if is_missing(text) || text.eq_ignore_ascii_case("nan") || text.eq_ignore_ascii_case("inf")
+        {
             return Self::Nothing;
         }
         if is_number(text) || Stamp::parse(text).is_some() || Stamp::is_date(text) {
@@ -38,9 +39,17 @@ fn is_number(text: &str) -> bool {
     if text.contains(' ') {
         return false;
     }
-    let ways = [(Decimal::Point, false), (Decimal::Comma, false), (Decimal::Point, true), (Decimal::Comma, true)];
+    let ways = [
+        (Decimal::Point, false),
+        (Decimal::Comma, false),
+        (Decimal::Point, true),
+        (Decimal::Comma, true),
+    ];
     ways.into_iter().any(|(decimal, has_thousands)| {
-        let marks = Marks { decimal, has_thousands };
+        let marks = Marks {
+            decimal,
+            has_thousands,
+        };
         number(text, marks).is_some_and(f64::is_finite)
     })
 }

@@ -16,8 +16,8 @@ use super::{
     head::Head,
     layout::{self, Said},
     plan::Plan,
-    rows::Written,
     titles::Titles,
+    trouble::Written,
 };
 use crate::flight::Fault;
 
@@ -38,13 +38,24 @@ impl<'a> Table<'a> {
     ///
     /// # Errors
     /// There is none, or it is not clear how it is written.
-    pub(super) fn find(text: &'a str, mapping: Option<&'a Mapping>, limits: &Limits) -> Result<Self, IngestError> {
+    pub(super) fn find(
+        text: &'a str,
+        mapping: Option<&'a Mapping>,
+        limits: &Limits,
+    ) -> Result<Self, IngestError> {
         let layout = layout::find(text, said(mapping)?)?;
-        let widest = layout.misfit.map_or(0, |(_, cells)| cells).max(layout.width);
+        let widest = layout
+            .misfit
+            .map_or(0, |(_, cells)| cells)
+            .max(layout.width);
         limits.columns(widest).map_or(Ok(()), Err)?;
         let marks = match mapping.and_then(|mapping| mapping.decimal.as_deref()) {
             Some(mark) => Marks {
-                decimal: if mark == "," { Decimal::Comma } else { Decimal::Point },
+                decimal: if mark == "," {
+                    Decimal::Comma
+                } else {
+                    Decimal::Point
+                },
                 has_thousands: true,
             },
             None => decimal::of_rows(&layout.rows, layout.delimiter)?,
@@ -63,7 +74,10 @@ impl<'a> Table<'a> {
             first: layout.first,
             width: layout.width,
         };
-        let recognised = mapping.is_none().then(|| Mapping::recognised(|wanted| titles.find(wanted).is_ok())).flatten();
+        let recognised = mapping
+            .is_none()
+            .then(|| Mapping::recognised(|wanted| titles.has(wanted)))
+            .flatten();
         let (recognised, mapping) = match (mapping, recognised) {
             (Some(mapping), _) => (None, Cow::Borrowed(mapping)),
             (None, Some((name, mapping))) => (Some(name), Cow::Borrowed(mapping)),
@@ -86,7 +100,9 @@ impl<'a> Table<'a> {
     /// There are more than a recording may have.
     pub(super) fn check_size(&self, limits: &Limits) -> Result<usize, IngestError> {
         let text = self.rows.rest().as_bytes();
-        let ends = memchr::memchr_iter(b'\n', text).count().max(memchr::memchr_iter(b'\r', text).count());
+        let ends = memchr::memchr_iter(b'\n', text)
+            .count()
+            .max(memchr::memchr_iter(b'\r', text).count());
         let mut rows = ends + 1;
         let values = |rows: usize| rows.saturating_mul(self.titles.width);
         if limits.samples(rows).is_some() || limits.values(values(rows)).is_some() {
@@ -99,16 +115,26 @@ impl<'a> Table<'a> {
     }
 
     pub(super) fn written(&self, plan: &Plan) -> Written<'a> {
-        let of_header = [&self.titles.names, &self.titles.units].into_iter().flatten().map(|(line, _)| line.text.trim());
+        let of_header = [&self.titles.names, &self.titles.units]
+            .into_iter()
+            .flatten()
+            .map(|(line, _)| line.text.trim());
         let described = self.descriptions.iter().map(|line| line.text.trim());
-        let time = plan.time.column().map_or("", |at| self.titles.any_label(at).name);
+        let time = plan
+            .time
+            .column()
+            .map_or("", |at| self.titles.any_label(at).name);
         let is_mapped = !self.mapping.channels.is_empty() && self.recognised.is_none();
         Written {
             delimiter: self.delimiter,
             marks: self.marks,
             width: self.titles.width,
             header: of_header.chain(described).collect(),
-            time: if time.is_empty() || is_mapped { "t".to_string() } else { time.to_string() },
+            time: if time.is_empty() || is_mapped {
+                "t".to_string()
+            } else {
+                time.to_string()
+            },
             is_cut_off: !self.rows.rest().ends_with(['\n', '\r']),
         }
     }

@@ -6,7 +6,8 @@ use super::read;
 use crate::flight::Maneuver;
 
 fn reading(text: &str, mapping: Option<&str>) -> Result<Reading, IngestError> {
-    let mapping = mapping.map(|text| Mapping::from_toml(text).unwrap_or_else(|fault| panic!("{fault}")));
+    let mapping =
+        mapping.map(|text| Mapping::from_toml(text).unwrap_or_else(|fault| panic!("{fault}")));
     read(text.as_bytes(), None, mapping.as_ref(), &Limits::default())
 }
 
@@ -21,7 +22,11 @@ fn faults(text: &str) -> Vec<String> {
 /// The codes of what is told of a file.
 fn told(text: &str) -> Vec<String> {
     let reading = reading(text, None).unwrap_or_else(|error| panic!("{text}: {error}"));
-    reading.findings.into_iter().map(|finding| finding.code).collect()
+    reading
+        .findings
+        .into_iter()
+        .map(|finding| finding.code)
+        .collect()
 }
 
 #[test]
@@ -64,7 +69,12 @@ fn faults_of_the_whole_file() {
     assert_eq!(faults("t[s]\n0\n1\n"), ["no_channels "]);
     assert_eq!(faults("t,a\n0,1\n1,2\n"), ["time_unit /columns/t"]);
     assert_eq!(faults("t[m],a\n0,1\n1,2\n"), ["time_unit /columns/t"]);
-    let cut = read("t[s],a\n0,1\n1,\u{b0}".as_bytes().split_last().unwrap().1, None, None, &Limits::default());
+    let cut = read(
+        "t[s],a\n0,1\n1,\u{b0}".as_bytes().split_last().unwrap().1,
+        None,
+        None,
+        &Limits::default(),
+    );
     let fault = &cut.unwrap_err().into_faults()[0];
     assert_eq!(fault.code, code::NOT_UTF8);
     assert!(fault.message.contains("line 3"), "{}", fault.message);
@@ -75,15 +85,30 @@ fn faults_of_rows_are_reported_with_their_lines() {
     let text = "t[s],a,b\n0,1,1\n\nx,2,1\n1,y,1\n2\n1.1,3,1\n0.5,4,1\n,5,1\n3,1e999,1\n";
     assert_eq!(
         faults(text),
-        ["not_a_number /rows/2/t", "row_length /rows/4", "time_missing /rows/7/t"]
+        [
+            "not_a_number /rows/2/t",
+            "row_length /rows/4",
+            "time_missing /rows/7/t"
+        ]
     );
     let error = read_text(text).unwrap_err();
     let message = |at: usize| error.faults()[at].message.as_str();
-    assert!(message(0).starts_with("line 4: 'x' in column 't'"), "{}", message(0));
-    assert!(message(1).starts_with("line 6: row 4 has 1 cell(s)"), "{}", message(1));
+    assert!(
+        message(0).starts_with("line 4: 'x' in column 't'"),
+        "{}",
+        message(0)
+    );
+    assert!(
+        message(1).starts_with("line 6: row 4 has 1 cell(s)"),
+        "{}",
+        message(1)
+    );
     assert_eq!(
         faults("t[s],a\n0,1\n2,1\n1,1\n0.5,1\n"),
-        ["time_not_increasing /rows/3/t", "time_not_increasing /rows/4/t"]
+        [
+            "time_not_increasing /rows/3/t",
+            "time_not_increasing /rows/4/t"
+        ]
     );
 }
 
@@ -101,22 +126,39 @@ fn what_cannot_be_read_is_left_out_and_told_once() {
     assert_eq!(names, ["q", "Engine_1_RPM"]);
     let left_out = &reading.findings[0];
     assert_eq!((left_out.code.as_str(), left_out.count), ("left_out", 4));
-    for said in ["'mode' ('CLIMB' is not a number)", "unknown unit 'furlong'", "'a' ('x' in column 'a'"] {
+    for said in [
+        "'mode' ('CLIMB' is not a number)",
+        "unknown unit 'furlong'",
+        "'a' ('x' in column 'a'",
+    ] {
         assert!(left_out.message.contains(said), "{}", left_out.message);
     }
     // where nothing is left, each reason is a fault
-    assert_eq!(faults("t[s],q[furlong]\n0,1\n1,2\n"), ["unknown_unit /columns/q"]);
+    assert_eq!(
+        faults("t[s],q[furlong]\n0,1\n1,2\n"),
+        ["unknown_unit /columns/q"]
+    );
     assert_eq!(faults("t[s],q\n0,1\n1,two\n"), ["not_a_number /rows/2/q"]);
-    assert_eq!(faults("t[s],,q[furlong]\n0,1,1\n1,2,1\n"), ["empty_name /columns/2", "unknown_unit /columns/q"]);
+    assert_eq!(
+        faults("t[s],,q[furlong]\n0,1,1\n1,2,1\n"),
+        ["empty_name /columns/2", "unknown_unit /columns/q"]
+    );
 }
 
 #[test]
 fn titles_become_names() {
-    let text = "t[s],xyz[0],xyz[1] (deg),q(1),alpha,alpha,beta_deg\n0,1,1,1,1,1,180\n1,2,2,2,2,2,180\n";
+    let text =
+        "t[s],xyz[0],xyz[1] (deg),q(1),alpha,alpha,beta_deg\n0,1,1,1,1,1,180\n1,2,2,2,2,2,180\n";
     let maneuver = read_text(text).unwrap();
     let names: Vec<&String> = maneuver.channels().keys().collect();
-    assert_eq!(names, ["xyz_0", "xyz_1", "q_1", "alpha", "alpha_2", "beta_deg"]);
-    assert_eq!(maneuver.channels()["beta_deg"].values[0], std::f64::consts::PI);
+    assert_eq!(
+        names,
+        ["xyz_0", "xyz_1", "q_1", "alpha", "alpha_2", "beta_deg"]
+    );
+    assert_eq!(
+        maneuver.channels()["beta_deg"].values[0],
+        std::f64::consts::PI
+    );
     assert_eq!(told(text), ["renamed", "no_unit"]);
 }
 
@@ -134,8 +176,16 @@ fn limits_are_named() {
         assert!(error.to_string().contains(bound), "{error}");
     };
     refused("t[s],a,b,c\n", code::TOO_MANY_COLUMNS, "max_columns = 3");
-    refused("t[s],a\n1,1\n2,1\n3,1\n4,1\n5,1\n", code::TOO_MANY_SAMPLES, "max_samples = 4");
-    refused("t[s],a,b\n1,1,1\n2,1,1\n3,1,1\n", code::TOO_MANY_VALUES, "max_values = 8");
+    refused(
+        "t[s],a\n1,1\n2,1\n3,1\n4,1\n5,1\n",
+        code::TOO_MANY_SAMPLES,
+        "max_samples = 4",
+    );
+    refused(
+        "t[s],a,b\n1,1,1\n2,1,1\n3,1,1\n",
+        code::TOO_MANY_VALUES,
+        "max_values = 8",
+    );
     refused("t[s],abcdef\n", code::NAME_TOO_LONG, "max_name_length = 5");
     refused("t[s],a\n1,1\n2,1,1,1\n", code::ROW_LENGTH, "row 2 has 4");
 }
@@ -148,13 +198,19 @@ fn a_header_of_a_million_columns_is_refused_at_once() {
 
 #[test]
 fn a_forgotten_quote_spoils_one_cell_only() {
-    assert_eq!(faults("t[s],a\n0,\"1\n1,2\n2,3\n"), ["not_a_number /rows/1/a"]);
+    assert_eq!(
+        faults("t[s],a\n0,\"1\n1,2\n2,3\n"),
+        ["not_a_number /rows/1/a"]
+    );
 }
 
 #[test]
 fn decimal_commas_between_commas_get_the_right_advice() {
     let error = read_text("t[s],a\n0,0,1,5\n0,1,1,7\n").unwrap_err();
-    assert!(error.to_string().contains("separate cells by semicolons"), "{error}");
+    assert!(
+        error.to_string().contains("separate cells by semicolons"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -172,7 +228,7 @@ fn one_recording_in_many_layouts() {
         "Timestamp;alpha;q\nUTC;deg;deg/s\n12:00:00,000;1,5;-2\n12:00:00,040;;0,3\n",
         "| t[s] | alpha[deg] | q[deg/s] |\n|---|---|---|\n| 0 | 1.5 | -2 |\n| 0.04 | | 0.3 |\n",
         "   t[s]  alpha[deg]  q[deg/s]\n   0.00   1.5  -2.0\n   0.04   nan   0.3\n",
-        "Run 7\nChannels: 3\n\n   T   ALPHA   Q\n   S   DEG   DEG/SEC\n 0.00D+00 1.5D0 -2.0\n 4.0D-02 ***** 3.0D-01\n",
+        "Run 7\nChannels: 3\n\n   t   alpha   q\n   S   DEG   DEG/SEC\n 0.00D+00 1.5D0 -2.0\n 4.0D-02 ***** 3.0D-01\n",
         "s,deg,deg/s\nTime since start,Angle of attack,Pitch rate\nt,alpha,q\n0,1.5,-2\n0.04,-,0.3\n",
         "# t[s],alpha[deg],q[deg/s]\n0,1.5,-2\n0.04,,0.3\n",
         "%time (s),alpha (deg),q (dps)\n0,1.5,-2\n0.04,,0.3\n",
@@ -224,16 +280,31 @@ fn faults_of_time_stamps_name_their_line() {
         ]
     );
     let error = read_text(text).unwrap_err();
-    assert!(error.faults()[1].message.starts_with("line 5: '12:00' in column 'time'"), "{error}");
+    assert!(
+        error.faults()[1]
+            .message
+            .starts_with("line 5: '12:00' in column 'time'"),
+        "{error}"
+    );
     let unknown = read_text("time,a\nnoon,1\nlater,2\n").unwrap_err();
-    assert!(unknown.to_string().contains("is no time stamp that is known"), "{unknown}");
+    assert!(
+        unknown
+            .to_string()
+            .contains("is no time stamp that is known"),
+        "{unknown}"
+    );
 }
 
 #[test]
 fn a_refusal_brings_the_draft_of_a_mapping() {
     let error = read_text("Zeit,Elev Pos,mode\n0,1,a\n1,2,b\n").unwrap_err();
-    let draft = Mapping::from_json(error.draft().unwrap()).unwrap().to_toml();
-    for said in ["time = { unit = \"?\", from = \"Zeit\" }", "Elev_Pos = { from = \"Elev Pos\", unit = \"?\" }"] {
+    let draft = Mapping::from_json(error.draft().unwrap())
+        .unwrap()
+        .to_toml();
+    for said in [
+        "time = { unit = \"?\", from = \"Zeit\" }",
+        "Elev_Pos = { from = \"Elev Pos\", unit = \"?\" }",
+    ] {
         assert!(draft.contains(said), "{draft}");
     }
     assert!(!draft.contains("mode"), "{draft}");
@@ -241,86 +312,4 @@ fn a_refusal_brings_the_draft_of_a_mapping() {
     assert!(reading("Zeit,Elev Pos,mode\n0,1,a\n1,2,b\n", Some(&done)).is_ok());
     let numbers = read_text("0,1\n1,2\n").unwrap_err();
     assert!(numbers.draft().unwrap().contains("(:,2)"));
-}
-
-const ZEIT: &str = "time = {from = \"Zeit\", unit = \"ms\"}\n[channels]\n";
-
-fn mapped(mapping: &str, text: &str) -> Result<Maneuver, IngestError> {
-    reading(text, Some(mapping)).map(|reading| reading.maneuver)
-}
-
-#[test]
-fn columns_get_names_and_units_and_others_are_left_out() {
-    let text = "Zeit;angle of attack [rad];mode;q(1)\n0;1,5;approach;-2\n40;;landing;0,3\n";
-    let channels = "alpha = {from = \"(:,2)\", unit = \"deg\"}\nq = {from = \"q(1)\", unit = \"deg/s\"}\n";
-    let plain = read_text("t[s],alpha[deg],q[deg/s]\n0,1.5,-2\n0.04,,0.3\n").unwrap();
-    assert_eq!(mapped(&format!("{ZEIT}{channels}"), text).unwrap().digest(), plain.digest());
-
-    let stamps = "clock,q\n12:00:00,1\n12:00:00.5,2\n";
-    let mapping = "time = {from = \"clock\", unit = \"s\"}\n[channels]\nq = {from = \"q\", unit = \"-\"}\n";
-    assert_eq!(mapped(mapping, stamps).unwrap().time(), [0.0, 0.5]);
-}
-
-#[test]
-fn a_mapping_says_scale_sign_missing_step_lines_and_marks() {
-    let expected = |values: [f64; 2]| values.map(f64::to_bits);
-    let values = |mapping: &str, text: &str| {
-        let maneuver = mapped(mapping, text).unwrap_or_else(|error| panic!("{mapping}: {error}"));
-        assert_eq!(maneuver.time(), [0.0, 0.5], "{mapping}");
-        let values = &maneuver.channels()["a"].values;
-        [values[0], values[1]].map(f64::to_bits)
-    };
-    let table = "t[s],a[m]\n0,1\n0.5,-9999\n";
-    let a = |members: &str| format!("[channels]\na = {{from = \"a\", {members}}}\n");
-    assert_eq!(values(&a("scale = 0.5"), table), expected([0.5, -4999.5]));
-    assert_eq!(values(&a("sign = -1"), table), expected([-1.0, 9999.0]));
-    assert_eq!(values(&a("unit = \"km\", missing = [-9999]"), table), expected([1000.0, f64::NAN]));
-    assert_eq!(values("missing = [-9999]\n", table), expected([1.0, f64::NAN]));
-    assert_eq!(values("missing = [\"ERR\"]\n", "t[s],a[m]\n0,1\n0.5,ERR\n"), expected([1.0, f64::NAN]));
-    assert_eq!(values("time = {step = 0.5, unit = \"s\"}\n", "a[m]\n1\n2\n"), expected([1.0, 2.0]));
-    assert_eq!(values("time = {step = 500, unit = \"ms\"}\n[channels]\na = {from = \"(:,1)\", unit = \"m\"}\n", "1 9\n2 9\n"), expected([1.0, 2.0]));
-    assert_eq!(values("skip = 2\n", "t[s],a[m]\n7,7\nt[s],a[m]\n0,1\n0.5,2\n"), expected([1.0, 2.0]));
-    assert_eq!(values("header = 2\n", "x,y\nt[s],a[m]\nseconds,metres\n0,1\n0.5,2\n"), expected([1.0, 2.0]));
-    assert_eq!(values("decimal = \",\"\n", "t[s];a[m]\n0,000;1,000\n0,500;2,000\n"), expected([1.0, 2.0]));
-    assert_eq!(values("decimal = \".\"\n", "t[s];a[m]\n0;1,000\n0.5;2\n"), expected([1000.0, 2.0]));
-    let repeated = "t[s],a[m]\n0,1\n0,3\n0.5,4\n";
-    assert_eq!(values("time = {repeated = \"mean\"}\n", repeated), expected([2.0, 4.0]));
-    assert_eq!(values("time = {repeated = \"first\"}\n", repeated), expected([1.0, 4.0]));
-    let weeks = "GPS Week,TOW (s),a[m]\n2300,604799.75,1\n2301,0.25,2\n";
-    assert_eq!(mapped("time = {from = \"TOW\", week = \"GPS Week\"}\n", weeks).unwrap().duration(), 0.5);
-    assert_eq!(read_text(weeks).unwrap().duration(), 0.5);
-    let days = "day,clock,a[m]\n2026-11-21,23:59:59.75,1\n2026-11-23,00:00:00.25,2\n";
-    assert_eq!(mapped("time = {from = \"clock\", date = \"day\"}\n", days).unwrap().duration(), 86_400.5);
-}
-
-#[test]
-fn a_mapping_may_have_alternatives_patterns_and_gaps() {
-    let channels = "optional = true\nothers = true\ntime = {from = [\"t\", \"Zeit\"], unit = \"s\"}\n[channels]\nde = {from = [\"Elev Pos\", \"Elev*\"], unit = \"deg\"}\nda = {from = \"Ail\", unit = \"deg\"}\n";
-    let reading = reading("Zeit,Elevator 2,q[deg/s]\n0,1,2\n1,2,3\n", Some(channels)).unwrap();
-    let names: Vec<&String> = reading.maneuver.channels().keys().collect();
-    assert_eq!(names, ["de", "q"]);
-    assert!(reading.findings[0].message.contains("da"), "{:?}", reading.findings);
-}
-
-#[test]
-fn faults_stand_at_their_place_in_the_mapping() {
-    let faults = |mapping: &str| places(mapped(mapping, "Zeit,a[deg],b,b\n0,1,2,x\n1,1,2,3\n"));
-    let channels = "a = {from = \"a\", unit = \"deg\"}\nagain = {from = \"(:,2)\", unit = \"deg\"}\nb = {from = \"b\", unit = \"-\"}\nc = {from = \"c\", unit = \"-\"}\nd = {from = \"(:,9)\", unit = \"-\"}\nf = {from = \"(:,3)\", unit = \"furlong\"}\n\"g h\" = {from = \"b\", unit = \"-\"}\n";
-    assert_eq!(
-        faults(&format!("{ZEIT}{channels}")),
-        [
-            "invalid_mapping /channels/again/from",
-            "unknown_source /channels/b/from",
-            "unknown_source /channels/c/from",
-            "unknown_source /channels/d/from",
-            "unknown_unit /channels/f/unit",
-            "invalid_name /channels/g h",
-        ]
-    );
-    assert_eq!(faults("time = {from = \"Zeit\", unit = \"m\"}\n"), ["time_unit /time/unit"]);
-    let last = format!("{ZEIT}q = {{from = \"(:,4)\", unit = \"-\"}}\n");
-    assert_eq!(faults(&last), ["not_a_number /rows/1/q"]);
-    let unsaid = format!("{ZEIT}q = {{from = \"(:,3)\"}}\n");
-    assert_eq!(faults(&unsaid), ["unknown_unit /channels/q/unit"]);
-    assert_eq!(faults("delimiter = \"x\"\n"), ["invalid_mapping /delimiter"]);
 }

@@ -14,22 +14,42 @@ use crate::flight::{Dimension, Fault, Unit};
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) enum Time {
     /// Numbers in a unit.
-    Numbers { at: usize, unit: Unit },
+    Numbers {
+        at: usize,
+        unit: Unit,
+    },
     /// Numbers that count from a day long ago, such as 1970: of these the differences are kept, to the last digit.
-    Epoch { at: usize, unit: Unit },
-    Stamps { at: usize },
+    Epoch {
+        at: usize,
+        unit: Unit,
+    },
+    Stamps {
+        at: usize,
+    },
     /// Times of day, and the dates that they are of.
-    DateAndTime { date: usize, at: usize },
+    DateAndTime {
+        date: usize,
+        at: usize,
+    },
     /// Weeks of the satellites' clock, and the time since each began.
-    Week { week: usize, at: usize, unit: Unit },
+    Week {
+        week: usize,
+        at: usize,
+        unit: Unit,
+    },
     /// There is no column of it; seconds.
-    Even { start: f64, step: f64 },
+    Even {
+        start: f64,
+        step: f64,
+    },
 }
 
 impl Time {
     pub(super) fn columns(self) -> impl Iterator<Item = usize> {
         let (one, other) = match self {
-            Self::Numbers { at, .. } | Self::Epoch { at, .. } | Self::Stamps { at } => (Some(at), None),
+            Self::Numbers { at, .. } | Self::Epoch { at, .. } | Self::Stamps { at } => {
+                (Some(at), None)
+            }
             Self::DateAndTime { date, at } => (Some(date), Some(at)),
             Self::Week { week, at, .. } => (Some(week), Some(at)),
             Self::Even { .. } => (None, None),
@@ -56,11 +76,16 @@ pub(super) fn of(titles: &Titles, said: &MappedTime, faults: &mut Vec<Fault>) ->
         faults.push(Fault::new(place, code, message));
     };
     let unit = |refuse: &mut dyn FnMut(&str, (&'static str, String))| {
-        RecordedUnit::parse_time(&said.unit).map_err(|why| refuse("/time/unit", why)).ok()
+        RecordedUnit::parse_time(&said.unit)
+            .map_err(|why| refuse("/time/unit", why))
+            .ok()
     };
     if let Some(step) = said.step {
         let unit = unit(&mut refuse)?.unit();
-        let even = Time::Even { start: unit.to_si(said.start.unwrap_or(0.0)), step: unit.to_si(step) };
+        let even = Time::Even {
+            start: unit.to_si(said.start.unwrap_or(0.0)),
+            step: unit.to_si(step),
+        };
         return Some(even);
     }
     let mut column = |member: &str, wanted: &Option<Wanted>| match wanted {
@@ -81,12 +106,26 @@ pub(super) fn of(titles: &Titles, said: &MappedTime, faults: &mut Vec<Fault>) ->
         faults.push(no_time(titles));
         return None;
     };
-    let place = if from.is_some() { "/time/unit".to_string() } else { place_of(titles, at) };
+    let place = if from.is_some() {
+        "/time/unit".to_string()
+    } else {
+        place_of(titles, at)
+    };
     let is_mapped = from.is_some();
-    match written(titles, at, said, date.or_else(|| date_of(titles, at, is_mapped)), week.or_else(|| week_of(titles, at, is_mapped))) {
+    match written(
+        titles,
+        at,
+        said,
+        date.or_else(|| date_of(titles, at, is_mapped)),
+        week.or_else(|| week_of(titles, at, is_mapped)),
+    ) {
         Ok(time) => Some(time),
         Err((code, message)) => {
-            let message = if is_mapped { message } else { format!("column {}: {message}", at + 1) };
+            let message = if is_mapped {
+                message
+            } else {
+                format!("column {}: {message}", at + 1)
+            };
             faults.push(Fault::new(place, code, message));
             None
         }
@@ -130,12 +169,22 @@ fn found(titles: &Titles) -> Option<usize> {
         .or_else(|| of_all(&|at| is_time(at) && is_readable(at)))
         .or_else(|| of_all(&|at| is_clock(at) && is_readable(at)))
         .or_else(|| of_all(&is_stamp))
+        .or_else(|| {
+            of_all(&|at| {
+                has_unit(at)
+                    && titles.title(at).to_lowercase().contains("time")
+                    && increases(titles, at)
+            })
+        })
         .or_else(|| of_all(&is_time))
         .or_else(|| Some(0).filter(|&at| has_unit(at) && increases(titles, at)))
 }
 
 fn increases(titles: &Titles, at: usize) -> bool {
-    let numbers = titles.first.iter().filter_map(|row| row.get(at)?.trim().parse::<f64>().ok());
+    let numbers = titles
+        .first
+        .iter()
+        .filter_map(|row| row.get(at)?.trim().parse::<f64>().ok());
     let numbers: Vec<f64> = numbers.collect();
     numbers.len() > 1 && numbers.windows(2).all(|pair| pair[0] < pair[1])
 }
@@ -143,17 +192,31 @@ fn increases(titles: &Titles, at: usize) -> bool {
 /// The column of dates that goes with a column of times of day.
 fn date_of(titles: &Titles, at: usize, is_mapped: bool) -> Option<usize> {
     let is_time_of_day = titles.stamp(at).is_some_and(Stamp::is_time_of_day);
-    let is_date = |&other: &usize| other != at && titles.any_label(other).is_called_date() && titles.has_dates(other);
-    (0..titles.width).find(is_date).filter(|_| is_time_of_day && !is_mapped)
+    let is_date = |&other: &usize| {
+        other != at && titles.any_label(other).is_called_date() && titles.has_dates(other)
+    };
+    (0..titles.width)
+        .find(is_date)
+        .filter(|_| is_time_of_day && !is_mapped)
 }
 
 /// The column of weeks that goes with one of the satellites' time.
 fn week_of(titles: &Titles, at: usize, is_mapped: bool) -> Option<usize> {
     let name = titles.any_label(at).name.to_ascii_lowercase();
-    let is_of_week = ["tow", "gps", "week"].iter().any(|word| name.contains(word));
-    let is_number = |other: usize| titles.first_said(other).is_some_and(|cell| cell.trim().parse::<u32>().is_ok());
-    let is_week = |&other: &usize| other != at && titles.any_label(other).is_called_week() && is_number(other);
-    (0..titles.width).find(is_week).filter(|_| is_of_week && !is_mapped && titles.stamp(at).is_none())
+    let is_of_week = ["tow", "gps", "week"]
+        .iter()
+        .any(|word| name.contains(word));
+    let is_number = |other: usize| {
+        titles
+            .first_said(other)
+            .is_some_and(|cell| cell.trim().parse::<u32>().is_ok())
+    };
+    let is_week = |&other: &usize| {
+        other != at && titles.any_label(other).is_called_week() && is_number(other)
+    };
+    (0..titles.width)
+        .find(is_week)
+        .filter(|_| is_of_week && !is_mapped && titles.stamp(at).is_none())
 }
 
 /// Two time units for the satellites' week: its length is said in seconds.
@@ -168,7 +231,11 @@ fn written(
 ) -> Result<Time, (&'static str, String)> {
     let label = titles.label(at)?;
     if titles.stamp(at).is_some() {
-        let unit = if said.unit.is_empty() { label.unit } else { &said.unit };
+        let unit = if said.unit.is_empty() {
+            label.unit
+        } else {
+            &said.unit
+        };
         RecordedUnit::of_stamps(unit)?;
         return Ok(match date {
             Some(date) => Time::DateAndTime { date, at },
@@ -183,7 +250,11 @@ fn written(
         );
         return Err((code::TIME_UNIT, message));
     }
-    let number = first.trim_matches('"').replace(',', ".").parse::<f64>().unwrap_or(0.0);
+    let number = first
+        .trim_matches('"')
+        .replace(',', ".")
+        .parse::<f64>()
+        .unwrap_or(0.0);
     let unit = if !said.unit.is_empty() {
         RecordedUnit::parse_time(&said.unit)?.unit()
     } else if !label.unit.is_empty() {
@@ -203,6 +274,12 @@ fn written(
 /// The unit in which a number counts from 1970 to our time: only one does.
 fn unit_of_epoch(number: f64) -> Option<Unit> {
     let is_of_our_time = |scale: f64| (30.0 * YEAR..80.0 * YEAR).contains(&(number * scale));
-    let scale = [1.0, 1e-3, 1e-6, 1e-9].into_iter().find(|&scale| is_of_our_time(scale))?;
-    Some(Unit { scale, offset: 0.0, dimension: Dimension::SECOND })
+    let scale = [1.0, 1e-3, 1e-6, 1e-9]
+        .into_iter()
+        .find(|&scale| is_of_our_time(scale))?;
+    Some(Unit {
+        scale,
+        offset: 0.0,
+        dimension: Dimension::SECOND,
+    })
 }

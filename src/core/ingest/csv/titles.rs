@@ -29,7 +29,10 @@ type Why = (&'static str, String);
 impl<'a> Titles<'a> {
     /// The title over a column as it stands there.
     pub(super) fn title(&self, at: usize) -> &'a str {
-        self.names.as_ref().and_then(|(_, names)| names.get(at)).map_or("", |name| name.trim())
+        self.names
+            .as_ref()
+            .and_then(|(_, names)| names.get(at))
+            .map_or("", |name| name.trim())
     }
 
     /// Name and unit of a column: the unit in brackets, in the row of units, or at the end of the name.
@@ -39,20 +42,42 @@ impl<'a> Titles<'a> {
     pub(super) fn label(&self, at: usize) -> Result<Label<'a>, Why> {
         let title = self.title(at);
         let label = Label::split(title);
-        let below = self.units.as_ref().and_then(|(_, units)| units.get(at)).copied().unwrap_or("");
-        let below = if is_missing(below) && below != "-" { "" } else { below };
+        let below = self
+            .units
+            .as_ref()
+            .and_then(|(_, units)| units.get(at))
+            .copied()
+            .unwrap_or("");
+        let below = if is_missing(below) && below != "-" {
+            ""
+        } else {
+            below
+        };
         // Altitude (baro): what is in brackets is no unit where the row of units has one
-        if !below.is_empty() && !label.unit.is_empty() && Unit::parse(label.unit).is_err() && Unit::parse(below).is_ok() {
-            return Label { name: title, unit: "" }.with_unit(below);
+        if !below.is_empty()
+            && !label.unit.is_empty()
+            && Unit::parse(label.unit).is_err()
+            && Unit::parse(below).is_ok()
+        {
+            return Label {
+                name: title,
+                unit: "",
+            }
+            .with_unit(below);
         }
         let label = label.with_unit(below)?;
-        let unit = if label.unit.is_empty() { label.unit_in_name().unwrap_or("") } else { label.unit };
+        let unit = if label.unit.is_empty() {
+            label.unit_in_name().unwrap_or("")
+        } else {
+            label.unit
+        };
         Ok(Label { unit, ..label })
     }
 
     /// The label, the first of two units where there are two.
     pub(super) fn any_label(&self, at: usize) -> Label<'a> {
-        self.label(at).unwrap_or_else(|_| Label::split(self.title(at)))
+        self.label(at)
+            .unwrap_or_else(|_| Label::split(self.title(at)))
     }
 
     fn held(&self, at: usize) -> impl Iterator<Item = (Held, &'a str)> {
@@ -62,13 +87,18 @@ impl<'a> Titles<'a> {
 
     /// Whether its first cells are words.
     pub(super) fn is_text(&self, at: usize) -> bool {
-        let mut said = self.held(at).filter(|(held, _)| *held != Held::Nothing).peekable();
+        let mut said = self
+            .held(at)
+            .filter(|(held, _)| *held != Held::Nothing)
+            .peekable();
         said.peek().is_some() && said.all(|(held, _)| held == Held::Text)
     }
 
     /// The first cell that says something.
     pub(super) fn first_said(&self, at: usize) -> Option<&'a str> {
-        self.held(at).find(|(held, _)| *held != Held::Nothing).map(|(_, cell)| cell)
+        self.held(at)
+            .find(|(held, _)| *held != Held::Nothing)
+            .map(|(_, cell)| cell)
     }
 
     /// The first time stamp of a column, if it has time stamps.
@@ -95,6 +125,20 @@ impl<'a> Titles<'a> {
         Err(why)
     }
 
+    /// Whether a title is there, be it that of several columns.
+    pub(super) fn has(&self, wanted: &Wanted) -> bool {
+        let is_there = |wanted: &str| {
+            (0..self.width).any(|at| {
+                let title = self.title(at);
+                !title.is_empty()
+                    && [title, Label::split(title).name]
+                        .iter()
+                        .any(|title| is_like(&letters(wanted), &letters(title)))
+            })
+        };
+        wanted.iter().any(is_there)
+    }
+
     fn find_one(&self, wanted: &str) -> Result<usize, Why> {
         let same = |one: &str, other: &str| one == other;
         let alike = |one: &str, other: &str| letters(one) == letters(other);
@@ -104,7 +148,9 @@ impl<'a> Titles<'a> {
             let of_title = |at: &usize| way(wanted, self.title(*at));
             let of_name = |at: &usize| way(wanted, Label::split(self.title(*at)).name);
             for of in [&of_title as &dyn Fn(&usize) -> bool, &of_name] {
-                let mut found = (0..self.width).filter(|at| !self.title(*at).is_empty()).filter(of);
+                let mut found = (0..self.width)
+                    .filter(|at| !self.title(*at).is_empty())
+                    .filter(of);
                 match (found.next(), found.next()) {
                     (Some(at), None) => return Ok(at),
                     (Some(_), Some(second)) => {
@@ -120,8 +166,14 @@ impl<'a> Titles<'a> {
             }
         }
         match wanted.parse::<Source>() {
-            Ok(Source { part: Part::Column(number), .. }) if number <= self.width => Ok(number - 1),
-            Ok(Source { part: Part::Column(number), .. }) => {
+            Ok(Source {
+                part: Part::Column(number),
+                ..
+            }) if number <= self.width => Ok(number - 1),
+            Ok(Source {
+                part: Part::Column(number),
+                ..
+            }) => {
                 let message = format!("there is no column {number}: the file has {}", self.width);
                 Err((code::UNKNOWN_SOURCE, message))
             }
@@ -137,7 +189,9 @@ impl<'a> Titles<'a> {
                 self.width
             );
         }
-        let all: Vec<&str> = (0..self.width).map(|at| Label::split(self.title(at)).name).collect();
+        let all: Vec<&str> = (0..self.width)
+            .map(|at| Label::split(self.title(at)).name)
+            .collect();
         let all = short_message(&all.join(", "));
         format!("there is no column {wanted}; there are {all}")
     }
@@ -173,15 +227,27 @@ mod tests {
     use super::*;
 
     fn titles(names: &'static str) -> Titles<'static> {
-        let line = Line { number: 1, text: names };
+        let line = Line {
+            number: 1,
+            text: names,
+        };
         let names: Vec<&str> = names.split(';').collect();
-        Titles { width: names.len(), names: Some((line, names)), units: None, first: Vec::new() }
+        Titles {
+            width: names.len(),
+            names: Some((line, names)),
+            units: None,
+            first: Vec::new(),
+        }
     }
 
     #[test]
     fn a_column_is_found_by_title_name_pattern_or_number() {
         let titles = titles("Lcl Time;Elev Pos [deg];imu/rates[1] (rad/s);Alpha {vane};a;a;q(1)");
-        let find = |wanted: &str| titles.find(&Wanted::One(wanted.to_string())).map_err(|(code, _)| code);
+        let find = |wanted: &str| {
+            titles
+                .find(&Wanted::One(wanted.to_string()))
+                .map_err(|(code, _)| code)
+        };
         for (wanted, at) in [
             ("Lcl Time", 0),
             ("lcl  time", 0),
@@ -201,6 +267,11 @@ mod tests {
         for wanted in ["a", "b", "(:,9)", "A*x", "(2,:)"] {
             assert_eq!(find(wanted), Err(code::UNKNOWN_SOURCE), "{wanted}");
         }
+        assert!(
+            titles.has(&Wanted::One("a".to_string()))
+                && titles.has(&Wanted::One("*(1)".to_string()))
+        );
+        assert!(!titles.has(&Wanted::One("b".to_string())));
         let any = Wanted::AnyOf(vec!["b".to_string(), "Lcl Time".to_string()]);
         assert_eq!(titles.find(&any), Ok(0));
     }

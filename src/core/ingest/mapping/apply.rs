@@ -77,7 +77,10 @@ impl Mapping {
             let message = "mapping: time has either \"from\", or \"step\" and perhaps \"start\"";
             Fault::new("/time", code::INVALID_MAPPING, message)
         });
-        let silent = self.channels.iter().filter(|(_, channel)| channel.unit.is_empty());
+        let silent = self
+            .channels
+            .iter()
+            .filter(|(_, channel)| channel.unit.is_empty());
         let no_units = silent.map(|(name, _)| {
             let place = pointer(["channels", name, "unit"]);
             let message = "this file does not say units: say this one, - for a pure number";
@@ -137,9 +140,19 @@ impl Mapping {
     pub(in super::super) fn names_parts_of_one_matrix(&self) -> bool {
         let time = &self.time;
         let of_channels = self.channels.values().map(|channel| &channel.from);
-        let is_part = |from: &super::Titles| from.first().parse::<Source>().is_ok_and(|source| source.part != Part::Whole);
-        let is_for_tables = self.others || self.optional || self.skip.is_some() || self.header.is_some() || time.repeated.is_some();
-        !is_for_tables && !self.channels.is_empty() && time.from.iter().chain(of_channels).all(is_part)
+        let is_part = |from: &super::Titles| {
+            from.first()
+                .parse::<Source>()
+                .is_ok_and(|source| source.part != Part::Whole)
+        };
+        let is_for_tables = self.others
+            || self.optional
+            || self.skip.is_some()
+            || self.header.is_some()
+            || time.repeated.is_some();
+        !is_for_tables
+            && !self.channels.is_empty()
+            && time.from.iter().chain(of_channels).all(is_part)
     }
 
     /// What a recorded number means: nothing, or its multiple.

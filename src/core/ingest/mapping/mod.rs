@@ -190,12 +190,17 @@ impl Mapping {
     }
 
     /// The bundled mapping that names titles all of which a table has.
-    pub(super) fn recognised(has: impl Fn(&Titles) -> bool) -> Option<(&'static str, &'static Self)> {
+    pub(super) fn recognised(
+        has: impl Fn(&Titles) -> bool,
+    ) -> Option<(&'static str, &'static Self)> {
         static ALL: LazyLock<Vec<(&str, Mapping)>> = LazyLock::new(|| {
-            let read = |(name, document): &(&'static str, &str)| Some((*name, Mapping::from_toml(document).ok()?));
+            let read = |(name, document): &(&'static str, &str)| {
+                Some((*name, Mapping::from_toml(document).ok()?))
+            };
             BUNDLED.iter().filter_map(read).collect()
         });
-        let is_of = |mapping: &Self| !mapping.recognise.is_empty() && mapping.recognise.iter().all(&has);
+        let is_of =
+            |mapping: &Self| !mapping.recognise.is_empty() && mapping.recognise.iter().all(&has);
         let found = ALL.iter().find(|(_, mapping)| is_of(mapping));
         found.map(|(name, mapping)| (*name, mapping))
     }
@@ -203,13 +208,24 @@ impl Mapping {
     /// What it says does not contradict itself.
     fn checked(self) -> Result<Self, Fault> {
         let refuse = |place: String, message: &str| {
-            Err(Fault::new(place, code::INVALID_MAPPING, format!("mapping: {message}")))
+            Err(Fault::new(
+                place,
+                code::INVALID_MAPPING,
+                format!("mapping: {message}"),
+            ))
         };
         if self.time.from.is_some() && self.time.step.is_some() {
-            return refuse("/time".to_string(), "time has either \"from\", or \"step\" and perhaps \"start\"");
+            return refuse(
+                "/time".to_string(),
+                "time has either \"from\", or \"step\" and perhaps \"start\"",
+            );
         }
         let time = &self.time;
-        let of_time = [("from", &time.from), ("date", &time.date), ("week", &time.week)];
+        let of_time = [
+            ("from", &time.from),
+            ("date", &time.date),
+            ("week", &time.week),
+        ];
         for (member, titles) in of_time {
             if titles.as_ref().is_some_and(Titles::is_empty) {
                 return refuse(pointer(["time", member]), "this title is empty");
@@ -226,7 +242,10 @@ impl Mapping {
                 return refuse(pointer(["channels", name, "sign"]), "sign is 1 or -1");
             }
             if !channel.factor().is_normal() {
-                return refuse(pointer(["channels", name, "scale"]), "scale is a number other than 0");
+                return refuse(
+                    pointer(["channels", name, "scale"]),
+                    "scale is a number other than 0",
+                );
             }
         }
         Ok(self)
@@ -254,7 +273,10 @@ mod tests {
             assert!(!mapping.about().is_empty(), "{name}");
             let time = &mapping.time;
             let has_stamps = time.unit.is_empty();
-            assert!(has_stamps || RecordedUnit::parse_time(&time.unit).is_ok(), "{name}");
+            assert!(
+                has_stamps || RecordedUnit::parse_time(&time.unit).is_ok(),
+                "{name}"
+            );
             let mut sources: Vec<&Titles> = vec![time.from.as_ref().unwrap()];
             for (channel, mapped) in &mapping.channels {
                 assert!(

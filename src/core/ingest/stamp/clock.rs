@@ -85,15 +85,32 @@ mod tests {
     #[test]
     fn times_of_day() {
         let expected = Some(22 * HOUR + 15 * MINUTE + SECOND / 2);
-        for text in ["22:15:00.5", "22:15:00,500", "22:15:00:500", "10:15:00.5 PM", "10:15:00.5pm"] {
+        for text in [
+            "22:15:00.5",
+            "22:15:00,500",
+            "22:15:00:500",
+            "10:15:00.5 PM",
+            "10:15:00.5pm",
+        ] {
             assert_eq!(time_of_day(text), expected, "{text}");
         }
         assert_eq!(time_of_day("12:00:00 AM"), Some(0));
         assert_eq!(time_of_day("12:00:00 PM"), Some(12 * HOUR));
-        for text in ["25:00:00", "12:60:00", "12:00:61", "13:00:00 PM", "12:00", "1:2:3", "12:00:00."] {
+        for text in [
+            "25:00:00",
+            "12:60:00",
+            "12:00:61",
+            "13:00:00 PM",
+            "12:00",
+            "1:2:3",
+            "12:00:00.",
+        ] {
             assert_eq!(time_of_day(text), None, "{text}");
         }
-        assert_eq!(minutes("47:47.5"), Some(47 * MINUTE + 47 * SECOND + SECOND / 2));
+        assert_eq!(
+            minutes("47:47.5"),
+            Some(47 * MINUTE + 47 * SECOND + SECOND / 2)
+        );
         assert_eq!(minutes("12:30"), None);
         assert_eq!(elapsed("0.02 sec"), Some(20_000_000));
         assert_eq!(elapsed("0.02 deg"), None);

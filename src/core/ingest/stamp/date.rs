@@ -27,7 +27,11 @@ pub(super) fn date(text: &str) -> Option<Readings> {
         }
         [first, second, third] => {
             if let Some(month) = month(second) {
-                let (year, of) = if first.len() == 4 { (first, third) } else { (third, first) };
+                let (year, of) = if first.len() == 4 {
+                    (first, third)
+                } else {
+                    (third, first)
+                };
                 return only(day(year_of(year)?, month, number(of)?)?);
             }
             if let Some(month) = month(first) {
@@ -39,7 +43,11 @@ pub(super) fn date(text: &str) -> Option<Readings> {
             let (year, first, second) = (year_of(third)?, number(first)?, number(second)?);
             let readings = [day(year, second, first), day(year, first, second)];
             // 21.11.2026 has the day first everywhere
-            let readings = if text.contains('.') { [readings[0]; 2] } else { readings };
+            let readings = if text.contains('.') {
+                [readings[0]; 2]
+            } else {
+                readings
+            };
             readings.iter().any(Option::is_some).then_some(readings)
         }
         _ => None,
@@ -49,7 +57,9 @@ pub(super) fn date(text: &str) -> Option<Readings> {
 fn month(text: &str) -> Option<i64> {
     let begin = text.get(..3)?.to_ascii_lowercase();
     let at = MONTHS.iter().position(|month| *month == begin)?;
-    text.bytes().all(|byte| byte.is_ascii_alphabetic()).then_some(at as i64 + 1)
+    text.bytes()
+        .all(|byte| byte.is_ascii_alphabetic())
+        .then_some(at as i64 + 1)
 }
 
 fn year_of(text: &str) -> Option<i64> {
@@ -91,7 +101,16 @@ mod tests {
         assert_eq!(date("21/11/2026"), Some([day(2026, 11, 21), None]));
         assert_eq!(date("11/21/2026"), Some([None, day(2026, 11, 21)]));
         assert_eq!(date("03/04/2026"), Some([day(2026, 4, 3), day(2026, 3, 4)]));
-        for text in ["", "1.5", "2026", "32.1.2026", "1.2.3", "2026-13-01", "a-b-2026", "99999999"] {
+        for text in [
+            "",
+            "1.5",
+            "2026",
+            "32.1.2026",
+            "1.2.3",
+            "2026-13-01",
+            "a-b-2026",
+            "99999999",
+        ] {
             assert_eq!(date(text), None, "{text}");
         }
     }

@@ -41,7 +41,11 @@ impl Stamp {
         }
         let is_compact = || text.len() >= 15 && text.as_bytes()[8].eq_ignore_ascii_case(&b'T');
         if !text.contains(':') {
-            return if is_compact() { compact(text) } else { elapsed(text).map(|at| of(Kind::Elapsed, at)) };
+            return if is_compact() {
+                compact(text)
+            } else {
+                elapsed(text).map(|at| of(Kind::Elapsed, at))
+            };
         }
         let (text, zone) = without_zone(text);
         let stamp = without_a_zone(text)?;
@@ -67,7 +71,10 @@ impl Stamp {
     /// Whether a cell holds a date and no time.
     pub(in super::super) fn is_date(cell: &str) -> bool {
         let text = unquote(cell);
-        text.is_ascii() && text.len() <= LONGEST_STAMP && text.contains(['-', '/', '.', ' ']) && date(text).is_some()
+        text.is_ascii()
+            && text.len() <= LONGEST_STAMP
+            && text.contains(['-', '/', '.', ' '])
+            && date(text).is_some()
     }
 
     pub(in super::super) fn is_time_of_day(self) -> bool {
@@ -157,13 +164,21 @@ fn day_of_year(day: &str, time: &str) -> Option<Stamp> {
 /// A date or a day of the year, something between, and a time.
 fn dated(text: &str) -> Option<Stamp> {
     let hours = text.find(':')?;
-    let digits = text[..hours].bytes().rev().take_while(u8::is_ascii_digit).count();
+    let digits = text[..hours]
+        .bytes()
+        .rev()
+        .take_while(u8::is_ascii_digit)
+        .count();
     if !(1..=2).contains(&digits) {
         return None;
     }
     let (before, time) = text.split_at(hours - digits);
     let day = before.trim_end_matches([' ', ',', '_', '-']);
-    let day = if day.len() == before.len() { before.strip_suffix(['T', 't'])? } else { day };
+    let day = if day.len() == before.len() {
+        before.strip_suffix(['T', 't'])?
+    } else {
+        day
+    };
     if day.len() == 3 {
         return day_of_year(day, time);
     }
