@@ -10,4 +10,3 @@ mod flight_data;
 mod formats;
 mod kinds;
 mod layouts;
-mod zz_cases;

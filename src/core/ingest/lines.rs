@@ -62,7 +62,7 @@ fn with_quoted_breaks(bytes: &[u8], first_end: usize) -> (usize, usize) {
     let mut breaks = 0;
     loop {
         let quotes = memchr::memchr_iter(b'"', &bytes[..end]).count();
-        if quotes % 2 == 0 {
+        if quotes.is_multiple_of(2) {
             return (end, breaks);
         }
         let look_at = &bytes[end..bytes.len().min(end + LONGEST_CELL)];

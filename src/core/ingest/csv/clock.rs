@@ -65,7 +65,7 @@ impl Clock {
                 Ok((week - first as f64) * WEEK + unit.to_si(self.number(cell)?))
             }
             Time::Stamps { .. } => self.seconds(Stamp::parse(cell)),
-            Time::DateAndTime { .. } => self.seconds(Stamp::parse_with_date(day, cell)),
+            Time::Dated { .. } => self.seconds(Stamp::parse_with_date(day, cell)),
         }
     }
 

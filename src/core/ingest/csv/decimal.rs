@@ -31,6 +31,10 @@ pub(super) fn of_rows(rows: &Lines, delimiter: Delimiter) -> Result<Marks, Fault
         if is_plain && has_point && (is_comma || !has_grouped_points(line.text.as_bytes())) {
             continue;
         }
+        // where commas are decimal, only a point can contradict
+        if found.comma.is_some() && memchr::memchr(b'.', line.text.as_bytes()).is_none() {
+            continue;
+        }
         for (column, cell) in delimiter.cells(line.text).into_iter().enumerate() {
             found.look_at(Cell {
                 line: line.number,

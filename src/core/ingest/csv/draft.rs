@@ -2,7 +2,7 @@
 
 use super::super::{
     Limits,
-    mapping::{Draft, Mapping},
+    mapping::{Draft, Mapping, Repeated},
     name::Names,
 };
 use super::titles::Titles;
@@ -12,7 +12,7 @@ use crate::flight::Unit;
 const ASKED_FOR: &str = "?";
 
 /// A mapping that takes every column that can be one, by its title, else by its number.
-pub(super) fn of(titles: &Titles, limits: &Limits) -> Mapping {
+pub(super) fn of(titles: &Titles, repeated: Option<Repeated>, limits: &Limits) -> Mapping {
     let mut names = Names::new(limits);
     let mut draft = Draft::default();
     let time = (0..titles.width)
@@ -34,7 +34,7 @@ pub(super) fn of(titles: &Titles, limits: &Limits) -> Mapping {
             _ => ASKED_FOR,
         };
         if Some(at) == time {
-            draft.time(&from, unit);
+            draft.time(&from, unit, repeated);
         } else if !titles.is_text(at)
             && !titles.has_dates(at)
             && (!titles.title(at).is_empty() || titles.names.is_none())

@@ -55,7 +55,7 @@ pub(in super::super) fn inspect(
         written: written(&table, decoded.encoding),
         columns: (0..table.titles.width).map(column).collect(),
         reading: read(bytes, charset, mapping, limits),
-        draft: draft::of(&table.titles, limits),
+        draft: draft::of(&table.titles, None, limits),
     })
 }
 

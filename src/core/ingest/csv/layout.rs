@@ -181,10 +181,16 @@ impl Block {
             }
         };
         let (count, weight) = groups.into_iter().reduce(more)?;
+        // blanks part whatever another delimiter parts, and more: they must be clearly better
+        let preference = if delimiter == Delimiter::Blanks {
+            0.6
+        } else {
+            1.0
+        };
         Some(Self {
             delimiter,
             count,
-            score: weight.score * weight.values / (weight.values + weight.texts),
+            score: preference * weight.score * weight.values / (weight.values + weight.texts),
         })
     }
 

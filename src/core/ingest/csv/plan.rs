@@ -216,9 +216,7 @@ impl Making<'_, '_> {
                 }
             }
         }
-        self.plan
-            .left_out
-            .sort_by(|(_, one), (_, other)| place_of(one).cmp(&place_of(other)));
+        self.plan.left_out.sort_by_key(|(_, fault)| place_of(fault));
     }
 
     /// The channel of a column; `None` where there is nothing in it.

@@ -38,10 +38,11 @@ pub(in super::super) fn read(
     let mut reading = read_table(&table, limits).map_err(|error| {
         let says_all = mapping.is_some_and(|mapping| !mapping.channels.is_empty());
         if says_all {
-            error
-        } else {
-            error.with_draft(draft::of(&table.titles, limits).to_json())
+            return error;
         }
+        let repeated = repeated::proposal(error.faults());
+        let draft = draft::of(&table.titles, repeated, limits);
+        error.with_draft(draft.to_json())
     })?;
     reading.findings.splice(0..0, decoded.findings);
     Ok(reading)

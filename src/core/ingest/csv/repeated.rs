@@ -198,6 +198,20 @@ fn usual(time: &[f64], groups: &[Range<usize>]) -> (usize, f64) {
     (rows as usize, median(ticks.collect()))
 }
 
+/// What a mapping could say where time stands still, by the fault that tells it.
+pub(super) fn proposal(faults: &[Fault]) -> Option<Repeated> {
+    let of_time = |fault: &&Fault| fault.code == code::TIME_NOT_INCREASING;
+    let told = faults.iter().find(of_time)?;
+    if told.message.contains(SPREAD) {
+        Some(Repeated::Spread)
+    } else {
+        told.message.contains(FIRST).then_some(Repeated::First)
+    }
+}
+
+const SPREAD: &str = "repeated = \"spread\"";
+const FIRST: &str = "repeated = \"first\"";
+
 fn stands_still(samples: &Samples, groups: &[Range<usize>], name: &str) -> (usize, Fault) {
     let first = groups
         .iter()
@@ -209,7 +223,7 @@ fn stands_still(samples: &Samples, groups: &[Range<usize>], name: &str) -> (usiz
     let remedy = if usual > 1 {
         let step = (tick / usual as f64 * 1e9).round() / 1e9;
         format!(
-            "its clock is coarser than the rate, {usual} rows in {tick} s: say in a mapping time = {{step = {step}, unit = \"s\"}} for even sampling, or time = {{repeated = \"spread\"}}"
+            "its clock is coarser than the rate, {usual} rows in {tick} s: say in a mapping time = {{step = {step}, unit = \"s\"}} for even sampling, or time = {{{SPREAD}}}"
         )
     } else {
         "say in a mapping which to keep, time = {repeated = \"first\"} or {repeated = \"mean\"}"
@@ -263,7 +277,7 @@ mod tests {
         }
         let (row, fault) = resolve(&mut other(), None, "t").unwrap_err().remove(0);
         assert_eq!((row, fault.pointer.as_str()), (3, "/rows/3/t"));
-        assert!(fault.message.contains("repeated = \"first\""), "{fault}");
+        assert_eq!(proposal(&[fault]), Some(Repeated::First));
     }
 
     #[test]
@@ -274,6 +288,7 @@ mod tests {
             .unwrap_err()
             .remove(0);
         assert!(fault.message.contains("step = 0.25"), "{fault}");
+        assert_eq!(proposal(&[fault]), Some(Repeated::Spread));
         let mut even = samples(&time, &values);
         assert!(resolve(&mut even, Some(Repeated::Spread), "t").is_ok());
         let expected: Vec<f64> = (0..20).map(|row| 0.5 + f64::from(row) * 0.25).collect();

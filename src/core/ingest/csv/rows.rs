@@ -32,7 +32,7 @@ enum Cell {
 pub(super) fn read(mut rows: Lines, written: &Written, plan: &Plan, capacity: usize) -> Samples {
     let text = rows.rest();
     let mut reader = Reader::new(written, plan, capacity);
-    while let Some(line) = rows.next() {
+    for line in rows.by_ref() {
         reader.push(line);
         if reader.has_seen_enough() {
             break;

@@ -34,11 +34,8 @@ impl Held {
     }
 }
 
-/// Whether it is a number in any of the ways in which numbers are written.
+/// Whether it is a number in any of the ways in which numbers are written, be it with blanks between thousands.
 fn is_number(text: &str) -> bool {
-    if text.contains(' ') {
-        return false;
-    }
     let ways = [
         (Decimal::Point, false),
         (Decimal::Comma, false),

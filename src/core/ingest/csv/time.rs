@@ -27,7 +27,7 @@ pub(super) enum Time {
         at: usize,
     },
     /// Times of day, and the dates that they are of.
-    DateAndTime {
+    Dated {
         date: usize,
         at: usize,
     },
@@ -50,7 +50,7 @@ impl Time {
             Self::Numbers { at, .. } | Self::Epoch { at, .. } | Self::Stamps { at } => {
                 (Some(at), None)
             }
-            Self::DateAndTime { date, at } => (Some(date), Some(at)),
+            Self::Dated { date, at } => (Some(date), Some(at)),
             Self::Week { week, at, .. } => (Some(week), Some(at)),
             Self::Even { .. } => (None, None),
         };
@@ -63,7 +63,7 @@ impl Time {
             Self::Numbers { at, .. }
             | Self::Epoch { at, .. }
             | Self::Stamps { at }
-            | Self::DateAndTime { at, .. }
+            | Self::Dated { at, .. }
             | Self::Week { at, .. } => Some(at),
             Self::Even { .. } => None,
         }
@@ -238,7 +238,7 @@ fn written(
         };
         RecordedUnit::of_stamps(unit)?;
         return Ok(match date {
-            Some(date) => Time::DateAndTime { date, at },
+            Some(date) => Time::Dated { date, at },
             None => Time::Stamps { at },
         });
     }

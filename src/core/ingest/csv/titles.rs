@@ -23,6 +23,9 @@ pub(super) struct Titles<'a> {
     pub(super) width: usize,
 }
 
+/// Whether a text means a title.
+type Way<'a> = dyn Fn(&str, &str) -> bool + 'a;
+
 /// A code and a message.
 type Why = (&'static str, String);
 
@@ -143,7 +146,7 @@ impl<'a> Titles<'a> {
         let same = |one: &str, other: &str| one == other;
         let alike = |one: &str, other: &str| letters(one) == letters(other);
         let fits = |pattern: &str, title: &str| is_like(&letters(pattern), &letters(title));
-        let ways: [&dyn Fn(&str, &str) -> bool; 3] = [&same, &alike, &fits];
+        let ways: [&Way; 3] = [&same, &alike, &fits];
         for way in ways {
             let of_title = |at: &usize| way(wanted, self.title(*at));
             let of_name = |at: &usize| way(wanted, Label::split(self.title(*at)).name);

@@ -1,16 +1,17 @@
 //! Mappings that are proposed for a file.
 
-use super::{MappedChannel, MappedTime, Mapping, Titles};
+use super::{MappedChannel, MappedTime, Mapping, Repeated, Titles};
 
 /// A mapping in the making.
 #[derive(Default)]
 pub(in super::super) struct Draft(Mapping);
 
 impl Draft {
-    pub(in super::super) fn time(&mut self, from: &str, unit: &str) {
+    pub(in super::super) fn time(&mut self, from: &str, unit: &str, repeated: Option<Repeated>) {
         self.0.time = MappedTime {
             unit: unit.to_string(),
             from: Some(Titles::One(from.to_string())),
+            repeated,
             ..MappedTime::default()
         };
     }
