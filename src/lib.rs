@@ -43,12 +43,17 @@
 //!    then make a `Recording` (`recording.rs`: columns by name with units) and call its `into_maneuver`, or hand a table of
 //!    numbers, an `Archive`, to `Mapping::apply`. A fault names its place and the remedy; its code is a row of `code` in
 //!    `fault.rs`.
-//! 2. `src/core/ingest/mod.rs`: a variant of `Format`, its media type and its file ending, its line in `read_mapped`. HTTP
-//!    and command line go by these; where it needs a mapping, `src/cli/mapping.rs` must know that, too.
+//! 2. `src/core/ingest/mod.rs`: a variant of `Format`, its media type and its file ending, its line in `read_recording`. HTTP
+//!    and command line go by these.
 //! 3. Tests beside the reader; a good file in `no_damage_to_a_file_panics` in `mod.rs`; real files in
 //!    `tests/ingest/formats.rs`; a target in `tests/fuzz/targets`, with its name in `tests/fuzz/Cargo.toml` and
 //!    `tests/fuzz/run`.
 //! 4. `src/http/handlers/maneuvers.rs` lists the media types of an upload for the API document; `README.md` the formats.
+//!
+//! **Add the layout of a logger.**
+//! 1. `tests/ingest/layouts.rs`: a small file of your own making in it. Most go in as they are.
+//! 2. Where names or units are missing: `src/core/ingest/mapping/<name>.toml`, and a row of `BUNDLED` beside it; `recognise` has the
+//!    titles by which it is used without being named. The list in `README.md`.
 //!
 //! **Add an endpoint.**
 //! 1. `src/http/handlers/<resource>.rs`: the handler under `#[utoipa::path]`, and `router()`; `coefficients.rs` is a small

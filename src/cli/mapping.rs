@@ -1,25 +1,23 @@
-//! The mapping of recordings that say no names and units.
+//! The mapping that says what the columns of recordings are.
 
 use std::path::Path;
 
 use super::Failure;
-use super::recording::{format_of, read_text};
-use crate::ingest::{Format, Mapping};
+use super::recording::read_text;
+use crate::ingest::Mapping;
 
 #[derive(clap::Args, Debug)]
 pub(super) struct MappingOption {
-    /// Where MAT files and ASCII matrices have time and channels: fvsysid-attas, fvsysid-hfb320, sidpac, or a mapping
-    /// document (.toml, .json).
+    /// Where recordings have time and channels, and in which units, if they do not say it or say it otherwise: the name of a
+    /// bundled mapping, or a mapping document (.toml, .json). `trimtab inspect FILE` prints a draft.
     #[arg(long, value_name = "FILE|NAME")]
     mapping: Option<String>,
 }
 
 impl MappingOption {
-    /// As a server reads it: the name of a bundled mapping, or a JSON document. `None` for a recording that says names
-    /// and units itself.
-    pub(super) fn text(&self, recording: &Path) -> Result<Option<String>, Failure> {
-        let needs_one = matches!(format_of(recording), Format::Mat | Format::Ascii);
-        let Some(mapping) = self.mapping.as_ref().filter(|_| needs_one) else {
+    /// As a server reads it: the name of a bundled mapping, or a JSON document.
+    pub(super) fn text(&self) -> Result<Option<String>, Failure> {
+        let Some(mapping) = &self.mapping else {
             return Ok(None);
         };
         let file = Path::new(mapping);
@@ -38,13 +36,13 @@ impl MappingOption {
         }
     }
 
-    /// The mapping of a recording; `None` for one that says names and units itself.
-    pub(super) fn of(&self, recording: &Path) -> Result<Option<Mapping>, Failure> {
+    /// The mapping, if there is one.
+    pub(super) fn read(&self) -> Result<Option<Mapping>, Failure> {
         let read = |text: String| {
             Mapping::named_or_json(&text)
                 .map_err(|fault| Failure::new(format!("--mapping: {fault}")))
         };
-        self.text(recording)?.map(read).transpose()
+        self.text()?.map(read).transpose()
     }
 }
 
@@ -53,28 +51,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_mapping_goes_with_files_that_need_one() {
+    fn a_mapping_is_a_name_or_a_file() {
         let option = |mapping: &str| MappingOption {
             mapping: Some(mapping.to_string()),
         };
-        let recording = Path::new("flight.MAT");
-        assert_eq!(format_of(recording), Format::Mat);
-        assert_eq!(format_of(Path::new("flight")), Format::Csv);
-        assert!(option("sidpac").of(recording).unwrap().is_some());
-        assert!(
-            option("sidpac")
-                .of(Path::new("flight.csv"))
-                .unwrap()
-                .is_none()
-        );
-        assert!(option("sidpack").of(recording).is_err());
+        assert!(option("sidpac").read().unwrap().is_some());
+        assert!(option("sidpack").read().is_err());
+        assert!(MappingOption { mapping: None }.read().unwrap().is_none());
 
         let directory = tempfile::TempDir::new().unwrap();
         let file = directory.path().join("mapping.toml");
         let text =
             "time = {step = 0.5, unit = \"s\"}\n[channels]\na = {from = \"a\", unit = \"deg\"}\n";
         std::fs::write(&file, text).unwrap();
-        let found = option(file.to_str().unwrap()).of(recording).unwrap();
+        let found = option(file.to_str().unwrap()).read().unwrap();
         assert_eq!(found, Some(Mapping::from_toml(text).unwrap()));
     }
 }

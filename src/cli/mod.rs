@@ -12,6 +12,7 @@ mod figures;
 mod file_rows;
 mod fit;
 mod health;
+mod inspect;
 mod key;
 mod local;
 mod mapping;
@@ -64,6 +65,7 @@ enum Command {
     Submit(submit::Submit),
     Watch(watch::Watch),
     Simulate(simulate::Simulate),
+    Inspect(inspect::Inspect),
     Model(model::ShowModel),
     Derivatives(derivatives::Derivatives),
     Health(health::Health),
@@ -86,6 +88,7 @@ pub fn main() -> ExitCode {
         Command::Submit(submit) => block_on(submit.run()),
         Command::Watch(watch) => block_on(watch.run()),
         Command::Simulate(simulate) => simulate.run(),
+        Command::Inspect(inspect) => inspect.run(),
         Command::Model(model) => model.run(),
         Command::Derivatives(derivatives) => derivatives.run(),
         Command::Health(health) => block_on(health.run()),

@@ -8,10 +8,9 @@ use indexmap::{IndexMap, IndexSet};
 use super::Failure;
 use super::file_rows::FileRows;
 use super::mapping::MappingOption;
-use super::recording::{format_of, read_bytes, read_text};
+use super::recording::{read_recording, read_text};
 use crate::estimate::{Derivatives, Estimator, Method, Options, Role};
 use crate::flight::Maneuver;
-use crate::ingest::{self, Limits};
 use crate::job::{
     self, Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride, Plan, Strict,
 };
@@ -20,7 +19,7 @@ use crate::simulate::{InputInterpolation, Integrator};
 
 #[derive(clap::Args, Debug)]
 pub(super) struct Request {
-    /// Recordings: CSV with `name[unit]` headers (.csv), JSON (.json), MAT files (.mat) or ASCII matrices (.asc), the last
+    /// Recordings: tables of text (.csv, .txt, .dat, ...), JSON (.json), MAT files (.mat) or ASCII matrices (.asc), the last
     /// two with --mapping; rows count from 1. Several are fitted together.
     #[arg(required = true, value_name = "FILE[:FIRST-LAST]")]
     pub files: Vec<FileRows>,
@@ -95,17 +94,8 @@ impl Request {
 
     /// The recording of each.
     fn recordings(&self) -> Result<Vec<Arc<Maneuver>>, Failure> {
-        let read = |file: &Path| {
-            let (bytes, mapping) = (read_bytes(file)?, self.mapping.of(file)?);
-            ingest::read_mapped(
-                &bytes,
-                format_of(file),
-                mapping.as_ref(),
-                &Limits::default(),
-            )
-            .map(Arc::new)
-            .map_err(|error| Failure::faults(&file.display().to_string(), error.faults()))
-        };
+        let mapping = self.mapping.read()?;
+        let read = |file: &Path| read_recording(file, mapping.as_ref()).map(Arc::new);
         let files = self.files().into_iter().map(|file| Ok((file, read(file)?)));
         let files: IndexMap<&Path, Arc<Maneuver>> = files.collect::<Result<_, Failure>>()?;
         let of = |rows: &FileRows| files[rows.file.as_path()].clone();

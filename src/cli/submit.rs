@@ -33,7 +33,7 @@ impl Submit {
             let name = file
                 .file_stem()
                 .map_or("recording".into(), |stem| stem.to_string_lossy());
-            let mapping = self.request.mapping.text(file)?;
+            let mapping = self.request.mapping.text()?;
             let stored = client.upload(&name, file, mapping.as_deref(), read_bytes(file)?);
             uploaded.insert(file, stored.await?.id);
         }

@@ -43,6 +43,11 @@ pub struct ProblemDocument {
     pub detail: String,
     /// Every place that is wrong.
     pub errors: Vec<Fault>,
+    /// Of a recording that was refused: the draft of a mapping that makes the choices which it leaves open, `?` where one
+    /// must be made.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<crate::ingest::Mapping>)]
+    pub mapping: Option<serde_json::Value>,
     /// The header `x-request-id`; the service's log has it too.
     #[schema(example = "0193518e-6b6f-7d3c-9c53-b1cbb2b7a1f4")]
     pub request_id: String,
@@ -65,6 +70,7 @@ pub struct Problem {
     code: Code,
     detail: String,
     errors: Vec<Fault>,
+    mapping: Option<serde_json::Value>,
     headers: Vec<(HeaderName, HeaderValue)>,
 }
 
@@ -76,6 +82,7 @@ impl Problem {
             code,
             detail,
             errors: Vec::new(),
+            mapping: None,
             headers: Vec::new(),
         }
     }
@@ -100,6 +107,7 @@ impl Problem {
             code,
             detail,
             errors,
+            mapping: None,
             headers: Vec::new(),
         }
     }
@@ -127,6 +135,7 @@ impl Problem {
             code: self.code.name().to_string(),
             detail: self.detail,
             errors: self.errors,
+            mapping: self.mapping,
             request_id,
         }
     }
@@ -143,7 +152,13 @@ fn shorten(text: &mut String) {
 
 impl From<IngestError> for Problem {
     fn from(error: IngestError) -> Self {
-        Self::of_faults(Code::InvalidManeuver, error.into_faults())
+        let draft = error
+            .draft()
+            .and_then(|draft| serde_json::from_str(draft).ok());
+        Self {
+            mapping: draft,
+            ..Self::of_faults(Code::InvalidManeuver, error.into_faults())
+        }
     }
 }
 

@@ -10,3 +10,5 @@ mod corruptions;
 mod findings;
 mod flight_data;
 mod formats;
+mod kinds;
+mod layouts;

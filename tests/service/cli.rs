@@ -107,6 +107,82 @@ fn what_cannot_be_done_is_said_with_the_remedy() {
     );
 }
 
+/// A mapping holds for a table that has a header of its own, and what is not used does not pass in silence.
+#[test]
+fn a_table_is_inspected_and_fitted_as_a_mapping_says() {
+    let directory = tempfile::TempDir::new().expect("a directory");
+    let at = |name: &str| directory.path().join(name).to_string_lossy().into_owned();
+    let recorded = std::fs::read_to_string("data/elevator.csv").expect("a recording");
+    let (_, rows) = recorded.split_once('\n').expect("a header");
+    let header = recorded.lines().next().expect("a header");
+    // other titles, no units, a preamble: nothing is said that a model could use
+    let titles: Vec<String> = (0..header.split(',').count())
+        .map(|k| format!("Channel {k}"))
+        .collect();
+    let file = at("logger.csv");
+    std::fs::write(
+        &file,
+        format!("Logger: own making\n\n{}\n{rows}", titles.join(",")),
+    )
+    .expect("written");
+    let refused = fails(&["fit", &file, "-m", "short-period"]);
+    assert!(
+        refused.contains("The draft of a mapping") && refused.contains("Channel 1"),
+        "{refused}"
+    );
+
+    let inspected = succeeds(&["inspect", &file]);
+    assert!(
+        inspected.contains("cells separated by") && inspected.contains("from = \"Channel 1\""),
+        "{inspected}"
+    );
+
+    let channel = |(k, title): (usize, &str)| {
+        let (name, unit) = title.trim_end_matches(']').split_once('[').expect("a unit");
+        (
+            name.to_string(),
+            format!("{{from = \"Channel {k}\", unit = \"{unit}\"}}"),
+        )
+    };
+    let columns: Vec<(String, String)> = header.split(',').enumerate().map(channel).collect();
+    let (_, time) = &columns[0];
+    let others: Vec<String> = columns[1..]
+        .iter()
+        .map(|(name, from)| format!("{name} = {from}"))
+        .collect();
+    let mapping = at("mapping.toml");
+    std::fs::write(
+        &mapping,
+        format!("time = {time}\n[channels]\n{}\n", others.join("\n")),
+    )
+    .expect("written");
+    let mapped = succeeds(&[
+        "fit",
+        &file,
+        "-m",
+        "short-period",
+        "--mapping",
+        &mapping,
+        "--json",
+    ]);
+    let plain = succeeds(&["fit", "data/elevator.csv", "-m", "short-period", "--json"]);
+    let parameters = |text: &str| {
+        let result: Value = serde_json::from_str(text).expect("JSON");
+        result["estimate"]["parameters"]
+            .as_array()
+            .expect("a list")
+            .iter()
+            .map(|p| p["estimate"].clone())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(parameters(&mapped), parameters(&plain));
+
+    let json = at("recording.json");
+    std::fs::write(&json, "{}").expect("written");
+    let unused = fails(&["fit", &json, "-m", "short-period", "--mapping", &mapping]);
+    assert!(unused.contains("leave the mapping out"), "{unused}");
+}
+
 #[test]
 fn health_is_that_of_the_server() {
     let directory = tempfile::tempdir().expect("a directory");

@@ -50,11 +50,11 @@ codes! {
     /// Lines behind the table were passed over.
     Footer "footer" Note;
     /// The last line of the file is cut off: it was left out.
-    IncompleteLine "incomplete_line" Warning;
+    IncompleteLine "incomplete_line" Note;
     /// The header stands in the file again: a logger was switched on a second time.
     RepeatedHeader "repeated_header" Note;
     /// Rows have the time of the row before them.
-    RepeatedTime "repeated_time" Warning;
+    RepeatedTime "repeated_time" Note;
     /// Rows at the beginning have no time yet, and were left out.
     NoTimeYet "no_time_yet" Note;
     /// The recording stopped and started again.
@@ -103,12 +103,6 @@ codes! {
     UnstableModel "unstable_model" Warning;
     /// The solver stopped short of a minimum: the numbers are not an estimate, and their error bounds mean little.
     NotConverged "not_converged" Fault;
-    /// The integration steps are too long for the accuracy of the estimate: with half their length a parameter would move by more than a tenth of its standard error.
-    StepTooLong "step_too_long" Warning;
-    /// The fastest motion of the estimate is at the edge of what an integration step can follow.
-    ModeAtEdge "mode_at_edge" Warning;
-    /// The model is so unstable with its start values that no simulation follows the motion.
-    UnstableModel "unstable_model" Warning;
     /// A fit was poor beside what equation error reaches, and other starts were tried.
     SecondLook "second_look" Warning;
     /// A parameter is held at a bound.

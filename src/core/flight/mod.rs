@@ -19,6 +19,9 @@ mod severity;
 mod shown;
 mod si_name;
 mod unit;
+mod unit_spelling;
+mod unit_symbols;
+mod unit_words;
 
 pub use aircraft::Aircraft;
 pub use convention::{is_control, is_flow_angle, is_motion};

@@ -18,6 +18,15 @@ impl Unit {
         let Ok(unit) = Self::parse(text) else {
             return text.to_string();
         };
+        let in_symbols = Self::in_symbols(text);
+        let text = in_symbols
+            .trim_start_matches(|c: char| c.is_ascii_digit() || matches!(c, '.' | 'e' | '-' | '+'))
+            .trim_start_matches([' ', '*']);
+        let text = if text.is_empty() || text.starts_with(['/', '^']) {
+            in_symbols.as_str()
+        } else {
+            text
+        };
         if unit.is_si() {
             return text.to_string();
         }
@@ -46,7 +55,7 @@ fn degrees_to_radians(text: &str) -> String {
         let end = rest.find(|c| is_symbol(c) != symbol).unwrap_or(rest.len());
         let (token, behind) = rest.split_at(end);
         result.push_str(match token {
-            "deg" | "°" | "mrad" | "rev" => "rad",
+            "deg" | "°" | "mrad" | "rev" | "cdeg" | "ddeg" | "mdeg" | "udeg" | "crad" => "rad",
             other => other,
         });
         rest = behind;
@@ -73,6 +82,9 @@ mod tests {
             ("%", "-"),
             ("", "-"),
             ("rpm", "1/s"),
+            ("DEG/SEC", "rad/s"),
+            ("0.01 deg", "rad"),
+            ("1/deg", "1/rad"),
         ];
         for (recorded, name) in expected {
             assert_eq!(Unit::si_name(recorded), name, "of {recorded}");

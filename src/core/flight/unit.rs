@@ -1,8 +1,8 @@
 //! Units as they stand in file headers and model documents: `deg/s`, `kg/m^3`, `1/rad`, `hPa`, `-`.
 
-use std::f64::consts::PI;
-
 use super::Dimension;
+use super::unit_spelling::{number_length, plain, suggestion};
+use super::unit_symbols::meaning;
 
 /// A unit: how to get to SI (`si = scale * value + offset`) and what it measures.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -20,7 +20,8 @@ pub struct Unit {
 pub enum UnitError {
     /// A symbol of the unit is not known.
     #[error(
-        "unknown unit '{symbol}'; known units include m, ft, s, rad, deg, m/s, kt, m/s^2, g, N, Pa, hPa, K, kg, %, and '-' for a pure number"
+        "unknown unit '{symbol}'{}; known units include m, ft, s, rad, deg, m/s, kt, m/s^2, g, N, Pa, hPa, K, kg, %, and '-' for a pure number",
+        did_you_mean(symbol)
     )]
     Unknown {
         /// The symbol as written.
@@ -34,6 +35,10 @@ pub enum UnitError {
         /// What is wrong with it.
         why: &'static str,
     },
+}
+
+fn did_you_mean(symbol: &str) -> String {
+    suggestion(symbol).map_or(String::new(), |meant| format!("; did you mean {meant}?"))
 }
 
 const LONGEST_UNIT: usize = 64;
@@ -59,11 +64,45 @@ impl Unit {
         (value - self.offset) / self.scale
     }
 
-    /// Reads a unit expression: factors joined by `*`, `.` or a space and `/`, powers by `^`.
+    /// Reads a unit: symbols, or what people write for them, in any case where case does not tell two apart.
+    ///
+    /// In symbols a unit is factors joined by `*`, `.` or a space and `/`, powers by `^`, and perhaps a number before them.
+    /// `DEG/SEC`, `m/s²`, `M/S**2`, `degrees`, `ft msl` and the like are read, too.
     ///
     /// # Errors
-    /// Names the symbol that is not known, or what is malformed.
+    /// Names the symbol that is not known, with what may have been meant, or what is malformed.
     pub fn parse(text: &str) -> Result<Self, UnitError> {
+        let as_written = Self::of_symbols(text);
+        if as_written.is_ok() || text.len() > LONGEST_UNIT {
+            return as_written;
+        }
+        let plain = plain(text);
+        if plain == text.trim() {
+            return as_written;
+        }
+        // a fault of what was written is told in its own words
+        Self::of_symbols(&plain).map_err(|fault| match as_written {
+            Err(UnitError::Malformed { text, why })
+                if !matches!(fault, UnitError::Unknown { .. }) =>
+            {
+                UnitError::Malformed { text, why }
+            }
+            _ => fault,
+        })
+    }
+
+    /// A unit in symbols: as it is written where that is symbols, else in those that are meant. What cannot be read stays.
+    pub fn in_symbols(text: &str) -> String {
+        if Self::of_symbols(text).is_err() && text.len() <= LONGEST_UNIT {
+            let plain = plain(text);
+            if Self::of_symbols(&plain).is_ok() {
+                return plain;
+            }
+        }
+        text.trim().to_string()
+    }
+
+    fn of_symbols(text: &str) -> Result<Self, UnitError> {
         let trimmed = text.trim();
         let malformed = |why| UnitError::Malformed {
             text: text.chars().take(LONGEST_UNIT).collect(),
@@ -182,15 +221,35 @@ impl Parser<'_> {
             self.depth -= 1;
             return Ok(inner);
         }
-        if self.rest.starts_with('1') {
-            self.advance('1');
-            return Ok(Unit::NONE);
+        if self.rest.starts_with(|c: char| c.is_ascii_digit()) {
+            return self.number();
         }
-        let symbol = self.take_while(|c| c.is_alphabetic() || matches!(c, '%' | '°' | '_'));
+        let symbol = if self.rest.starts_with("inH2O") {
+            self.take("inH2O".len())
+        } else {
+            self.take_while(|c| c.is_alphabetic() || matches!(c, '%' | '°' | '_'))
+        };
         if symbol.is_empty() {
             return Err(Misread::Malformed("a unit symbol is missing"));
         }
-        named(&symbol).ok_or(Misread::Unknown(symbol))
+        let unit = |(scale, offset, dimension)| Unit {
+            scale,
+            offset,
+            dimension,
+        };
+        meaning(&symbol).map(unit).ok_or(Misread::Unknown(symbol))
+    }
+
+    /// A number as a factor: `0.01`, `1e-7`. What follows stands apart from it.
+    fn number(&mut self) -> Result<Unit, Misread> {
+        let number: f64 = self
+            .take(number_length(self.rest))
+            .parse()
+            .map_err(|_| Misread::Malformed("a factor is not a number"))?;
+        if number <= 0.0 {
+            return Err(Misread::Malformed("a factor must be positive"));
+        }
+        Ok(Unit::scaled(number, Dimension::NONE))
     }
 
     fn advance(&mut self, c: char) {
@@ -205,102 +264,20 @@ impl Parser<'_> {
 
     fn take_while(&mut self, accept: impl Fn(char) -> bool) -> String {
         let end = self.rest.find(|c| !accept(c)).unwrap_or(self.rest.len());
-        let (taken, rest) = self.rest.split_at(end);
+        self.take(end)
+    }
+
+    fn take(&mut self, bytes: usize) -> String {
+        let (taken, rest) = self.rest.split_at(bytes);
         self.rest = rest;
         taken.to_string()
     }
 }
 
-/// Standard gravity, m/s^2 (CGPM 1901).
-const GRAVITY: f64 = 9.80665;
-const FOOT: f64 = 0.3048;
-const POUND: f64 = 0.453_592_37;
-const NAUTICAL_MILE: f64 = 1852.0;
-
-fn named(symbol: &str) -> Option<Unit> {
-    let length = Dimension::METRE;
-    let mass = Dimension::KILOGRAM;
-    let time = Dimension::SECOND;
-    let frequency = Dimension::NONE.over(time);
-    let speed = length.over(time);
-    let acceleration = speed.over(time);
-    let force = mass.times(acceleration);
-    let pressure = force.over(length).over(length);
-    let power = force.times(speed);
-    let temperature = Dimension::KELVIN;
-    let voltage = power.over(Dimension::AMPERE);
-
-    let (scale, dimension) = match symbol {
-        "rad" => (1.0, Dimension::NONE),
-        "mrad" => (1e-3, Dimension::NONE),
-        "deg" | "°" => (PI / 180.0, Dimension::NONE),
-        "rev" => (2.0 * PI, Dimension::NONE),
-        "%" | "pct" | "percent" => (0.01, Dimension::NONE),
-        "m" => (1.0, length),
-        "km" => (1e3, length),
-        "cm" => (1e-2, length),
-        "mm" => (1e-3, length),
-        "ft" => (FOOT, length),
-        "in" => (FOOT / 12.0, length),
-        "nmi" | "NM" => (NAUTICAL_MILE, length),
-        "kg" => (1.0, mass),
-        "lb" | "lbm" => (POUND, mass),
-        "slug" => (POUND * GRAVITY / FOOT, mass),
-        "s" | "sec" => (1.0, time),
-        "ms" => (1e-3, time),
-        "us" | "µs" | "μs" => (1e-6, time),
-        "min" => (60.0, time),
-        "h" | "hr" => (3600.0, time),
-        "Hz" => (1.0, frequency),
-        "kHz" => (1e3, frequency),
-        "rpm" => (2.0 * PI / 60.0, frequency),
-        "kt" | "kts" | "knot" | "knots" => (NAUTICAL_MILE / 3600.0, speed),
-        "mph" => (1609.344 / 3600.0, speed),
-        "fpm" => (FOOT / 60.0, speed),
-        // In a flight-test recording g is the load factor's unit, never a gram.
-        "g" | "G" | "gn" => (GRAVITY, acceleration),
-        "N" => (1.0, force),
-        "daN" => (10.0, force),
-        "kN" => (1e3, force),
-        "kgf" => (GRAVITY, force),
-        "lbf" => (POUND * GRAVITY, force),
-        "Pa" => (1.0, pressure),
-        "hPa" | "mbar" | "mb" => (100.0, pressure),
-        "kPa" => (1e3, pressure),
-        "bar" => (1e5, pressure),
-        "psi" => (POUND * GRAVITY / (FOOT / 12.0).powi(2), pressure),
-        "psf" => (POUND * GRAVITY / FOOT.powi(2), pressure),
-        "inHg" => (3386.389, pressure),
-        "J" => (1.0, force.times(length)),
-        "W" => (1.0, power),
-        "kW" => (1e3, power),
-        "hp" => (550.0 * FOOT * POUND * GRAVITY, power),
-        "K" => (1.0, temperature),
-        "degR" => (5.0 / 9.0, temperature),
-        "degC" | "°C" | "celsius" => {
-            return Some(Unit {
-                scale: 1.0,
-                offset: 273.15,
-                dimension: temperature,
-            });
-        }
-        "degF" | "°F" => {
-            return Some(Unit {
-                scale: 5.0 / 9.0,
-                offset: 459.67 * 5.0 / 9.0,
-                dimension: temperature,
-            });
-        }
-        "A" => (1.0, Dimension::AMPERE),
-        "V" => (1.0, voltage),
-        "mV" => (1e-3, voltage),
-        _ => return None,
-    };
-    Some(Unit::scaled(scale, dimension))
-}
-
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
 
     fn si(unit: &str, value: f64) -> f64 {
@@ -321,6 +298,39 @@ mod tests {
         close(si("slug/ft^3", 1.0), 515.378_818_393_196_2);
         close(si("%", 82.0), 0.82);
         close(si("psf", 1.0), 47.880_258_980_335_84);
+    }
+
+    #[test]
+    fn converts_what_people_write() {
+        let same = |written: &str, symbols: &str| {
+            assert_eq!(Unit::parse(written), Unit::parse(symbols), "{written}");
+            assert_eq!(Unit::in_symbols(symbols), symbols);
+            let read_back = Unit::parse(&Unit::in_symbols(written));
+            assert_eq!(read_back, Unit::parse(symbols), "{written}");
+        };
+        for (written, symbols) in [
+            ("DEG", "deg"),
+            ("DEG/S2", "deg/s^2"),
+            ("M/S**2", "m/s^2"),
+            ("FT/SEC**2", "ft/s^2"),
+            ("kg/m3", "kg/m^3"),
+            ("slug/ft3", "slug/ft^3"),
+            ("KIAS", "kt"),
+            ("lbs", "lb"),
+            ("RPM", "rpm"),
+            ("deg F", "degF"),
+            ("degrees/s", "deg/s"),
+            ("usec", "us"),
+            ("ft-lbs", "ft*lbf"),
+            ("S", "s"),
+            ("enum", "-"),
+            ("cdeg", "0.01 deg"),
+            ("1E-7 DEG", "1e-7 deg"),
+        ] {
+            same(written, symbols);
+        }
+        let unknown = Unit::parse("degg/s").unwrap_err().to_string();
+        assert!(unknown.contains("did you mean deg?"), "{unknown}");
     }
 
     #[test]

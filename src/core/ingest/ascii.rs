@@ -4,34 +4,39 @@ use crate::flight::{Fault, Maneuver};
 
 use super::{
     IngestError, Limits,
-    cell::{Decimal, number},
+    cell::{Marks, number},
     code,
-    fault::{CELLS_LISTED, of_file, pointer},
+    fault::{CELLS_LISTED, pointer},
     lines::{Line, Lines},
     mapping::{Archive, Mapping},
     matrix::Matrix,
     text::{decode, quoted},
 };
 
+/// Whether a text is a matrix of which a mapping names rows or columns: its first line has numbers only, and blanks between
+/// them.
+pub(super) fn is_matrix(bytes: &[u8], mapping: &Mapping) -> bool {
+    let Ok(text) = decode(bytes) else {
+        return false;
+    };
+    let is_number = |cell: &str| number(cell, Marks::POINT).is_some();
+    let first = Lines::of(text).next();
+    mapping.names_parts_of_one_matrix() && first.is_some_and(|line| cells(line).all(is_number))
+}
+
 /// Reads a matrix as the mapping says. Lines that begin with `#` or `%` are comments.
 ///
 /// # Errors
-/// The first 20 faults of rows and numbers; what the mapping names and the matrix does not have; or there is no mapping.
+/// The first 20 faults of rows and numbers; what the mapping names and the matrix does not have.
 pub(super) fn read(
     bytes: &[u8],
-    mapping: Option<&Mapping>,
+    mapping: &Mapping,
     limits: &Limits,
 ) -> Result<Maneuver, IngestError> {
     let text = decode(bytes)?;
     let lines = Lines::of(text);
     let columns = lines.clone().next().map_or(0, |line| cells(line).count());
     let rows = lines.clone().count();
-    let Some(mapping) = mapping else {
-        let message = format!(
-            "{rows} rows of {columns} numbers have no names and units; say with a mapping which column is what, as (:,1)"
-        );
-        return Err(of_file(code::MAPPING_NEEDED, message).into());
-    };
     let too_much = [
         limits.columns(columns),
         limits.samples(rows),
@@ -77,7 +82,7 @@ impl Table {
             return;
         }
         for (at, cell) in cells(line).enumerate() {
-            let value = number(cell, Decimal::Point);
+            let value = number(cell, Marks::POINT);
             self.values.push(value.unwrap_or(f64::NAN));
             if value.is_none() {
                 let message = format!(
@@ -116,7 +121,7 @@ mod tests {
     fn read_text(text: &str, limits: &Limits) -> Result<Maneuver, IngestError> {
         read(
             text.as_bytes(),
-            Some(&Mapping::from_json(MAPPING).unwrap()),
+            &Mapping::from_json(MAPPING).unwrap(),
             limits,
         )
     }
@@ -150,12 +155,6 @@ mod tests {
         );
         assert_eq!(refused(" "), ["empty_body "]);
         assert_eq!(refused(&"x\n".repeat(100)).len(), CELLS_LISTED);
-        let unmapped = read(b"0 1\n1 2\n", None, &Limits::default()).unwrap_err();
-        assert_eq!(unmapped.faults()[0].code, code::MAPPING_NEEDED);
-        assert!(
-            unmapped.to_string().starts_with("2 rows of 2 numbers"),
-            "{unmapped}"
-        );
         let few = Limits {
             max_values: 5,
             ..Limits::default()

@@ -37,11 +37,6 @@ impl TimeAxis {
         Ok(())
     }
 
-    /// Keeps the place of a sample whose row is already refused.
-    pub(super) fn skip(&mut self) {
-        self.seconds.push(f64::NAN);
-    }
-
     pub(super) fn into_seconds(self) -> Vec<f64> {
         self.seconds
     }
@@ -75,7 +70,6 @@ mod tests {
             time: 0.5,
         };
         assert_eq!(axis.push(500.0), Err(backwards));
-        axis.skip();
-        assert_eq!(axis.into_seconds().len(), 5);
+        assert_eq!(axis.into_seconds().len(), 4);
     }
 }

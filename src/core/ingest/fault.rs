@@ -16,6 +16,7 @@ pub(super) fn of_file(code: &'static str, message: impl Into<String>) -> Fault {
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct IngestError {
     faults: Vec<Fault>,
+    draft: Option<String>,
 }
 
 impl IngestError {
@@ -29,12 +30,28 @@ impl IngestError {
         self.faults
     }
 
+    /// The draft of a mapping for this file, JSON: in it the choices can be made that the file leaves open, `?` where one
+    /// must be.
+    pub fn draft(&self) -> Option<&str> {
+        self.draft.as_deref()
+    }
+
+    pub(super) fn with_draft(self, draft: String) -> Self {
+        Self {
+            draft: Some(draft),
+            ..self
+        }
+    }
+
     /// Refuses if there is a fault.
     pub(super) fn refuse(faults: Vec<Fault>) -> Result<(), Self> {
         if faults.is_empty() {
             Ok(())
         } else {
-            Err(Self { faults })
+            Err(Self {
+                faults,
+                draft: None,
+            })
         }
     }
 }
@@ -43,6 +60,7 @@ impl From<Fault> for IngestError {
     fn from(fault: Fault) -> Self {
         Self {
             faults: vec![fault],
+            draft: None,
         }
     }
 }

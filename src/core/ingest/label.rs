@@ -2,7 +2,7 @@
 
 use crate::flight::Unit;
 
-use super::{code, name::Names, name::is_identifier, text::quoted, units::RecordedUnit};
+use super::{code, text::quoted, units::RecordedUnit};
 
 /// A header cell in its two parts.
 #[derive(Clone, Copy)]
@@ -13,10 +13,15 @@ pub(super) struct Label<'a> {
 }
 
 impl<'a> Label<'a> {
-    /// Reads `alpha[deg]`, `alpha [deg]`, `alpha (deg)`, or `mach` without a unit.
+    /// Reads `alpha[deg]`, `alpha (deg)`, `alpha {deg}`, `alpha, deg`, or `mach` without a unit. Digits in brackets are an
+    /// index.
     pub(super) fn split(cell: &'a str) -> Self {
         let (name, unit) = in_brackets(cell, '[', ']')
-            .or_else(|| in_brackets(cell, '(', ')').filter(|(_, unit)| !is_index(unit)))
+            .or_else(|| in_brackets(cell, '(', ')'))
+            .filter(|(_, unit)| !is_index(unit))
+            .or_else(|| in_brackets(cell, '{', '}').filter(|(_, unit)| is_unit(unit)))
+            .or_else(|| in_brackets(cell, '<', '>').filter(|(_, unit)| is_unit(unit)))
+            .or_else(|| cell.rsplit_once(',').filter(|(_, unit)| is_unit(unit)))
             .unwrap_or((cell, ""));
         Self {
             name: name.trim(),
@@ -50,39 +55,125 @@ impl<'a> Label<'a> {
         Err((code::UNIT_CONFLICT, message))
     }
 
-    pub(super) fn check_name(&self, names: &mut Names) -> Result<(), (&'static str, String)> {
-        let Some(instead) = self.unit_in_braces() else {
-            return names.take(self.name);
+    /// The unit that a name ends with, as `alpha_deg` or `time_us` does. Only words that are nothing but units count.
+    pub(super) fn unit_in_name(&self) -> Option<&'a str> {
+        let (stem, word) = self.name.rsplit_once(['_', ' ', '-'])?;
+        // deg_s, rad_sec
+        let (stem, word) = match stem.rsplit_once(['_', ' ']) {
+            Some((stem, rate))
+                if ["s", "sec"].contains(&word) && UNITS_IN_NAMES.contains(&rate) =>
+            {
+                (stem, &self.name[stem.len() + 1..])
+            }
+            _ => (stem, word),
         };
-        let message = format!(
-            "{} does not have its unit in square brackets; write {}",
-            quoted(self.name),
-            quoted(&instead)
-        );
-        Err((code::INVALID_NAME, message))
-    }
-
-    fn unit_in_braces(&self) -> Option<String> {
-        let (name, unit) = in_brackets(self.name, '{', '}')?;
-        let is_label = is_identifier(name.trim()) && Unit::parse(unit).is_ok();
-        is_label.then(|| format!("{}[{}]", name.trim(), unit.trim()))
+        let lower = word.to_ascii_lowercase();
+        let is_word = UNITS_IN_NAMES.contains(&lower.as_str())
+            || ["deg_s", "rad_s", "deg_sec", "rad_sec", "ft_s", "m_s"].contains(&lower.as_str());
+        let is_of_time = ["s", "ms", "us", "ns"].contains(&lower.as_str())
+            && Self {
+                name: stem,
+                unit: "",
+            }
+            .is_called_time_or_stamp();
+        (!stem.is_empty() && (is_word || is_of_time)).then_some(word)
     }
 
     pub(super) fn is_called_time(&self) -> bool {
-        ["t", "time"].iter().any(|name| self.is_called(name))
+        self.is_called(&["t", "time"])
     }
 
-    pub(super) fn is_called_timestamp(&self) -> bool {
-        self.is_called("timestamp")
+    /// By one of the words that loggers have for time.
+    pub(super) fn is_called_time_or_stamp(&self) -> bool {
+        self.is_called_time() || self.is_called(&CLOCKS)
     }
 
-    fn is_called(&self, name: &str) -> bool {
-        self.name.eq_ignore_ascii_case(name)
+    /// A calendar date, a column of which goes with one of times of day.
+    pub(super) fn is_called_date(&self) -> bool {
+        self.is_called(&[
+            "date",
+            "lcldate",
+            "localdate",
+            "utcdate",
+            "gpsdate",
+            "datum",
+        ])
+    }
+
+    /// The week of the satellites' clock.
+    pub(super) fn is_called_week(&self) -> bool {
+        self.is_called(&["week", "gpsweek", "gpswk", "gwk", "gpsweekno", "wn"])
+    }
+
+    /// Letter by letter in any case, whatever is between the words.
+    fn is_called(&self, names: &[&str]) -> bool {
+        let letters = self.name.bytes().filter(u8::is_ascii_alphanumeric);
+        let letters: Vec<u8> = letters.map(|byte| byte.to_ascii_lowercase()).collect();
+        self.name.is_ascii() && names.iter().any(|name| name.as_bytes() == letters)
     }
 
     pub(super) fn has_unit_of_time(&self) -> bool {
         RecordedUnit::parse(self.unit).is_ok_and(|unit| unit.is_of_time())
     }
+}
+
+/// What loggers call the time, without what is between the words.
+const CLOCKS: [&str; 43] = [
+    "timestamp",
+    "timestamps",
+    "datetime",
+    "elapsed",
+    "elapsedtime",
+    "relativetime",
+    "reltime",
+    "timesincestart",
+    "timesinceboot",
+    "timesincelaunch",
+    "simtime",
+    "simulationtime",
+    "systemtime",
+    "systime",
+    "utc",
+    "utctime",
+    "gpstime",
+    "lcltime",
+    "localtime",
+    "zulutime",
+    "irigtime",
+    "irig",
+    "clock",
+    "timeus",
+    "timems",
+    "times",
+    "timesec",
+    "timesecs",
+    "seconds",
+    "secs",
+    "tow",
+    "gpstow",
+    "itow",
+    "zeit",
+    "temps",
+    "tiempo",
+    "tempo",
+    "sessiontime",
+    "realtime",
+    "totltime",
+    "missntime",
+    "xvalue",
+    "flighttime",
+];
+
+/// Words that are nothing but units.
+const UNITS_IN_NAMES: [&str; 38] = [
+    "deg", "degs", "degrees", "rad", "rads", "radians", "dps", "degps", "radps", "mps", "fps",
+    "kt", "kts", "kias", "kcas", "ktas", "mph", "kmh", "kph", "fpm", "ft", "feet", "meters",
+    "metres", "hpa", "kpa", "psi", "psf", "inhg", "degc", "degf", "rpm", "pct", "percent", "lbs",
+    "lbf", "kg", "volts",
+];
+
+fn is_unit(text: &str) -> bool {
+    !is_index(text) && Unit::parse(text).is_ok()
 }
 
 fn in_brackets(cell: &str, open: char, close: char) -> Option<(&str, &str)> {
@@ -99,7 +190,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn units_stand_in_square_or_round_brackets() {
+    fn units_stand_in_brackets_or_behind_a_comma() {
         for (cell, expected) in [
             ("alpha[deg]", ("alpha", "deg")),
             (" alpha [ deg ] ", ("alpha", "deg")),
@@ -108,10 +199,26 @@ mod tests {
             ("mach", ("mach", "")),
             ("q(1)", ("q(1)", "")),
             ("q()", ("q()", "")),
+            ("q[1]", ("q[1]", "")),
+            ("alpha {deg}", ("alpha", "deg")),
+            ("Alpha {vane}", ("Alpha {vane}", "")),
+            ("alpha, deg", ("alpha", "deg")),
+            ("CHT 1, left", ("CHT 1, left", "")),
             ("alpha[deg", ("alpha[deg", "")),
         ] {
             let label = Label::split(cell);
             assert_eq!((label.name, label.unit), expected, "{cell}");
+        }
+    }
+
+    #[test]
+    fn names_end_with_units() {
+        let unit = |name| Label::split(name).unit_in_name();
+        assert_eq!(unit("alpha_deg"), Some("deg"));
+        assert_eq!(unit("q_deg_s"), Some("deg_s"));
+        assert_eq!(unit("time_us"), Some("us"));
+        for name in ["alpha", "de_s", "q_dyn", "deg", "V_m", "n1_left"] {
+            assert_eq!(unit(name), None, "{name}");
         }
     }
 

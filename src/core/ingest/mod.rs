@@ -5,8 +5,9 @@
 //! Its memory is bounded by [`Limits`] *before* it is used: every format is surveyed in one cheap pass
 //! before anything is built from it.
 //!
-//! CSV and JSON say names and units themselves. MAT files and ASCII matrices do not: a [`Mapping`] says them. It can do so
-//! for CSV, too, where what the file says is not what is meant.
+//! Tables of text and JSON say names and units themselves. MAT files and ASCII matrices do not: a [`Mapping`] says them. It
+//! can do so for any table of text, too, where what the file says is not what is meant. [`inspect`] looks at one, and
+//! drafts a mapping.
 //!
 //! What is readable may still be poor: [`quality()`] finds gaps, missing values, stuck sensors and spikes,
 //! and [`summary()`] is what a user sees of a maneuver without downloading it.
@@ -20,9 +21,9 @@ pub mod bundled;
 mod cell;
 mod csv;
 mod csv_writer;
+mod encoding;
 mod export;
 mod fault;
-mod header;
 mod json;
 mod label;
 mod limits;
@@ -31,6 +32,9 @@ mod mapping;
 mod mat;
 mod matrix;
 mod name;
+mod note;
+mod quick;
+mod reading;
 mod recording;
 mod stamp;
 mod summary;
@@ -38,11 +42,13 @@ mod text;
 mod units;
 
 pub use crate::flight::quality;
+pub use csv::{InspectedColumn, Inspection};
 pub use csv_writer::CsvWriter;
 pub use export::{to_csv, to_csv_as_recorded, to_json};
 pub use fault::{IngestError, code};
 pub use limits::Limits;
 pub use mapping::Mapping;
+pub use reading::Reading;
 pub use recording::Recording;
 pub use summary::{ChannelSummary, Summary, summary};
 
@@ -51,13 +57,13 @@ use crate::flight::Maneuver;
 /// What a recording is written in.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Format {
-    /// Text with a header of `name[unit]`, a row for each sample.
+    /// A table of text with a header of `name[unit]`, a row for each sample.
     Csv,
     /// One time axis and a list of values for each channel.
     Json,
     /// A MAT file of version 5.
     Mat,
-    /// A matrix of numbers as text.
+    /// A matrix of numbers as text, or any other table of text.
     Ascii,
 }
 
@@ -91,6 +97,16 @@ impl Format {
         }
     }
 
+    /// The charset that a `Content-Type` says.
+    pub fn charset(content_type: &str) -> Option<&str> {
+        let mut parameters = content_type.split(';').skip(1);
+        parameters.find_map(|parameter| {
+            let (name, value) = parameter.split_once('=')?;
+            let is_charset = name.trim().eq_ignore_ascii_case("charset");
+            is_charset.then(|| value.trim().trim_matches('"'))
+        })
+    }
+
     /// Reads a `Content-Type`; its parameters (`charset=...`) are ignored.
     pub fn from_content_type(content_type: &str) -> Option<Self> {
         let essence = content_type.split(';').next().unwrap_or_default().trim();
@@ -112,27 +128,58 @@ pub fn read(bytes: &[u8], format: Format, limits: &Limits) -> Result<Maneuver, I
     read_mapped(bytes, format, None, limits)
 }
 
-/// Reads a recording, with a mapping where its format has no names and units, or a CSV file has the wrong ones.
+/// Reads a recording, with a mapping where its format has no names and units, or a table has the wrong ones.
 ///
 /// # Errors
-/// All faults that can be found at once: every fault of a header or a mapping, the first 20 of
-/// the cells. A mapping that is missing, or that is there where the file says names and units itself.
+/// As [`read_recording`].
 pub fn read_mapped(
     bytes: &[u8],
     format: Format,
     mapping: Option<&Mapping>,
     limits: &Limits,
 ) -> Result<Maneuver, IngestError> {
+    read_recording(bytes, format, None, mapping, limits).map(|reading| reading.maneuver)
+}
+
+/// Reads a recording, and tells what was odd about its file. The charset of a text may be said; it is found out where it is
+/// not.
+///
+/// # Errors
+/// All faults that can be found at once: every fault of a header or a mapping, the first 20 of
+/// the cells. A mapping that is missing, or that is there where the file says names and units itself.
+pub fn read_recording(
+    bytes: &[u8],
+    format: Format,
+    charset: Option<&str>,
+    mapping: Option<&Mapping>,
+    limits: &Limits,
+) -> Result<Reading, IngestError> {
     match (format, mapping) {
-        (Format::Csv, _) => csv::read(bytes, mapping, limits),
-        (Format::Json, None) => json::read(bytes, limits),
-        (Format::Mat, _) => mat::read(bytes, mapping, limits),
-        (Format::Ascii, _) => ascii::read(bytes, mapping, limits),
+        (Format::Csv, _) => csv::read(bytes, charset, mapping, limits),
+        (Format::Json, None) => json::read(bytes, limits).map(Reading::from),
+        (Format::Mat, _) => mat::read(bytes, mapping, limits).map(Reading::from),
+        (Format::Ascii, Some(mapping)) if ascii::is_matrix(bytes, mapping) => {
+            ascii::read(bytes, mapping, limits).map(Reading::from)
+        }
+        (Format::Ascii, _) => csv::read(bytes, charset, mapping, limits),
         (_, Some(_)) => {
             let message = "this format says names and units itself; leave the mapping out";
             Err(fault::of_file(code::MAPPING_NOT_USED, message).into())
         }
     }
+}
+
+/// Looks at a table of text: how it is written, what its columns are, the draft of a mapping for it.
+///
+/// # Errors
+/// There is no table in it.
+pub fn inspect(
+    bytes: &[u8],
+    charset: Option<&str>,
+    mapping: Option<&Mapping>,
+    limits: &Limits,
+) -> Result<Inspection, IngestError> {
+    csv::inspect(bytes, charset, mapping, limits)
 }
 
 #[cfg(test)]

@@ -63,6 +63,22 @@ impl<'a> Names<'a> {
         Err((code::DUPLICATE_CHANNEL, message))
     }
 
+    /// Takes a name for a title: the title itself where it is an identifier and free, else one close to it.
+    pub(super) fn take_like(&mut self, title: &str) -> String {
+        let mut stem = identifier_like(title);
+        if is_identifier(title) {
+            stem = title.to_string();
+        }
+        stem.truncate(self.limits.max_name_length.saturating_sub(6).max(1));
+        let numbered = (2usize..).map(|n| format!("{stem}_{n}"));
+        let free = std::iter::once(stem.clone())
+            .chain(numbered)
+            .find(|name| !self.taken.contains(name))
+            .unwrap_or(stem);
+        self.taken.insert(free.clone());
+        free
+    }
+
     /// An identifier close to `name` that is free so far and suggested once only: two faulty names
     /// are not told to become the same.
     fn suggestion(&mut self, name: &str) -> String {
@@ -140,6 +156,22 @@ mod tests {
             code::NAME_TOO_LONG,
             "max_name_length = 128",
         );
+    }
+
+    #[test]
+    fn titles_get_a_name_of_their_own() {
+        let limits = Limits::default();
+        let mut names = Names::new(&limits);
+        for (title, name) in [
+            ("Engine 1 RPM", "Engine_1_RPM"),
+            ("xyz[0]", "xyz_0"),
+            ("alpha", "alpha"),
+            ("alpha", "alpha_2"),
+            ("t", "t_2"),
+            ("imu/rates[1]", "imu_rates_1"),
+        ] {
+            assert_eq!(names.take_like(title), name);
+        }
     }
 
     #[test]

@@ -26,7 +26,8 @@ impl RecordedUnit {
             return Err((code::UNKNOWN_UNIT, message));
         }
         // `name`, `name[]`, `name[1]` and `name[-]` are the same content and must have one digest.
-        let text = match text.trim() {
+        let in_symbols = Unit::in_symbols(text);
+        let text = match in_symbols.as_str() {
             "" | "1" => PURE_NUMBER,
             other => other,
         };

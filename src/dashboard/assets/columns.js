@@ -172,17 +172,24 @@ export function columnTable(head, onChange) {
       return { about, time: { from: source(time.column), unit: time.column.hasStamps ? 's' : time.unit }, channels };
     },
     /** Takes over a mapping document; what of it the file does not have. */
-    take({ time, channels }) {
-      const find = from => rows.find(({ column }) => {
-        const number = /^\(\s*:\s*,\s*(\d+)\s*\)$/.exec(from?.trim() ?? '');
-        return number ? column.at + 1 === Number(number[1]) : column.name === from;
+    take({ time = {}, channels = {}, others = false, optional = false }) {
+      const isLike = (pattern, title) => pattern.includes('*')
+        && new RegExp(`^${pattern.split('*').map(part => part.replace(/[.*+?^${}()|[\]\\]/g, '\\$&')).join('.*')}$`, 'i').test(title);
+      const findOne = from => rows.find(({ column }) => {
+        const number = /^\(\s*:\s*,\s*(\d+)\s*\)$/.exec(from.trim());
+        return number ? column.at + 1 === Number(number[1])
+          : [column.name, column.title].some(title => title === from || isLike(from, title ?? ''));
       });
-      for (const row of rows) row.as = 'out';
+      const find = from => [from].flat().map(findOne).find(Boolean);
+      const isAll = others || Object.keys(channels).length === 0;
+      for (const row of rows) row.as = isAll ? asRead(row.column) : 'out';
       const missing = [];
       for (const [name, { from, unit }] of [['t', time], ...Object.entries(channels)]) {
-        const row = find(from);
-        if (row) Object.assign(row, { as: name === 't' ? 'time' : 'channel', unit, name: name === 't' ? row.name : name });
-        else missing.push(from ?? 'time');
+        const row = from === undefined ? rows.find(({ as }) => as === 'time') : find(from);
+        // there is one time
+        if (row && name === 't') rows.filter(({ as }) => as === 'time').forEach(other => { other.as = 'channel'; });
+        if (row) Object.assign(row, { as: name === 't' ? 'time' : 'channel', unit: unit ?? row.unit, name: name === 't' ? row.name : name });
+        else if (name === 't' || !optional) missing.push([from ?? 'time'].flat().join(' or '));
       }
       rows.forEach(show);
       return missing;

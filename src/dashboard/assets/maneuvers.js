@@ -152,8 +152,19 @@ class Chosen {
   failed(error) {
     const faults = error.problem?.errors ?? [];
     this.table?.mark(faults);
+    this.offerDraft(error.problem?.mapping);
     this.tell(faults.length > 0 ? 'It was not stored. Correct this, and send it again:' : error.message, faults.map(({ pointer, message }) =>
       element('li', {}, pointer ? element('code', {}, pointer) : '', ' ', message)));
+  }
+
+  /** The service's draft of a mapping for this file, where there is no table to correct it in. */
+  offerDraft(draft) {
+    const { parts } = this;
+    if (!draft || this.table || parts.text.value.trim() !== '') return;
+    parts.mappings.hidden = false;
+    parts.document.hidden = false;
+    parts.text.value = JSON.stringify(draft, null, 2);
+    this.mappingChanged();
   }
 
   tell(text, items = []) {

@@ -86,11 +86,11 @@ struct UploadQuery {
     /// For people; at most 200 characters.
     #[param(example = "ATTAS elevator 3-2-1-1")]
     name: Option<String>,
-    /// Where a MAT file or an ASCII matrix has time and channels, and in which units; for a CSV file, what it says otherwise than
-    /// is meant. The name of a mapping that is bundled (`fvsysid-attas`, `fvsysid-hfb320`, `sidpac`) or kept under `/v1/mappings`, or a JSON document. Sources are variables
-    /// (`alpha`), fields of structs (`rec.alpha`), columns (`data(:,2)`) or rows (`data(2,:)`) of either, or
-    /// columns of the only matrix of a file (`(:,2)`). Of a CSV file they are names of columns without their units (`alpha`), or
-    /// columns (`(:,2)`); its other columns are left out.
+    /// Where a MAT file or an ASCII matrix has time and channels, and in which units; for a table of text, what it does not
+    /// say, or says otherwise than is meant. The name of a mapping that is bundled (`GET /v1/mappings`) or kept there, or a
+    /// JSON document. Sources are variables (`alpha`), fields of structs (`rec.alpha`), columns (`data(:,2)`) or rows
+    /// (`data(2,:)`) of either, or columns of the only matrix of a file (`(:,2)`). Of a table of text they are titles as they
+    /// stand there, with or without their units (`Elev Pos`), or columns (`(:,2)`); its other columns are left out.
     #[param(
         example = "{\"time\": {\"from\": \"data(:,1)\", \"unit\": \"s\"}, \"channels\": {\"alpha\": {\"from\": \"data(:,2)\", \"unit\": \"deg\"}}}"
     )]
@@ -105,9 +105,12 @@ struct MatFile(Vec<u8>);
 
 /// Upload a recording.
 ///
-/// CSV with a header of `name[unit]` cells, one of them `t[s]` or `time[s]`, or with a row of units below the header;
-/// separated by commas, semicolons or tabs, with decimal points or (between the latter two) commas; time in a unit or as
-/// time stamps; with a `mapping`, other names and units than it states. Or JSON. Or, with a `mapping`, a MAT file (`-v7` or older, not 7.3) or an ASCII matrix. Values are
+/// A table of text as loggers, simulators and spreadsheets write them: lines before the header, names and units in brackets
+/// or in rows of their own, behind a comment's sign or not; separated by commas, semicolons, tabs, vertical bars or blanks;
+/// decimal points or commas; time in a unit or as time stamps. The charset of the media type holds, else it is found out. A
+/// column that cannot be read is left out, with a finding. With a `mapping`, other names and units than it states. Or JSON.
+/// Or, with a `mapping`, a MAT file (`-v7` or older, not 7.3) or an ASCII matrix. Where a choice is to be made, the answer has
+/// the draft of a mapping that makes it, as `mapping`. Values are
 /// converted to SI. Content that is here already answers 200 with the maneuver it was first uploaded as.
 #[utoipa::path(post, path = "/v1/maneuvers", tag = "Maneuvers", operation_id = "uploadManeuver",
     params(UploadQuery),
@@ -151,9 +154,12 @@ async fn upload_maneuver(
     let (bytes, _room) = (body.bytes, body.room);
     let limits = service.config.recording;
     let read = move || {
-        let maneuver = ingest::read_mapped(&bytes, format, mapping.as_ref(), &limits)?;
-        let summary = serde_json::to_string(&ingest::summary(&maneuver))?;
-        Ok::<_, Problem>((maneuver, summary))
+        let charset = ingest::Format::charset(&media_type);
+        let read = ingest::read_recording(&bytes, format, charset, mapping.as_ref(), &limits)?;
+        let mut summary = ingest::summary(&read.maneuver);
+        summary.findings.splice(0..0, read.findings);
+        let summary = serde_json::to_string(&summary)?;
+        Ok::<_, Problem>((read.maneuver, summary))
     };
     let (maneuver, summary) = service.compute.run(read).await??;
     let (stored, limit) = (

@@ -1,172 +1,343 @@
-//! The rows of a CSV file: one a sample, each cell a number, a time stamp, or nothing.
-
-use indexmap::IndexMap;
-
-use crate::flight::{Fault, Maneuver};
+//! The rows of a table: one a sample, each cell a number, a time stamp, or nothing.
 
 use super::super::{
-    IngestError,
-    axis::{TimeAxis, code_of},
-    cell::{is_missing, number, unquote},
-    code,
-    fault::{CELLS_LISTED, of_file, pointer},
-    header::{Column, Header},
+    cell::{Decimal, number, unquote},
+    fault::CELLS_LISTED,
     lines::{Line, Lines},
-    stamp::{Stamp, Stopwatch},
-    text::quoted,
+    mapping::NoValue,
+    quick::quick_number,
 };
-use super::dialect::Dialect;
+use super::{
+    clock::{Clock, NOT_A_NUMBER},
+    delimiter::Delimiter,
+    ending,
+    plan::{Column, Plan},
+    samples::{Samples, Unreadable},
+    time::Time,
+    trouble::{Trouble, Written},
+};
+
+/// What is to be done with a cell.
+#[derive(Clone, Copy)]
+enum Cell {
+    Skip,
+    Time,
+    /// The date or the week beside the time.
+    Day,
+    /// A channel's; which of the plan's columns it is.
+    Channel(usize),
+}
 
 /// Reads all rows; `capacity` is about how many there are.
-///
-/// # Errors
-/// The first [`CELLS_LISTED`] faults of rows and cells.
-pub(super) fn read(
-    rows: Lines,
-    dialect: &Dialect,
-    header: &Header,
-    capacity: usize,
-) -> Result<Maneuver, IngestError> {
-    let columns = header.columns.iter();
-    let Some(time) = header.columns.get(header.time).and_then(Option::as_ref) else {
-        return Err(of_file(code::NO_TIME_COLUMN, "there is no column of time").into());
-    };
-    let mut table = Table {
-        dialect,
-        header,
-        axis: TimeAxis::new(time.unit.unit(), capacity),
-        watch: Stopwatch::default(),
-        time,
-        values: columns
-            .map(|column| Vec::with_capacity(column.as_ref().map_or(0, |_| capacity)))
-            .collect(),
-        faults: Vec::new(),
-    };
-    for (row, line) in rows.enumerate() {
-        table.push(row + 1, line);
-        if table.faults.len() >= CELLS_LISTED {
-            table.faults.truncate(CELLS_LISTED);
+pub(super) fn read(mut rows: Lines, written: &Written, plan: &Plan, capacity: usize) -> Samples {
+    let text = rows.rest();
+    let mut reader = Reader::new(written, plan, capacity);
+    for line in rows.by_ref() {
+        reader.push(line);
+        if reader.has_seen_enough() {
             break;
         }
     }
-    table.maneuver()
+    if rows.rest().is_empty() {
+        reader.leave_out_the_end(text);
+    }
+    reader.samples()
 }
 
-struct Table<'a> {
-    dialect: &'a Dialect,
-    header: &'a Header,
-    time: &'a Column,
-    axis: TimeAxis,
-    watch: Stopwatch,
-    /// One list a column; that of time stays empty, and so do those that are left out.
-    values: Vec<Vec<f64>>,
-    faults: Vec<Fault>,
+struct Reader<'a> {
+    written: &'a Written<'a>,
+    cells: Vec<Cell>,
+    columns: &'a [Column],
+    time: Time,
+    clock: Clock,
+    samples: Samples,
+    /// The values of the row that is being read, and what in it is no value.
+    row: Vec<f64>,
+    unreadable: Vec<(usize, &'a str)>,
+    row_number: usize,
+    repeated_headers: Vec<usize>,
+    without_time: usize,
+    /// Rows that are no samples.
+    troubles: Vec<(usize, Line<'a>, Trouble)>,
 }
 
-impl Table<'_> {
-    fn push(&mut self, row: usize, line: Line) {
-        let (found, expected) = (self.dialect.count(line.text), self.header.columns.len());
-        if found != expected {
-            self.faults.push(self.row_length(row, line, found));
-            self.axis.skip();
+impl<'a> Reader<'a> {
+    fn new(written: &'a Written<'a>, plan: &'a Plan, capacity: usize) -> Self {
+        let mut cells = vec![Cell::Skip; written.width];
+        for column in plan.time.columns() {
+            cells[column] = Cell::Day;
+        }
+        if let Some(column) = plan.time.column() {
+            cells[column] = Cell::Time;
+        }
+        for (at, column) in plan.columns.iter().enumerate() {
+            cells[column.at] = Cell::Channel(at);
+        }
+        Self {
+            written,
+            cells,
+            columns: &plan.columns,
+            time: plan.time,
+            clock: Clock::new(plan.time, written.marks),
+            samples: Samples {
+                time: Vec::with_capacity(capacity),
+                values: plan
+                    .columns
+                    .iter()
+                    .map(|_| Vec::with_capacity(capacity))
+                    .collect(),
+                lines: Vec::with_capacity(capacity),
+                rows: Vec::with_capacity(capacity),
+                unreadable: vec![None; plan.columns.len()],
+                findings: Vec::new(),
+                faults: Vec::new(),
+            },
+            row: vec![f64::NAN; plan.columns.len()],
+            unreadable: Vec::new(),
+            row_number: 0,
+            repeated_headers: Vec::new(),
+            without_time: 0,
+            troubles: Vec::new(),
+        }
+    }
+
+    /// Whether there is more wrong than is told, and not at the end only.
+    fn has_seen_enough(&self) -> bool {
+        let last = self.samples.rows.last().map_or(0, |&row| row as usize);
+        let told = self.troubles.get(CELLS_LISTED - 1);
+        told.is_some_and(|(row, ..)| *row < last || self.troubles.len() > ending::LONGEST_FOOTER)
+    }
+
+    fn push(&mut self, line: Line<'a>) {
+        self.row_number += 1;
+        self.unreadable.clear();
+        let time = self.sample(line);
+        let is_odd = time.is_err() || !self.unreadable.is_empty();
+        if is_odd && self.written.header.contains(&line.text.trim()) {
+            self.row_number -= 1;
+            self.repeated_headers.push(line.number);
             return;
         }
-        for (at, cell) in self.dialect.cells(line.text).enumerate() {
-            if at == self.header.time {
-                self.push_time(row, line, cell);
-                continue;
+        match time {
+            Ok(time) => self.keep(time, line),
+            Err(Trouble::Empty) => self.row_number -= 1,
+            Err(Trouble::NoTime) if self.samples.time.is_empty() && self.troubles.is_empty() => {
+                self.without_time += 1;
             }
-            let Some(column) = &self.header.columns[at] else {
-                continue;
+            Err(trouble) => self.troubles.push((self.row_number, line, trouble)),
+        }
+    }
+
+    fn keep(&mut self, time: f64, line: Line) {
+        let samples = &mut self.samples;
+        for &(at, cell) in &self.unreadable {
+            let unreadable = samples.unreadable[at].get_or_insert_with(|| Unreadable {
+                row: self.row_number,
+                line: line.number,
+                cell: cell.trim().to_string(),
+                count: 0,
+            });
+            unreadable.count += 1;
+        }
+        samples.time.push(time);
+        samples.lines.push(line.number as u32);
+        samples.rows.push(self.row_number as u32);
+        for (values, value) in samples.values.iter_mut().zip(&self.row) {
+            values.push(*value);
+        }
+    }
+
+    /// Reads a line into [`Self::row`]; its time.
+    fn sample(&mut self, line: Line<'a>) -> Result<f64, Trouble> {
+        let &Written {
+            delimiter,
+            marks,
+            width,
+            ..
+        } = self.written;
+        let text = delimiter.without_ends(line.text);
+        let bytes = text.as_bytes();
+        // blanks part cells before they are read: a number ends with its cell
+        let (end_of_number, is_parted) = match delimiter {
+            Delimiter::Byte(delimiter) => (delimiter, false),
+            Delimiter::Bars => (b'|', false),
+            Delimiter::Blanks => (0, true),
+        };
+        let point = if marks.decimal == Decimal::Comma {
+            b','
+        } else {
+            b'.'
+        };
+        let (mut time, mut time_cell, mut day_cell) = (None, "", "");
+        let (mut from, mut count) = (0, 0);
+        loop {
+            let cell = self.cells.get(count).copied().unwrap_or(Cell::Skip);
+            let mut rest = &bytes[from..];
+            if is_parted {
+                rest = &rest[..delimiter.cell_end(rest)];
+            }
+            let is_number = match cell {
+                Cell::Channel(_) => !marks.has_thousands,
+                Cell::Time => !marks.has_thousands && self.clock.takes_numbers(),
+                Cell::Day | Cell::Skip => false,
             };
-            let value = number(cell, self.dialect.decimal);
-            self.values[at].push(value.unwrap_or(f64::NAN));
-            if value.is_none() {
-                self.faults.push(not_a_number(row, line, column, cell));
+            let quick = if is_number {
+                quick_number(rest, end_of_number, point)
+            } else {
+                None
+            };
+            let length = match (quick, cell) {
+                (Some((value, length)), Cell::Channel(at)) => {
+                    self.row[at] = value;
+                    length
+                }
+                (Some((value, length)), _) => {
+                    time = Some(self.clock.of_number(value));
+                    length
+                }
+                (None, _) => {
+                    let length = if is_parted {
+                        rest.len()
+                    } else {
+                        delimiter.cell_end(rest)
+                    };
+                    let said = &text[from..from + length];
+                    match cell {
+                        Cell::Channel(at) => self.read_cell(at, said),
+                        Cell::Time => time_cell = said,
+                        Cell::Day => day_cell = said,
+                        Cell::Skip => {}
+                    }
+                    length
+                }
+            };
+            count += 1;
+            let end = from + length;
+            if end >= bytes.len() {
+                let is_behind_last = count == width + 1 && text[from..].trim().is_empty();
+                if count != width && !is_behind_last {
+                    return Err(if ending::is_empty(text, delimiter) {
+                        Trouble::Empty
+                    } else {
+                        Trouble::Length(count)
+                    });
+                }
+                break;
             }
+            let blanks = |byte: &&u8| byte.is_ascii_whitespace();
+            from = if is_parted {
+                end + bytes[end..].iter().take_while(blanks).count()
+            } else {
+                end + 1
+            };
+        }
+        if self.time.column().is_none() && self.unreadable.len() == self.columns.len() {
+            return Err(if ending::is_empty(text, delimiter) {
+                Trouble::Empty
+            } else {
+                Trouble::Time(String::new(), NOT_A_NUMBER.to_string())
+            });
+        }
+        match time {
+            Some(time) => Ok(time),
+            None => self
+                .clock
+                .read(time_cell, day_cell)
+                .map_err(|why| match why {
+                    None if ending::is_empty(text, delimiter) => Trouble::Empty,
+                    None => Trouble::NoTime,
+                    Some(why) => Trouble::Time(time_cell.trim().to_string(), why),
+                }),
         }
     }
 
-    fn push_time(&mut self, row: usize, line: Line, cell: &str) {
-        let column = self.time;
-        let time = if self.header.has_stamps {
-            self.stamp(cell)
+    /// A cell that the quick way did not read.
+    fn read_cell(&mut self, at: usize, cell: &'a str) {
+        let said = unquote(cell);
+        let is_no_value =
+            |no_value: &NoValue| matches!(no_value, NoValue::Word(word) if word.trim() == said);
+        let value = if self.columns[at].no_values.iter().any(is_no_value) {
+            Some(f64::NAN)
         } else {
-            number(cell, self.dialect.decimal).ok_or_else(|| NOT_A_NUMBER.to_string())
+            number(cell, self.written.marks)
         };
-        let fault = match time {
-            Ok(time) => {
-                let pushed = self.axis.push(time);
-                pushed.map_err(|error| {
-                    let message = format!("line {}: {error}", line.number);
-                    Fault::new(cell_pointer(row, column), code_of(&error), message)
-                })
-            }
-            Err(why) => {
-                self.axis.skip();
-                Err(not_readable(row, line, column, cell, &why))
-            }
-        };
-        self.faults.extend(fault.err());
-    }
-
-    /// Seconds since the first time stamp; NaN where the cell is empty.
-    fn stamp(&mut self, cell: &str) -> Result<f64, String> {
-        if is_missing(unquote(cell)) {
-            return Ok(f64::NAN);
+        self.row[at] = value.unwrap_or(f64::NAN);
+        if value.is_none() {
+            self.unreadable.push((at, cell));
         }
-        let stamp = Stamp::parse(cell).ok_or("is not a time stamp like that of the first row; write all alike, as in 2026-11-21T12:00:00.123Z or 12:00:00.123")?;
-        self.watch
-            .seconds(stamp)
-            .map_err(|why| format!("does not fit: {why}"))
     }
 
-    fn maneuver(self) -> Result<Maneuver, IngestError> {
-        IngestError::refuse(self.faults)?;
-        let mut channels = IndexMap::with_capacity(self.values.len());
-        for (at, (column, values)) in self.header.columns.iter().zip(self.values).enumerate() {
-            if let Some(column) = column
-                && at != self.header.time
+    /// Leaves out an incomplete last line, and what stands behind the last sample.
+    fn leave_out_the_end(&mut self, text: &str) {
+        let width = self.written.width;
+        let last = self.samples.rows.last().map_or(0, |&row| row as usize);
+        if self.written.is_cut_off {
+            let is_short = |trouble: &(usize, Line, Trouble)| matches!(trouble.2, Trouble::Length(found) if found < width);
+            if self
+                .troubles
+                .last()
+                .is_some_and(|trouble| trouble.0 == self.row_number && is_short(trouble))
             {
-                channels.insert(column.name.clone(), column.unit.channel(values));
+                if let Some((_, line, _)) = self.troubles.pop() {
+                    self.samples.findings.push(ending::incomplete(line.number));
+                }
+            } else if last == self.row_number
+                && ending::has_fewer_digits(text, self.written.delimiter)
+            {
+                self.samples.findings.push(ending::incomplete(
+                    self.samples.lines.last().map_or(0, |&line| line as usize),
+                ));
+                self.samples.drop_last();
             }
         }
-        Maneuver::new(self.axis.into_seconds(), channels)
-            .map_err(|error| of_file(code_of(&error), error.to_string()).into())
-    }
-
-    fn row_length(&self, row: usize, line: Line, found: usize) -> Fault {
-        let expected = self.header.columns.len();
-        let with_decimal_commas = if self.dialect.delimiter == ',' && found > expected {
-            "; where numbers have decimal commas, separate cells by semicolons"
+        let last = self.samples.rows.last().map_or(0, |&row| row as usize);
+        let begin = self
+            .troubles
+            .iter()
+            .position(|(row, ..)| *row > last)
+            .unwrap_or(self.troubles.len());
+        let is_footer = last > 0
+            && self.troubles[begin..]
+                .iter()
+                .all(|(_, line, trouble)| self.is_footer(line, trouble));
+        let footer: Vec<_> = if is_footer {
+            self.troubles.drain(begin..).collect()
         } else {
-            ""
+            Vec::new()
         };
-        let message = format!(
-            "line {}: row {row} has {found} cell(s) where the header has {expected} columns; write one cell for each, empty where there is no value{with_decimal_commas}",
-            line.number
-        );
-        Fault::new(
-            pointer(["rows", &row.to_string()]),
-            code::ROW_LENGTH,
-            message,
-        )
+        let footer: Vec<Line> = footer.into_iter().map(|(_, line, _)| line).collect();
+        self.samples.findings.extend(ending::footer(&footer));
     }
-}
 
-const NOT_A_NUMBER: &str =
-    "is not a number; write it like -1.5e-3, or leave the cell empty where there is no value";
+    /// Whether a line that is no sample says something else: a word stands where time should be.
+    fn is_footer(&self, line: &Line, trouble: &Trouble) -> bool {
+        let cells = self.written.delimiter.cells(line.text);
+        let cell = cells.get(self.time.column().unwrap_or(0)).or(cells.first());
+        matches!(trouble, Trouble::Length(_) | Trouble::Time(..))
+            && cell.is_some_and(|cell| ending::begins_with_word(cell))
+    }
 
-fn not_a_number(row: usize, line: Line, column: &Column, cell: &str) -> Fault {
-    not_readable(row, line, column, cell, NOT_A_NUMBER)
-}
-
-fn not_readable(row: usize, line: Line, column: &Column, cell: &str, why: &str) -> Fault {
-    let (number, cell, name) = (line.number, quoted(cell.trim()), &column.name);
-    let message = format!("line {number}: {cell} in column '{name}' {why}");
-    Fault::new(cell_pointer(row, column), code::NOT_A_NUMBER, message)
-}
-
-fn cell_pointer(row: usize, column: &Column) -> String {
-    pointer(["rows", &row.to_string(), &column.name])
+    fn samples(self) -> Samples {
+        let mut samples = self.samples;
+        let told = self.troubles.iter().take(CELLS_LISTED);
+        let fault = |(row, line, trouble): &(usize, Line, Trouble)| {
+            (*row, trouble.fault(*row, line, self.written))
+        };
+        samples.faults = told.map(fault).collect();
+        samples
+            .findings
+            .extend(ending::repeated_header(&self.repeated_headers));
+        samples
+            .findings
+            .extend(ending::no_time_yet(self.without_time));
+        if let Time::Even { start, step } = self.time {
+            for (k, time) in samples.time.iter_mut().enumerate() {
+                *time = start + k as f64 * step;
+            }
+        }
+        for (column, values) in self.columns.iter().zip(&mut samples.values) {
+            column.apply(values);
+        }
+        samples
+    }
 }

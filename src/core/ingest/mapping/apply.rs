@@ -10,7 +10,7 @@ use super::super::{
     matrix::Matrix,
     recording::{Channels, Number, RecordedChannel, RecordedTime, Recording},
 };
-use super::{Mapping, Part, Source};
+use super::{MappedChannel, Mapping, NoValue, Part, Source};
 
 /// A file that values are taken from by name.
 pub(in super::super) trait Archive {
@@ -39,9 +39,9 @@ impl Mapping {
         let mut taken = Taken::new(limits, self.channels.len() + 1);
         // in the order of paths, so that every variable is unpacked once
         let mut by_path: BTreeMap<Vec<String>, Vec<(usize, Part)>> = BTreeMap::new();
-        let of_time = self.time.from.as_deref().map(|from| (TIME, from));
+        let of_time = self.time.from.as_ref().map(|from| (TIME, from.first()));
         let of_channels = self.channels.values().enumerate();
-        let of_channels = of_channels.map(|(at, channel)| (at + 1, &*channel.from));
+        let of_channels = of_channels.map(|(at, channel)| (at + 1, channel.from.first()));
         for (slot, from) in of_time.into_iter().chain(of_channels) {
             match from.parse::<Source>() {
                 Ok(Source { path, part }) => by_path.entry(path).or_default().push((slot, part)),
@@ -65,8 +65,28 @@ impl Mapping {
                 }
             }
         }
-        IngestError::refuse(self.faults(taken.faults))?;
+        let faults = self.not_said().chain(self.faults(taken.faults)).collect();
+        IngestError::refuse(faults)?;
         self.recording(taken.columns).into_maneuver(limits)
+    }
+
+    /// What this file does not say itself, and neither does the mapping.
+    fn not_said(&self) -> impl Iterator<Item = Fault> {
+        let time = &self.time;
+        let no_time = (time.from.is_none() && time.step.is_none()).then(|| {
+            let message = "mapping: time has either \"from\", or \"step\" and perhaps \"start\"";
+            Fault::new("/time", code::INVALID_MAPPING, message)
+        });
+        let silent = self
+            .channels
+            .iter()
+            .filter(|(_, channel)| channel.unit.is_empty());
+        let no_units = silent.map(|(name, _)| {
+            let place = pointer(["channels", name, "unit"]);
+            let message = "this file does not say units: say this one, - for a pure number";
+            Fault::new(place, code::INVALID_MAPPING, message)
+        });
+        no_time.into_iter().chain(no_units)
     }
 
     fn faults(&self, mut faults: Vec<(usize, &'static str, String)>) -> Vec<Fault> {
@@ -98,7 +118,8 @@ impl Mapping {
                 } else {
                     format!("{name}_{}", at + 1)
                 };
-                let (unit, values) = (channel.unit.clone(), numbers(values));
+                let values = values.into_iter().map(|value| self.meant(channel, value));
+                let (unit, values) = (channel.unit.clone(), numbers(values.collect()));
                 channels.push((name, RecordedChannel { unit, values }));
             }
         }
@@ -111,6 +132,36 @@ impl Mapping {
             },
             channels: Channels(channels),
         }
+    }
+}
+
+impl Mapping {
+    /// Whether all that it takes are rows or columns of a matrix, and nothing else of it is for tables.
+    pub(in super::super) fn names_parts_of_one_matrix(&self) -> bool {
+        let time = &self.time;
+        let of_channels = self.channels.values().map(|channel| &channel.from);
+        let is_part = |from: &super::Titles| {
+            from.first()
+                .parse::<Source>()
+                .is_ok_and(|source| source.part != Part::Whole)
+        };
+        let is_for_tables = self.others
+            || self.optional
+            || self.skip.is_some()
+            || self.header.is_some()
+            || time.repeated.is_some();
+        !is_for_tables
+            && !self.channels.is_empty()
+            && time.from.iter().chain(of_channels).all(is_part)
+    }
+
+    /// What a recorded number means: nothing, or its multiple.
+    fn meant(&self, channel: &MappedChannel, value: f64) -> f64 {
+        let mut no_values = self.missing.iter().chain(&channel.missing);
+        if no_values.any(|no_value| *no_value == NoValue::Number(value)) {
+            return f64::NAN;
+        }
+        value * channel.factor()
     }
 }
 

@@ -10,14 +10,22 @@
 //! ```
 
 mod apply;
+mod bundled;
+mod draft;
 mod source;
+mod titles;
+
+use std::sync::LazyLock;
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 pub(super) use apply::Archive;
+use bundled::BUNDLED;
+pub(super) use draft::Draft;
 pub(super) use source::{Part, Source};
+pub(super) use titles::{NoValue, Titles};
 
 use super::{
     code,
@@ -26,45 +34,112 @@ use super::{
 };
 use crate::flight::Fault;
 
-/// Says where time and channels are in a MAT file or an ASCII matrix, or which columns of a CSV file they are.
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+/// Says where time and channels are in a MAT file or an ASCII matrix, or which columns of a table of text they are, and how
+/// that is written. What it does not say of a table is as the file says.
+#[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Mapping {
     /// For people: which recordings it is for.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     about: String,
+    /// Titles of a table of text. Where a file has all of them and nothing else is said, this mapping is used.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    recognise: Vec<Titles>,
+    /// Lines of a text before its table.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) skip: Option<usize>,
+    /// The number of the line that has the names, from 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) header: Option<usize>,
+    /// What separates cells: `,`, `;`, `tab`, `|` or `blanks`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) delimiter: Option<String>,
+    /// What separates a number's whole from its fraction: `.` or `,`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) decimal: Option<String>,
+    /// Numbers and words that stand for no value, on every channel.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) missing: Vec<NoValue>,
+    #[serde(default, skip_serializing_if = "MappedTime::is_silent")]
     pub(super) time: MappedTime,
     /// By name, in the order of the document.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub(super) channels: IndexMap<String, MappedChannel>,
+    /// Columns of a table that are not named here become channels, too, as the file says. So they do where `channels` is
+    /// empty.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(super) others: bool,
+    /// Channels that a table does not have are left out.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(super) optional: bool,
 }
 
 /// Either `from`, or `step` (with `start`, else 0) for even sampling.
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MappedTime {
+    /// May be left out where a table says it, or has time stamps.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub(super) unit: String,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) from: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) from: Option<Titles>,
+    /// The column of a table that has the date of a time of day.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) date: Option<Titles>,
+    /// The column of a table that has the week of the satellites' clock; `from` has its seconds, or in `unit`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) week: Option<Titles>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) start: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) step: Option<f64>,
+    /// What is made of several rows of a table with one time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) repeated: Option<Repeated>,
 }
 
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+impl MappedTime {
+    fn is_silent(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// What is made of several rows with one time. Rows that are the same in all cells are kept once in any case.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Repeated {
+    /// The first is kept.
+    First,
+    /// The mean of each channel is kept.
+    Mean,
+    /// All are kept, evenly between this time and the next: the clock is coarser than the rate.
+    Spread,
+}
+
+#[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MappedChannel {
-    pub(super) from: String,
-    /// `-` for a pure number; it must be said.
+    pub(super) from: Titles,
+    /// `-` for a pure number; it must be said where the file does not say it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub(super) unit: String,
+    /// What recorded numbers are multiplied by before the unit is applied.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) scale: Option<f64>,
+    /// 1 or -1: another sense than the recorded one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) sign: Option<i8>,
+    /// Numbers and words that stand for no value on this channel.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) missing: Vec<NoValue>,
 }
 
-/// The mappings that come with Trimtab.
-const BUNDLED: [(&str, &str); 3] = [
-    ("fvsysid-attas", include_str!("fvsysid-attas.toml")),
-    ("fvsysid-hfb320", include_str!("fvsysid-hfb320.toml")),
-    ("sidpac", include_str!("sidpac.toml")),
-];
+impl MappedChannel {
+    /// What recorded numbers are multiplied by.
+    pub(super) fn factor(&self) -> f64 {
+        self.scale.unwrap_or(1.0) * f64::from(self.sign.unwrap_or(1))
+    }
+}
 
 impl Mapping {
     /// The names of the bundled mappings.
@@ -114,28 +189,64 @@ impl Mapping {
         &self.about
     }
 
-    /// Every source of it can be read, and time has one.
+    /// The bundled mapping that names titles all of which a table has.
+    pub(super) fn recognised(
+        has: impl Fn(&Titles) -> bool,
+    ) -> Option<(&'static str, &'static Self)> {
+        static ALL: LazyLock<Vec<(&str, Mapping)>> = LazyLock::new(|| {
+            let read = |(name, document): &(&'static str, &str)| {
+                Some((*name, Mapping::from_toml(document).ok()?))
+            };
+            BUNDLED.iter().filter_map(read).collect()
+        });
+        let is_of =
+            |mapping: &Self| !mapping.recognise.is_empty() && mapping.recognise.iter().all(&has);
+        let found = ALL.iter().find(|(_, mapping)| is_of(mapping));
+        found.map(|(name, mapping)| (*name, mapping))
+    }
+
+    /// What it says does not contradict itself.
     fn checked(self) -> Result<Self, Fault> {
-        if self.time.from.is_some() == self.time.step.is_some() {
-            let message = "mapping: time has either \"from\", or \"step\" and perhaps \"start\"";
-            return Err(Fault::new("/time", code::INVALID_MAPPING, message));
+        let refuse = |place: String, message: &str| {
+            Err(Fault::new(
+                place,
+                code::INVALID_MAPPING,
+                format!("mapping: {message}"),
+            ))
+        };
+        if self.time.from.is_some() && self.time.step.is_some() {
+            return refuse(
+                "/time".to_string(),
+                "time has either \"from\", or \"step\" and perhaps \"start\"",
+            );
         }
-        let of_time = self
-            .time
-            .from
-            .as_deref()
-            .map(|from| (pointer(["time", "from"]), from));
-        let of_channels = self.channels.iter();
-        let of_channels = of_channels
-            .map(|(name, channel)| (pointer(["channels", name, "from"]), &*channel.from));
-        for (place, from) in of_time.into_iter().chain(of_channels) {
-            from.parse::<Source>().map_err(|why| {
-                let from = short_message(from);
-                let message = format!(
-                    "mapping: '{from}' is not a source such as fdata(:,4), rec.alpha or (:,4): {why}"
+        let time = &self.time;
+        let of_time = [
+            ("from", &time.from),
+            ("date", &time.date),
+            ("week", &time.week),
+        ];
+        for (member, titles) in of_time {
+            if titles.as_ref().is_some_and(Titles::is_empty) {
+                return refuse(pointer(["time", member]), "this title is empty");
+            }
+        }
+        if !matches!(self.decimal.as_deref(), None | Some("." | ",")) {
+            return refuse("/decimal".to_string(), "decimal is \".\" or \",\"");
+        }
+        for (name, channel) in &self.channels {
+            if channel.from.is_empty() {
+                return refuse(pointer(["channels", name, "from"]), "this source is empty");
+            }
+            if !matches!(channel.sign, None | Some(1 | -1)) {
+                return refuse(pointer(["channels", name, "sign"]), "sign is 1 or -1");
+            }
+            if !channel.factor().is_normal() {
+                return refuse(
+                    pointer(["channels", name, "scale"]),
+                    "scale is a number other than 0",
                 );
-                Fault::new(place, code::INVALID_MAPPING, message)
-            })?;
+            }
         }
         Ok(self)
     }
@@ -160,11 +271,13 @@ mod tests {
             let mapping =
                 Mapping::named_or_json(name).unwrap_or_else(|fault| panic!("{name}: {fault}"));
             assert!(!mapping.about().is_empty(), "{name}");
+            let time = &mapping.time;
+            let has_stamps = time.unit.is_empty();
             assert!(
-                RecordedUnit::parse_time(&mapping.time.unit).is_ok(),
+                has_stamps || RecordedUnit::parse_time(&time.unit).is_ok(),
                 "{name}"
             );
-            let mut sources: Vec<&str> = vec![mapping.time.from.as_deref().unwrap()];
+            let mut sources: Vec<&Titles> = vec![time.from.as_ref().unwrap()];
             for (channel, mapped) in &mapping.channels {
                 assert!(
                     RecordedUnit::parse(&mapped.unit).is_ok(),
@@ -191,19 +304,24 @@ mod tests {
         };
         refused("sidpack", "", "Trimtab are fvsysid-attas");
         refused("{", "", "EOF");
-        refused(r#"{"time": {"unit": "s"}}"#, "", "channels");
+        refused(r#"{"tim": {"unit": "s"}}"#, "", "channels");
         refused(
-            r#"{"time": {"unit": "s", "from": "t"}, "channels": {"a": {"from": "a"}}}"#,
+            r#"{"time": {"unit": "s", "from": "t"}, "channels": {"a": {"unit": "-"}}}"#,
             "",
-            "unit",
+            "from",
         );
+        refused(r#"{"time": {"from": "t", "step": 1}}"#, "/time", "either");
+        refused(r#"{"decimal": ";"}"#, "/decimal", "decimal is");
+        let a = |members: &str| format!(r#"{{"channels": {{"a": {{"from": "a", {members}}}}}}}"#);
+        refused(&a(r#""sign": 2"#), "/channels/a/sign", "1 or -1");
+        refused(&a(r#""scale": 0"#), "/channels/a/scale", "other than 0");
         let document = |time: &str, a: &str| {
             format!(
                 r#"{{"time": {{"unit": "s", "from": "{time}"}}, "channels": {{"a": {{"unit": "-", "from": "{a}"}}}}}}"#
             )
         };
-        refused(&document("t(1)", "a"), "/time/from", "one column");
-        refused(&document("t", "a b"), "/channels/a/from", "letters");
+        refused(&document("", "a"), "/time/from", "empty");
+        refused(&document("t", " "), "/channels/a/from", "empty");
         assert!(Mapping::named_or_json(&document("t", "a(:,2)")).is_ok());
         let toml =
             "time = {step = 0.04, unit = \"s\"}\n[channels]\na = {from = \"a\", unit = \"deg\"}\n";

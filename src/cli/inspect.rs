@@ -1,0 +1,91 @@
+//! `trimtab inspect`: what is found in a recording, and the draft of a mapping for it.
+
+use std::path::PathBuf;
+
+use comfy_table::Table;
+use comfy_table::presets::UTF8_BORDERS_ONLY;
+
+use super::Failure;
+use super::mapping::MappingOption;
+use super::recording::{format_of, read_bytes, refused};
+use crate::flight::Finding;
+use crate::ingest::{self, Format, Inspection, Limits, Reading, summary};
+
+/// Prints what is found in a recording: of a table of text how it is written, its columns, what they are read as, and a draft
+/// of a mapping.
+#[derive(clap::Args, Debug)]
+pub(super) struct Inspect {
+    /// A recording: a table of text (.csv, .txt, .dat, ...), or what `fit` reads.
+    file: PathBuf,
+    #[command(flatten)]
+    mapping: MappingOption,
+}
+
+impl Inspect {
+    pub(super) fn run(&self) -> Result<(), Failure> {
+        let (bytes, mapping) = (read_bytes(&self.file)?, self.mapping.read()?);
+        let format = format_of(&self.file);
+        if !matches!(format, Format::Csv | Format::Ascii) {
+            // such a file says itself what it has, or its refusal does
+            let limits = Limits::default();
+            let read = ingest::read_recording(&bytes, format, None, mapping.as_ref(), &limits);
+            let reading = read.map_err(|error| refused(&self.file, &error))?;
+            print!("{}", recording(&reading));
+            return Ok(());
+        }
+        let inspection = ingest::inspect(&bytes, None, mapping.as_ref(), &Limits::default())
+            .map_err(|error| refused(&self.file, &error))?;
+        print!("{}", told(&inspection));
+        Ok(())
+    }
+}
+
+fn told(inspection: &Inspection) -> String {
+    let mut text = String::new();
+    for (what, found) in &inspection.written {
+        text += &format!("{what:<26}{found}\n");
+    }
+    text += &format!("\n{}\n", columns(inspection));
+    match &inspection.reading {
+        Ok(reading) => text += &recording(reading),
+        Err(error) => text += &format!("\nIt is not read as it is:\n{error}\n"),
+    }
+    text += "\nThe draft of a mapping (\"?\" where a choice is to be made):\n\n";
+    text += &inspection.draft.to_toml();
+    text
+}
+
+fn columns(inspection: &Inspection) -> Table {
+    let mut table = Table::new();
+    table.load_preset(UTF8_BORDERS_ONLY);
+    table.set_header(["column", "title", "unit", "first value"]);
+    for (at, column) in inspection.columns.iter().enumerate() {
+        let number = (at + 1).to_string();
+        table.add_row([&number, &column.title, &column.unit, &column.first]);
+    }
+    table
+}
+
+fn recording(reading: &Reading) -> String {
+    let summary = summary(&reading.maneuver);
+    let names: Vec<String> = summary
+        .channels
+        .iter()
+        .map(|channel| format!("{}[{}]", channel.name, channel.unit))
+        .collect();
+    let mut text = format!(
+        "\n{} samples, {} s, {:.4} Hz, {} part(s) without a gap\nchannels: {}\n",
+        summary.samples,
+        summary.duration,
+        summary.rate,
+        summary.segments,
+        names.join(", ")
+    );
+    let say = |finding: &Finding| {
+        let channel = finding.channel.as_ref();
+        let channel = channel.map_or(String::new(), |name| format!("{name}: "));
+        format!("note: {channel}{}; {}\n", finding.message, finding.remedy)
+    };
+    text.extend(reading.findings.iter().chain(&summary.findings).map(say));
+    text
+}

@@ -1,0 +1,54 @@
+//! The draft of a mapping for a table: what the file says, and `?` where a choice is to be made.
+
+use super::super::{
+    Limits,
+    mapping::{Draft, Mapping, Repeated},
+    name::Names,
+};
+use super::titles::Titles;
+use crate::flight::Unit;
+
+/// What a unit is that must be said.
+const ASKED_FOR: &str = "?";
+
+/// A mapping that takes every column that can be one, by its title, else by its number.
+pub(super) fn of(titles: &Titles, repeated: Option<Repeated>, limits: &Limits) -> Mapping {
+    let mut names = Names::new(limits);
+    let mut draft = Draft::default();
+    let time = (0..titles.width)
+        .find(|&at| titles.stamp(at).is_some() || titles.any_label(at).is_called_time_or_stamp());
+    for at in 0..titles.width {
+        let label = titles.any_label(at);
+        let is_once = (0..titles.width)
+            .filter(|&other| titles.title(other) == titles.title(at))
+            .count()
+            == 1;
+        let from = match titles.title(at) {
+            title if !title.is_empty() && is_once => title.to_string(),
+            _ => format!("(:,{})", at + 1),
+        };
+        let unit = match label.unit {
+            "" if titles.stamp(at).is_some() => "",
+            "" => ASKED_FOR,
+            unit if Unit::parse(unit).is_ok() => unit,
+            _ => ASKED_FOR,
+        };
+        if Some(at) == time {
+            draft.time(&from, unit, repeated);
+        } else if !titles.is_text(at)
+            && !titles.has_dates(at)
+            && (!titles.title(at).is_empty() || titles.names.is_none())
+        {
+            let name = names.take_like(if label.name.is_empty() {
+                "channel"
+            } else {
+                label.name
+            });
+            draft.channel(&name, &from, unit);
+        }
+    }
+    if time.is_none() {
+        draft.even_time();
+    }
+    draft.mapping()
+}

@@ -1,0 +1,190 @@
+//! Which of the lines above the rows has names, which units, and which descriptions.
+
+use super::super::{
+    cell::{is_missing, unquote},
+    label::Label,
+    lines::Line,
+    name::is_identifier,
+};
+use super::sample::Held;
+use crate::flight::Unit;
+
+/// The lines of a header by what they are.
+#[derive(Default)]
+pub(super) struct Head<'a> {
+    pub(super) names: Option<(Line<'a>, Vec<&'a str>)>,
+    pub(super) units: Option<(Line<'a>, Vec<&'a str>)>,
+    /// Those that are neither.
+    pub(super) others: Vec<Line<'a>>,
+}
+
+impl<'a> Head<'a> {
+    pub(super) fn of(above: Vec<(Line<'a>, Vec<&'a str>)>) -> Self {
+        let mut rows: Vec<(Line, Vec<&str>)> = above
+            .into_iter()
+            .map(|(line, cells)| (line, cells.into_iter().map(unquote).collect()))
+            .collect();
+        // of two that might be names as well, the upper one has the names
+        let last_best =
+            |best: (usize, f64), other: (usize, f64)| if other.1 >= best.1 { other } else { best };
+        let first_best =
+            |best: (usize, f64), other: (usize, f64)| if other.1 > best.1 { other } else { best };
+        let units = (rows.iter().enumerate())
+            .map(|(at, (_, cells))| (at, share_of_units(cells)))
+            .reduce(last_best)
+            .filter(|&(_, share)| rows.len() > 1 && share >= 0.6)
+            .map(|(at, _)| rows.remove(at));
+        let names = (rows.iter().enumerate())
+            .map(|(at, (_, cells))| (at, likeness_to_names(cells)))
+            .filter(|&(_, likeness)| likeness > 0.0)
+            .reduce(first_best)
+            .map(|(at, _)| rows.remove(at));
+        Self {
+            names,
+            units,
+            others: rows.into_iter().map(|(line, _)| line).collect(),
+        }
+    }
+}
+
+/// How many of the cells that are not empty are units.
+pub(super) fn share_of_units(cells: &[&str]) -> f64 {
+    let said: Vec<&str> = cells
+        .iter()
+        .map(|cell| unquote(cell))
+        .filter(|cell| !cell.is_empty())
+        .collect();
+    let is_unit = |cell: &&&str| {
+        let is_clock = ["utc", "hh:mm:ss", "time"].contains(&cell.to_ascii_lowercase().as_str());
+        is_clock || is_missing(cell) || Unit::parse(cell.trim_matches(['[', ']', '(', ')'])).is_ok()
+    };
+    let is_word = said.iter().any(|cell| Held::by(cell) == Held::Text);
+    if said.is_empty() || !is_word {
+        return 0.0;
+    }
+    said.iter().filter(|cell| is_unit(cell)).count() as f64 / said.len() as f64
+}
+
+/// Names that flight-test recordings usually have.
+const USUAL: [&str; 34] = [
+    "t",
+    "time",
+    "timestamp",
+    "alpha",
+    "beta",
+    "p",
+    "q",
+    "r",
+    "u",
+    "v",
+    "w",
+    "phi",
+    "theta",
+    "psi",
+    "de",
+    "da",
+    "dr",
+    "ax",
+    "ay",
+    "az",
+    "nx",
+    "ny",
+    "nz",
+    "V",
+    "h",
+    "mach",
+    "qbar",
+    "pitch",
+    "roll",
+    "yaw",
+    "lat",
+    "lon",
+    "alt",
+    "ias",
+];
+
+/// Names are words, all different, short, and some of them usual. Channel numbers are none.
+fn likeness_to_names(cells: &[&str]) -> f64 {
+    let said: Vec<&str> = cells
+        .iter()
+        .copied()
+        .filter(|cell| !cell.is_empty())
+        .collect();
+    if said.is_empty() || said.iter().all(|cell| Held::by(cell) != Held::Text) {
+        return 0.0;
+    }
+    let share = |of: &dyn Fn(&str) -> bool| {
+        said.iter().filter(|cell| of(cell)).count() as f64 / said.len() as f64
+    };
+    let name = |cell: &str| Label::split(cell).name.to_string();
+    let are_identifiers = share(&|cell| is_identifier(&name(cell)));
+    let are_usual = share(&|cell| {
+        USUAL
+            .iter()
+            .any(|usual| name(cell).eq_ignore_ascii_case(usual))
+    });
+    let mut distinct = said.clone();
+    distinct.sort_unstable();
+    distinct.dedup();
+    let are_distinct = distinct.len() as f64 / said.len() as f64;
+    let length = said.iter().map(|cell| cell.len()).sum::<usize>() as f64 / said.len() as f64;
+    let fullness = said.len() as f64 / cells.len() as f64;
+    0.01 + are_identifiers + are_usual + are_distinct + fullness - 0.005 * length.min(100.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The cells of names, and those of units.
+    fn roles(rows: &[&'static str]) -> (String, String) {
+        let above = rows.iter().enumerate().map(|(at, row)| {
+            let line = Line {
+                number: at + 1,
+                text: row,
+            };
+            (line, row.split(';').collect())
+        });
+        let head = Head::of(above.collect());
+        let text = |row: Option<(Line, Vec<&str>)>| {
+            row.map_or(String::new(), |(_, cells)| cells.join(";"))
+        };
+        (text(head.names), text(head.units))
+    }
+
+    #[test]
+    fn names_units_and_descriptions_stand_in_any_order() {
+        let names = "t;alpha;q";
+        let units = "s;deg;deg/s";
+        let words = "Time since start;Angle of attack;Pitch rate";
+        for rows in [
+            [names, units, words],
+            [names, words, units],
+            [units, names, words],
+            [units, words, names],
+            [words, names, units],
+            [words, units, names],
+        ] {
+            assert_eq!(
+                roles(&rows),
+                (names.to_string(), units.to_string()),
+                "{rows:?}"
+            );
+        }
+        assert_eq!(
+            roles(&["V;h;m", "kt;ft;kg"]),
+            ("V;h;m".to_string(), "kt;ft;kg".to_string())
+        );
+        assert_eq!(roles(&["V;h;m"]).0, "V;h;m");
+        assert_eq!(roles(&["1;2;3", "t;a;b"]).0, "t;a;b");
+        assert_eq!(
+            roles(&["t;a;b", ";;"]),
+            ("t;a;b".to_string(), String::new())
+        );
+        assert_eq!(roles(&["t;a;b", "float;float;float"]).0, "t;a;b");
+        assert_eq!(
+            roles(&["[s];[deg];1", names]),
+            (names.to_string(), "[s];[deg];1".to_string())
+        );
+    }
+}

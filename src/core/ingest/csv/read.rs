@@ -1,0 +1,124 @@
+//! A table that was found becomes a recording.
+
+use indexmap::IndexMap;
+
+use super::super::{
+    IngestError, Limits,
+    axis::code_of,
+    code, encoding,
+    fault::{CELLS_LISTED, of_file, pointer},
+    mapping::Mapping,
+    reading::Reading,
+    text::quoted,
+};
+use super::{
+    clock, draft,
+    plan::{Column, Plan},
+    repeated, report, rows,
+    samples::{Samples, Unreadable},
+    table::Table,
+};
+use crate::flight::{Fault, Maneuver};
+
+/// Reads a table of text, as its header says or as a mapping does.
+///
+/// Empty cells and the usual words (nan, na, null, inf in any case) are missing values.
+///
+/// # Errors
+/// What separates the cells, or a decimal mark, is not clear; else every fault of the header; else the first 20 faults
+/// of rows and cells.
+pub(in super::super) fn read(
+    bytes: &[u8],
+    charset: Option<&str>,
+    mapping: Option<&Mapping>,
+    limits: &Limits,
+) -> Result<Reading, IngestError> {
+    let decoded = encoding::text(bytes, charset)?;
+    let table = Table::find(&decoded.text, mapping, limits)?;
+    let mut reading = read_table(&table, limits).map_err(|error| {
+        let says_all = mapping.is_some_and(|mapping| !mapping.channels.is_empty());
+        if says_all {
+            return error;
+        }
+        let repeated = repeated::proposal(error.faults());
+        let draft = draft::of(&table.titles, repeated, limits);
+        error.with_draft(draft.to_json())
+    })?;
+    reading.findings.splice(0..0, decoded.findings);
+    Ok(reading)
+}
+
+fn read_table(table: &Table, limits: &Limits) -> Result<Reading, IngestError> {
+    let plan = Plan::of(&table.titles, &table.mapping, limits)?;
+    let capacity = table.check_size(limits)?;
+    let written = table.written(&plan);
+    let mut samples = rows::read(table.rows.clone(), &written, &plan, capacity);
+    let mut faults = std::mem::take(&mut samples.faults);
+    if faults.is_empty() {
+        let said = table.mapping.time.repeated;
+        faults.extend(
+            repeated::resolve(&mut samples, said, &written.time)
+                .err()
+                .into_iter()
+                .flatten(),
+        );
+    }
+    let mut left_out = plan.left_out.clone();
+    for (column, unreadable) in plan.columns.iter().zip(&samples.unreadable) {
+        let Some(unreadable) = unreadable else {
+            continue;
+        };
+        let fault = not_readable(column, unreadable);
+        let is_last_hope = samples.unreadable.iter().all(Option::is_some);
+        if column.is_needed || is_last_hope {
+            faults.push((unreadable.row, fault));
+        } else {
+            left_out.push((quoted(&column.name), fault));
+        }
+    }
+    faults.sort_by_key(|(row, _)| *row);
+    faults.truncate(CELLS_LISTED);
+    IngestError::refuse(faults.into_iter().map(|(_, fault)| fault).collect())?;
+    let mut findings = report::findings(table, &plan, &left_out);
+    findings.append(&mut samples.findings);
+    let maneuver = maneuver(plan.columns, samples)?;
+    Ok(Reading { maneuver, findings })
+}
+
+fn not_readable(column: &Column, unreadable: &Unreadable) -> Fault {
+    let Unreadable {
+        row,
+        line,
+        cell,
+        count,
+    } = unreadable;
+    let (cell, name) = (quoted(cell), &column.name);
+    let more = match count - 1 {
+        0 => String::new(),
+        more => format!("; and {more} more cell(s) of it"),
+    };
+    let message = format!(
+        "line {line}: {cell} in column '{name}' {}{more}; where it stands for no value, say so in a mapping: missing = [...]",
+        clock::NOT_A_NUMBER
+    );
+    Fault::new(
+        pointer(["rows", &row.to_string(), name]),
+        code::NOT_A_NUMBER,
+        message,
+    )
+}
+
+fn maneuver(columns: Vec<Column>, samples: Samples) -> Result<Maneuver, IngestError> {
+    let mut channels = IndexMap::with_capacity(columns.len());
+    let readable = columns
+        .into_iter()
+        .zip(samples.values)
+        .zip(samples.unreadable);
+    for ((column, values), unreadable) in readable {
+        if unreadable.is_none() {
+            channels.insert(column.name, column.unit.channel(values));
+        }
+    }
+    Maneuver::new(samples.time, channels)
+        .map_err(|error| of_file(code_of(&error), error.to_string()).into())
+}

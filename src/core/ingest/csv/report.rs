@@ -1,0 +1,91 @@
+//! What is told about a table: what was left out or read under another name.
+
+use crate::flight::{Fault, Finding, FindingCode};
+
+use super::super::{
+    note::note,
+    text::{quoted, short_message},
+};
+use super::{plan::Plan, table::Table};
+
+/// Names are listed up to this many.
+const LISTED: usize = 12;
+
+/// What is odd about the columns.
+pub(super) fn findings(table: &Table, plan: &Plan, left_out: &[(String, Fault)]) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    if let Some(name) = table.recognised {
+        let message = format!("the titles are those of the bundled mapping '{name}': it was used");
+        let remedy = "give a mapping of your own where it does not fit";
+        findings.push(note(FindingCode::Recognised, message, remedy));
+    }
+    if !left_out.is_empty() {
+        let why = |(title, fault): &(String, Fault)| {
+            let why = fault
+                .message
+                .split_once(": ")
+                .map_or(fault.message.as_str(), |(_, why)| why);
+            let why = why.split(';').next().unwrap_or(why);
+            format!("{title} ({why})")
+        };
+        let message = format!(
+            "{} column(s) are left out: {}",
+            left_out.len(),
+            listed(left_out.iter().map(why))
+        );
+        let remedy = "write a mapping to have them; `trimtab inspect` prints a draft of it";
+        let mut finding = note(FindingCode::LeftOut, message, remedy);
+        finding.count = left_out.len();
+        findings.push(finding);
+    }
+    if !plan.renamed.is_empty() {
+        let pairs = plan
+            .renamed
+            .iter()
+            .map(|(title, name)| format!("{} is {name}", quoted(title)));
+        let message = format!(
+            "{} title(s) are no names for equations: {}",
+            plan.renamed.len(),
+            listed(pairs)
+        );
+        findings.push(note(
+            FindingCode::Renamed,
+            message,
+            "other names can be given in a mapping",
+        ));
+    }
+    if !plan.without_unit.is_empty() {
+        let message = format!(
+            "no unit is said of {}: they are read as pure numbers, angles as radians",
+            listed(plan.without_unit.iter().cloned())
+        );
+        let remedy = "say the unit in the header, as alpha[deg], or in a mapping; [-] is that of a pure number";
+        findings.push(note(FindingCode::NoUnit, message, remedy));
+    }
+    if !plan.absent.is_empty() {
+        let message = format!(
+            "the file does not have {}, which the mapping names",
+            listed(plan.absent.iter().cloned())
+        );
+        findings.push(note(
+            FindingCode::Absent,
+            message,
+            "nothing needs to be done where the model does not need them",
+        ));
+    }
+    findings
+}
+
+fn listed(names: impl ExactSizeIterator<Item = String>) -> String {
+    let more = names.len().saturating_sub(LISTED);
+    let names: Vec<String> = names
+        .take(LISTED)
+        .map(|name| short_message(&name))
+        .collect();
+    let names = names.join(", ");
+    if more > 0 {
+        format!("{names} and {more} more")
+    } else {
+        names
+    }
+}

@@ -1,0 +1,285 @@
+//! Which columns of a table are time, and how it is written in them.
+
+use super::super::{
+    code,
+    fault::{of_file, pointer},
+    mapping::{MappedTime, Titles as Wanted},
+    stamp::Stamp,
+    units::RecordedUnit,
+};
+use super::titles::Titles;
+use crate::flight::{Dimension, Fault, Unit};
+
+/// How the samples of a table get their times.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) enum Time {
+    /// Numbers in a unit.
+    Numbers {
+        at: usize,
+        unit: Unit,
+    },
+    /// Numbers that count from a day long ago, such as 1970: of these the differences are kept, to the last digit.
+    Epoch {
+        at: usize,
+        unit: Unit,
+    },
+    Stamps {
+        at: usize,
+    },
+    /// Times of day, and the dates that they are of.
+    Dated {
+        date: usize,
+        at: usize,
+    },
+    /// Weeks of the satellites' clock, and the time since each began.
+    Week {
+        week: usize,
+        at: usize,
+        unit: Unit,
+    },
+    /// There is no column of it; seconds.
+    Even {
+        start: f64,
+        step: f64,
+    },
+}
+
+impl Time {
+    pub(super) fn columns(self) -> impl Iterator<Item = usize> {
+        let (one, other) = match self {
+            Self::Numbers { at, .. } | Self::Epoch { at, .. } | Self::Stamps { at } => {
+                (Some(at), None)
+            }
+            Self::Dated { date, at } => (Some(date), Some(at)),
+            Self::Week { week, at, .. } => (Some(week), Some(at)),
+            Self::Even { .. } => (None, None),
+        };
+        one.into_iter().chain(other)
+    }
+
+    /// The column by which a sample has a time.
+    pub(super) fn column(self) -> Option<usize> {
+        match self {
+            Self::Numbers { at, .. }
+            | Self::Epoch { at, .. }
+            | Self::Stamps { at }
+            | Self::Dated { at, .. }
+            | Self::Week { at, .. } => Some(at),
+            Self::Even { .. } => None,
+        }
+    }
+}
+
+/// What a mapping says of time, and else the titles and the first rows.
+pub(super) fn of(titles: &Titles, said: &MappedTime, faults: &mut Vec<Fault>) -> Option<Time> {
+    let mut refuse = |place: &str, (code, message): (&'static str, String)| {
+        faults.push(Fault::new(place, code, message));
+    };
+    let unit = |refuse: &mut dyn FnMut(&str, (&'static str, String))| {
+        RecordedUnit::parse_time(&said.unit)
+            .map_err(|why| refuse("/time/unit", why))
+            .ok()
+    };
+    if let Some(step) = said.step {
+        let unit = unit(&mut refuse)?.unit();
+        let even = Time::Even {
+            start: unit.to_si(said.start.unwrap_or(0.0)),
+            step: unit.to_si(step),
+        };
+        return Some(even);
+    }
+    let mut column = |member: &str, wanted: &Option<Wanted>| match wanted {
+        None => Some(None),
+        Some(wanted) => match titles.find(wanted) {
+            Ok(at) => Some(Some(at)),
+            Err(why) => {
+                refuse(&pointer(["time", member]), why);
+                None
+            }
+        },
+    };
+    let from = column("from", &said.from);
+    let date = column("date", &said.date);
+    let week = column("week", &said.week);
+    let (from, date, week) = (from?, date?, week?);
+    let Some(at) = from.or_else(|| found(titles)) else {
+        faults.push(no_time(titles));
+        return None;
+    };
+    let place = if from.is_some() {
+        "/time/unit".to_string()
+    } else {
+        place_of(titles, at)
+    };
+    let is_mapped = from.is_some();
+    match written(
+        titles,
+        at,
+        said,
+        date.or_else(|| date_of(titles, at, is_mapped)),
+        week.or_else(|| week_of(titles, at, is_mapped)),
+    ) {
+        Ok(time) => Some(time),
+        Err((code, message)) => {
+            let message = if is_mapped {
+                message
+            } else {
+                format!("column {}: {message}", at + 1)
+            };
+            faults.push(Fault::new(place, code, message));
+            None
+        }
+    }
+}
+
+fn place_of(titles: &Titles, at: usize) -> String {
+    let name = titles.any_label(at).name;
+    let is_clear = super::super::name::is_identifier(name);
+    let number = (at + 1).to_string();
+    pointer(["columns", if is_clear { name } else { &number }])
+}
+
+fn no_time(titles: &Titles) -> Fault {
+    if titles.names.is_none() {
+        let message = format!(
+            "rows of {} numbers have no names and units; say with a mapping which column is what, as (:,1)",
+            titles.width
+        );
+        return of_file(code::MAPPING_NEEDED, message);
+    }
+    of_file(
+        code::NO_TIME_COLUMN,
+        "no column is named t or time (or timestamp), and none has time stamps; say with a mapping which one it is, or time = {step = 0.02, unit = \"s\"} where samples are evenly spaced",
+    )
+}
+
+/// The first column called t or time; or by another word for it; or that has time stamps; or the first of all where it has a
+/// unit of time. `T[K]` before `t[s]` is a temperature: one with a unit of time, or with time stamps, goes first.
+fn found(titles: &Titles) -> Option<usize> {
+    titles.names.as_ref()?;
+    let of_all = |condition: &dyn Fn(usize) -> bool| (0..titles.width).find(|&at| condition(at));
+    let is_time = |at: usize| titles.any_label(at).is_called_time();
+    let is_clock = |at: usize| titles.any_label(at).is_called_time_or_stamp();
+    let has_unit = |at: usize| titles.any_label(at).has_unit_of_time();
+    let is_stamp = |at: usize| titles.stamp(at).is_some();
+    let is_readable = |at: usize| !titles.is_text(at) && !titles.has_dates(at);
+    of_all(&|at| is_time(at) && has_unit(at))
+        .or_else(|| of_all(&|at| is_time(at) && is_stamp(at)))
+        .or_else(|| of_all(&|at| is_clock(at) && (has_unit(at) || is_stamp(at))))
+        .or_else(|| of_all(&|at| is_time(at) && is_readable(at)))
+        .or_else(|| of_all(&|at| is_clock(at) && is_readable(at)))
+        .or_else(|| of_all(&is_stamp))
+        .or_else(|| {
+            of_all(&|at| {
+                has_unit(at)
+                    && titles.title(at).to_lowercase().contains("time")
+                    && increases(titles, at)
+            })
+        })
+        .or_else(|| of_all(&is_time))
+        .or_else(|| Some(0).filter(|&at| has_unit(at) && increases(titles, at)))
+}
+
+fn increases(titles: &Titles, at: usize) -> bool {
+    let numbers = titles
+        .first
+        .iter()
+        .filter_map(|row| row.get(at)?.trim().parse::<f64>().ok());
+    let numbers: Vec<f64> = numbers.collect();
+    numbers.len() > 1 && numbers.windows(2).all(|pair| pair[0] < pair[1])
+}
+
+/// The column of dates that goes with a column of times of day.
+fn date_of(titles: &Titles, at: usize, is_mapped: bool) -> Option<usize> {
+    let is_time_of_day = titles.stamp(at).is_some_and(Stamp::is_time_of_day);
+    let is_date = |&other: &usize| {
+        other != at && titles.any_label(other).is_called_date() && titles.has_dates(other)
+    };
+    (0..titles.width)
+        .find(is_date)
+        .filter(|_| is_time_of_day && !is_mapped)
+}
+
+/// The column of weeks that goes with one of the satellites' time.
+fn week_of(titles: &Titles, at: usize, is_mapped: bool) -> Option<usize> {
+    let name = titles.any_label(at).name.to_ascii_lowercase();
+    let is_of_week = ["tow", "gps", "week"]
+        .iter()
+        .any(|word| name.contains(word));
+    let is_number = |other: usize| {
+        titles
+            .first_said(other)
+            .is_some_and(|cell| cell.trim().parse::<u32>().is_ok())
+    };
+    let is_week = |&other: &usize| {
+        other != at && titles.any_label(other).is_called_week() && is_number(other)
+    };
+    (0..titles.width)
+        .find(is_week)
+        .filter(|_| is_of_week && !is_mapped && titles.stamp(at).is_none())
+}
+
+/// Two time units for the satellites' week: its length is said in seconds.
+const YEAR: f64 = 365.25 * 86_400.0;
+
+fn written(
+    titles: &Titles,
+    at: usize,
+    said: &MappedTime,
+    date: Option<usize>,
+    week: Option<usize>,
+) -> Result<Time, (&'static str, String)> {
+    let label = titles.label(at)?;
+    if titles.stamp(at).is_some() {
+        let unit = if said.unit.is_empty() {
+            label.unit
+        } else {
+            &said.unit
+        };
+        RecordedUnit::of_stamps(unit)?;
+        return Ok(match date {
+            Some(date) => Time::Dated { date, at },
+            None => Time::Stamps { at },
+        });
+    }
+    let first = titles.first_said(at).unwrap_or_default().trim();
+    if titles.is_text(at) {
+        let cell = super::super::text::quoted(first);
+        let message = format!(
+            "{cell} is no time stamp that is known; write 2026-11-21T10:15:00.123, 10:15:00.123 or 325:10:15:00.123, or seconds"
+        );
+        return Err((code::TIME_UNIT, message));
+    }
+    let number = first
+        .trim_matches('"')
+        .replace(',', ".")
+        .parse::<f64>()
+        .unwrap_or(0.0);
+    let unit = if !said.unit.is_empty() {
+        RecordedUnit::parse_time(&said.unit)?.unit()
+    } else if !label.unit.is_empty() {
+        RecordedUnit::parse_time(label.unit)?.unit()
+    } else if let Some(unit) = unit_of_epoch(number) {
+        unit
+    } else {
+        RecordedUnit::parse_time("")?.unit()
+    };
+    Ok(match week {
+        Some(week) => Time::Week { week, at, unit },
+        None if unit.to_si(number).abs() > 3.0 * YEAR => Time::Epoch { at, unit },
+        None => Time::Numbers { at, unit },
+    })
+}
+
+/// The unit in which a number counts from 1970 to our time: only one does.
+fn unit_of_epoch(number: f64) -> Option<Unit> {
+    let is_of_our_time = |scale: f64| (30.0 * YEAR..80.0 * YEAR).contains(&(number * scale));
+    let scale = [1.0, 1e-3, 1e-6, 1e-9]
+        .into_iter()
+        .find(|&scale| is_of_our_time(scale))?;
+    Some(Unit {
+        scale,
+        offset: 0.0,
+        dimension: Dimension::SECOND,
+    })
+}

@@ -1,0 +1,20 @@
+//! The mappings that come with Trimtab.
+
+/// By name.
+pub(super) const BUNDLED: [(&str, &str); 12] = [
+    ("fvsysid-attas", include_str!("fvsysid-attas.toml")),
+    ("fvsysid-hfb320", include_str!("fvsysid-hfb320.toml")),
+    ("sidpac", include_str!("sidpac.toml")),
+    (
+        "betaflight-blackbox",
+        include_str!("betaflight-blackbox.toml"),
+    ),
+    ("dynon-skyview", include_str!("dynon-skyview.toml")),
+    ("garmin-g1000", include_str!("garmin-g1000.toml")),
+    ("garmin-g3x", include_str!("garmin-g3x.toml")),
+    ("jsbsim", include_str!("jsbsim.toml")),
+    ("labview", include_str!("labview.toml")),
+    ("px4-ulog2csv", include_str!("px4-ulog2csv.toml")),
+    ("rostopic", include_str!("rostopic.toml")),
+    ("x-plane", include_str!("x-plane.toml")),
+];

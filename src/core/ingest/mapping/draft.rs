@@ -1,0 +1,61 @@
+//! Mappings that are proposed for a file.
+
+use super::{MappedChannel, MappedTime, Mapping, Repeated, Titles};
+
+/// A mapping in the making.
+#[derive(Default)]
+pub(in super::super) struct Draft(Mapping);
+
+impl Draft {
+    pub(in super::super) fn time(&mut self, from: &str, unit: &str, repeated: Option<Repeated>) {
+        self.0.time = MappedTime {
+            unit: unit.to_string(),
+            from: Some(Titles::One(from.to_string())),
+            repeated,
+            ..MappedTime::default()
+        };
+    }
+
+    /// Time that no column has: its step is to be said.
+    pub(in super::super) fn even_time(&mut self) {
+        self.0.time = MappedTime {
+            unit: "s".to_string(),
+            step: Some(1.0),
+            ..MappedTime::default()
+        };
+    }
+
+    pub(in super::super) fn channel(&mut self, name: &str, from: &str, unit: &str) {
+        let channel = MappedChannel {
+            from: Titles::One(from.to_string()),
+            unit: unit.to_string(),
+            ..MappedChannel::default()
+        };
+        self.0.channels.insert(name.to_string(), channel);
+    }
+
+    pub(in super::super) fn mapping(self) -> Mapping {
+        self.0
+    }
+}
+
+/// A part of a document on one line.
+fn inline(part: &impl serde::Serialize) -> String {
+    toml::Value::try_from(part).map_or(String::new(), |value| value.to_string())
+}
+
+impl Mapping {
+    /// The document as JSON.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string(self).unwrap_or_default()
+    }
+
+    /// What the document says of time and channels as TOML, a channel a line.
+    pub fn to_toml(&self) -> String {
+        let mut text = format!("time = {}\n\n[channels]\n", inline(&self.time));
+        for (name, channel) in &self.channels {
+            text += &format!("{name} = {}\n", inline(channel));
+        }
+        text
+    }
+}

@@ -1,0 +1,149 @@
+//! Numbers as most files have them, read fast: the same result as of the standard library's reader.
+
+/// Powers of ten that a double holds exactly.
+const POWERS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
+    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
+];
+
+/// The number at the beginning of a line's rest, and its length with the blanks around it. It ends at the delimiter or the
+/// line's end. `None` where it takes more than whole numbers below 2^53 and exact powers of ten: the result is the one of
+/// [`number`], found faster.
+#[inline]
+pub(super) fn quick_number(bytes: &[u8], delimiter: u8, point: u8) -> Option<(f64, usize)> {
+    let mut at = 0;
+    while bytes.get(at) == Some(&b' ') {
+        at += 1;
+    }
+    let is_negative = match bytes.get(at) {
+        Some(b'-') => {
+            at += 1;
+            true
+        }
+        Some(b'+') => {
+            at += 1;
+            false
+        }
+        _ => false,
+    };
+    let first = at;
+    let mut mantissa: u64 = 0;
+    while let Some(digit) = bytes
+        .get(at)
+        .map(|byte| byte.wrapping_sub(b'0'))
+        .filter(|&digit| digit < 10)
+    {
+        mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
+        at += 1;
+    }
+    let mut digits = at - first;
+    let mut fraction = 0;
+    if bytes.get(at) == Some(&point) {
+        at += 1;
+        let behind_point = at;
+        while let Some(digit) = bytes
+            .get(at)
+            .map(|byte| byte.wrapping_sub(b'0'))
+            .filter(|&digit| digit < 10)
+        {
+            mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
+            at += 1;
+        }
+        fraction = at - behind_point;
+        digits += fraction;
+    }
+    if digits == 0 || digits > 18 || mantissa > (1 << 53) {
+        return None;
+    }
+    let mut exponent = -(fraction as i64);
+    if matches!(bytes.get(at), Some(b'e' | b'E')) {
+        at += 1;
+        let is_below_one = match bytes.get(at) {
+            Some(b'-') => {
+                at += 1;
+                true
+            }
+            Some(b'+') => {
+                at += 1;
+                false
+            }
+            _ => false,
+        };
+        let begin = at;
+        let mut power: i64 = 0;
+        while let Some(digit) = bytes
+            .get(at)
+            .map(|byte| byte.wrapping_sub(b'0'))
+            .filter(|&digit| digit < 10)
+        {
+            power = power.wrapping_mul(10).wrapping_add(i64::from(digit));
+            at += 1;
+        }
+        if at == begin || at - begin > 3 {
+            return None;
+        }
+        exponent += if is_below_one { -power } else { power };
+    }
+    while bytes.get(at) == Some(&b' ') {
+        at += 1;
+    }
+    if bytes.get(at).is_some_and(|&byte| byte != delimiter) {
+        return None;
+    }
+    let power = *POWERS.get(exponent.unsigned_abs() as usize)?;
+    let value = if exponent < 0 {
+        mantissa as f64 / power
+    } else {
+        mantissa as f64 * power
+    };
+    Some((if is_negative { -value } else { value }, at))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_quick_way_leads_to_the_same_number() {
+        let quick = |text: &str| quick_number(text.as_bytes(), b',', b'.');
+        for text in [
+            "0",
+            "-1.0000",
+            "3.0014",
+            "1e5",
+            "1.5e-3",
+            "9007199254740991",
+            "0.1",
+            "123456.789012",
+            ".5",
+            "5.",
+            "-0",
+            "1E+22",
+        ] {
+            let (value, length) = quick(text).unwrap_or_else(|| panic!("{text}"));
+            assert_eq!(
+                value.to_bits(),
+                text.parse::<f64>().unwrap().to_bits(),
+                "{text}"
+            );
+            assert_eq!(length, text.len());
+        }
+        assert_eq!(quick(" 1.5 ,2"), Some((1.5, 5)));
+        for text in [
+            "",
+            "-",
+            ".",
+            "x",
+            "1x",
+            "1e",
+            "1e9999",
+            "nan",
+            "1.2.3",
+            "\"1\"",
+            "12345678901234567890",
+            "1 2",
+        ] {
+            assert_eq!(quick(text), None, "{text}");
+        }
+    }
+}
