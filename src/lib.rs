@@ -5,6 +5,66 @@
 //! they are asked for ([`http`], [`cli`]), how their results look ([`dashboard`]). Arrows go one way: `store → job`,
 //! `work → store`, `webhook → store`, `http → store, job, ingest, dashboard, webhook`. `http` and `work` meet only at
 //! the store.
+//!
+//! # Recipes
+//!
+//! **Build and run.** `cargo build` (Rust as `rust-toolchain.toml` says, and a C compiler for SQLite);
+//! `cargo run -- serve` serves <http://127.0.0.1:8300>, `cargo run -- demo` shows what it can do.
+//!
+//! **Test.** `tests/run` is everything, `tests/quick <room>` what is wanted while one works on a room. One kind:
+//! `cargo test -p trimtab-core --lib` (beside the code of the core), `--test numbers` and `--test ingest` (the core),
+//! `cargo test --lib`, `--test store` and `--test service` (the service). One subject: its module behind the kind,
+//! `cargo test -p trimtab-core --test numbers effects::`. Tests of PostgreSQL and of pages run behind `tests/postgres` and
+//! `tests/browser`, as in `tests/browser cargo test --test service pages::`.
+//!
+//! **Add an effect.** An effect is an edit of a model document with parameters more, without effect at a value of them.
+//! 1. `src/core/model/edit/mod.rs`: a variant of `EditKind` whose doc comment is its formula; in `ALL`, `name` and
+//!    `Edit::apply`. What `target` and `term` mean for it goes into the doc comments of `Edit`.
+//! 2. Beside it, in the file of its subject (`sensors.rs`, `inputs.rs`, `dynamics.rs`, `wind.rs`, ...): a function over the
+//!    `Sheet`, which looks the target up, chooses a free name, substitutes, and adds the parameters, each
+//!    with what it is for (`AddedRole`), unit, start and physical range.
+//! 3. `src/core/diagnose/catalogue.rs`: for which targets it is a candidate; `sentence.rs` beside it: its words.
+//! 4. `tests/numbers/effects.rs`: a row of `cases` (without effect the same outputs, with effect others), and in
+//!    `effects_go_the_right_way` that they change the way they should.
+//!    `cargo test -p trimtab-core --test numbers effects::`.
+//! 5. `tests/bench/confusion/strength.rs`: a first guess of its size. The list of kinds in `README.md`, and the API document
+//!    (last line of "Add an endpoint").
+//!
+//! **Add a model to the catalog.**
+//! 1. `src/core/model/catalog/<name>.toml`: the document; `source` names paper and equation (eq.).
+//! 2. `src/core/model/catalog/mod.rs`: a row of `DOCUMENTS`.
+//! 3. `tests/numbers/catalog/<name>.toml`: a scenario with the truth in it; `tests/numbers/catalog.rs` simulates it and
+//!    must find that truth. `cargo test -p trimtab-core --test numbers catalog::`, and `--lib catalog::`.
+//! 4. The table of models in `README.md`.
+//!
+//! **Add a reader of a file format.**
+//! 1. `src/core/ingest/<format>.rs`: `read(bytes, limits)`, for a format that says names and units itself, after
+//!    `json.rs`; `read(bytes, mapping, limits)`, for one that does not, after `ascii.rs`. Count before you build (`Limits`),
+//!    then make a `Recording` (`recording.rs`: columns by name with units) and call its `into_maneuver`, or hand a table of
+//!    numbers, an `Archive`, to `Mapping::apply`. A fault names its place and the remedy; its code is a row of `code` in
+//!    `fault.rs`.
+//! 2. `src/core/ingest/mod.rs`: a variant of `Format`, its media type and its file ending, its line in `read_mapped`. HTTP
+//!    and command line go by these; where it needs a mapping, `src/cli/mapping.rs` must know that, too.
+//! 3. Tests beside the reader; a good file in `no_damage_to_a_file_panics` in `mod.rs`; real files in
+//!    `tests/ingest/formats.rs`; a target in `tests/fuzz/targets`, with its name in `tests/fuzz/Cargo.toml` and
+//!    `tests/fuzz/run`.
+//! 4. `src/http/handlers/maneuvers.rs` lists the media types of an upload for the API document; `README.md` the formats.
+//!
+//! **Add an endpoint.**
+//! 1. `src/http/handlers/<resource>.rs`: the handler under `#[utoipa::path]`, and `router()`; `coefficients.rs` is a small
+//!    one. It asks the store or the core, on `service.compute` where that takes long; what is refused is a `Problem` with
+//!    a `Code`.
+//! 2. `src/http/handlers/mod.rs`: its router. `src/http/caller.rs`: the scope that a key needs for it, if not the usual.
+//! 3. A test against the real server in `tests/service`.
+//! 4. `cargo run -- openapi > openapi/trimtab.json`: a test compares.
+//!
+//! **Add a page.**
+//! 1. `src/dashboard/<name>_page.rs`: a view, a struct of all that is shown, and a function from it to the page
+//!    (`layout::page`); both in `pub use` of `src/dashboard/mod.rs`. A script of its own is a file of `assets` and a line in
+//!    `assets.rs`. If it can be reached from every page: a line of `WAYS` in `layout.rs`.
+//! 2. `src/http/pages/<name>.rs`: the route, and the view made of what the store has; merged in `mod.rs` beside it.
+//! 3. `tests/service/pages`: what it shows; its address in the list of `browser.rs`, which looks at every page for
+//!    accessibility and overflow.
 
 pub use trimtab_core::{diagnose, estimate, flight, ingest, job, model, simulate};
 

@@ -17,6 +17,7 @@ use super::server::ServerOption;
 use crate::diagnose::Diagnosis;
 use crate::estimate::{Estimate, TimeHistory};
 use crate::job::{Event, JobSpec};
+use crate::webhook::http_client;
 
 pub(super) struct Client {
     http: reqwest::Client,
@@ -45,7 +46,7 @@ impl Client {
         let server: Url = server
             .parse()
             .map_err(|error| Failure::new(format!("'{server}' is not a URL: {error}")))?;
-        let builder = reqwest::Client::builder();
+        let builder = http_client();
         // without TLS no certificates are needed, and a small image may have none
         let builder = if server.scheme() == "http" {
             builder.tls_certs_only([])

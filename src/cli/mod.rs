@@ -1,5 +1,7 @@
 //! The program's commands. Each is one clap struct, which is all the configuration it has: a setting
 //! has a flag, an environment variable, a default and a line of help.
+//!
+//! Invariant: results go to the standard output and all else to the standard error; a failure is one message and exit code 1.
 
 mod client;
 mod demo;

@@ -6,7 +6,8 @@ use std::time::Duration;
 use clap::{Args, ValueEnum};
 use tokio::signal::unix::{SignalKind, signal};
 use tokio_util::sync::CancellationToken;
-use tracing_subscriber::EnvFilter;
+use tracing_subscriber::filter::Targets;
+use tracing_subscriber::prelude::*;
 
 use super::Failure;
 use crate::store::{self, Store};
@@ -115,15 +116,17 @@ impl Process {
     }
 
     fn start_log(&self) -> Result<(), Failure> {
-        let filter = EnvFilter::try_new(&self.log)?;
-        let log = tracing_subscriber::fmt()
-            .with_env_filter(filter)
+        let filter: Targets = self.log.parse()?;
+        let log = tracing_subscriber::fmt::layer()
             .with_ansi(std::io::stderr().is_terminal())
             .with_writer(std::io::stderr);
-        match self.log_format {
-            LogFormat::Text => log.init(),
-            LogFormat::Json => log.json().init(),
-        }
+        let log = match self.log_format {
+            LogFormat::Text => log.boxed(),
+            LogFormat::Json => log.json().boxed(),
+        };
+        tracing_subscriber::registry()
+            .with(log.with_filter(filter))
+            .init();
         // panics are caught where they happen; this puts them into the log with what led to them
         std::panic::set_hook(Box::new(|panic| tracing::error!("{panic}")));
         Ok(())

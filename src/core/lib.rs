@@ -17,6 +17,60 @@
 //! one way: `job → diagnose → estimate → simulate → model → flight`, `ingest → flight`. Everything here is synchronous
 //! and deterministic: no server, no database, no clock, no environment, no hidden randomness. The service around it
 //! is the crate `trimtab`.
+//!
+//! # A fit
+//!
+//! ```
+//! use trimtab_core::ingest::{Format, Limits, read};
+//! use trimtab_core::{job, model::catalog};
+//!
+//! fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! #   std::env::set_current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))?;
+//!     let recording = std::fs::read("data/elevator.csv")?;
+//!     let maneuver = read(&recording, Format::Csv, &Limits::default())?;
+//!     let model = catalog::find("short-period").ok_or("no model of this name")?;
+//!
+//!     let estimate = job::fit(&model, [maneuver])?.estimate;
+//!     for row in &estimate.parameters {
+//!         let bound = row.standard_error.unwrap_or_default();
+//!         println!("{:8} {:9.4} ± {bound:.4} {}", row.name, row.estimate, row.unit);
+//!     }
+//!     // data/elevator.toml says what was flown: Ma = -3.4 1/s²
+//!     let ma = estimate.parameters.iter().find(|row| row.name == "Ma").ok_or("no Ma")?;
+//!     assert!((ma.estimate + 3.4).abs() < 3.0 * ma.standard_error.ok_or("no bound")?);
+//!     Ok(())
+//! }
+//! ```
+//!
+//! # A diagnosis
+//!
+//! ```
+//! use trimtab_core::diagnose::Verdict;
+//! use trimtab_core::estimate::Role;
+//! use trimtab_core::ingest::{Format, Limits, read};
+//! use trimtab_core::{job, model::catalog};
+//!
+//! fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! #   std::env::set_current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))?;
+//!     // the elevator's linkage has 0.6 deg of play, which no model in the catalog knows of
+//!     let flights = [("fit", Role::Estimation), ("check", Role::Validation), ("final", Role::Final)];
+//!     let mut flown = Vec::new();
+//!     for (flight, role) in flights {
+//!         let recording = std::fs::read(format!("data/effects/elevator-backlash-{flight}.csv"))?;
+//!         flown.push((read(&recording, Format::Csv, &Limits::default())?, role));
+//!     }
+//!     let model = catalog::find("short-period").ok_or("no model of this name")?;
+//!
+//!     let found = job::diagnose(&model, flown)?.diagnosis.ok_or("it was stopped")?;
+//!     println!("{}: {}", found.verdict.name(), found.sentence);
+//!     assert_eq!(found.verdict, Verdict::Named);
+//!     assert_eq!(found.effects[0].effect.name(), "backlash of de");
+//!     Ok(())
+//! }
+//! ```
+//!
+//! What a job can ask besides (options, edits, priors, other channels) is a [`job::JobSpec`], which [`job::prepare()`] makes
+//! a plan of and [`job::run()`] runs, telling of each iteration.
 
 #![warn(missing_docs)]
 

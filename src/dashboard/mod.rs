@@ -2,6 +2,8 @@
 //!
 //! Rendering only: what is shown comes in as values, so that a page can be made from a running service, a
 //! file or a test alike. Scripts add what moves: live iterations, plots to zoom into, forms.
+//!
+//! Invariant: a page is a function of its view; nothing here asks a store, a clock or a network.
 
 mod assets;
 mod chart;

@@ -1,10 +1,12 @@
 //! The API: JSON and CSV over HTTP.
 //!
-//! A request comes in by [`routes`], through what stands around every handler ([`middleware`]), to the handler of its
-//! resource ([`handlers`]) or page ([`pages`]). A handler reads it ([`request`]), asks the store or the core, and answers
-//! ([`answer`]). It never waits for a job and never runs long itself: reading recordings and checking models happens on
-//! blocking threads, as many at a time as there are cores ([`compute`]). What goes wrong is a [`problem::Problem`] with a
+//! A request comes in by `routes`, through what stands around every handler (`middleware`), to the handler of its
+//! resource (`handlers`) or page (`pages`). A handler reads it (`request`), asks the store or the core, and answers
+//! (`answer`). It never waits for a job and never runs long itself: reading recordings and checking models happens on
+//! blocking threads, as many at a time as there are cores (`compute`). What goes wrong is a [`problem::Problem`] with a
 //! [`code::Code`].
+//!
+//! Invariant: every failure is a problem document, and every route but a few open ones needs a scope once there are keys.
 
 mod answer;
 mod caller;

@@ -81,7 +81,8 @@ impl Problem {
     }
 
     /// A problem that consists of faults, of which there is at least one.
-    pub fn of_faults(code: Code, mut errors: Vec<Fault>) -> Self {
+    pub fn of_faults(code: Code, errors: impl Into<Vec<Fault>>) -> Self {
+        let mut errors = errors.into();
         for fault in &mut errors {
             shorten(&mut fault.message);
             shorten(&mut fault.pointer);

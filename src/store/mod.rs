@@ -9,6 +9,8 @@
 //!   the number of an earlier attempt is refused ([`StoreError::LeaseLost`]).
 //! * Maneuvers, models, specs, events and results are never changed once written.
 //! * What users ask for is asked of a [`Project`], and no project sees anything of another.
+//!
+//! Invariant: SQL is here and nowhere else; both engines give the same answers.
 
 mod address;
 mod answers;

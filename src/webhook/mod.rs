@@ -2,8 +2,11 @@
 //!
 //! By the Standard Webhooks specification, version 1: a thin JSON message, signed, with an id by which the receiver knows a
 //! repetition, tried again over a day and a half. What is owed is in the store; any process may pay it.
+//!
+//! Invariant: nothing is sent to an address inside the network unless that was allowed.
 
 mod address;
+mod client;
 mod send;
 mod sign;
 
@@ -15,6 +18,7 @@ use tokio_util::sync::CancellationToken;
 use crate::store::Store;
 
 pub use address::{Allowed, Refused};
+pub use client::http_client;
 pub use sign::{new_secret, signature};
 
 use send::Sender;

@@ -9,6 +9,7 @@ use reqwest::{Client, Response, StatusCode, redirect};
 use serde_json::json;
 
 use super::address::Allowed;
+use super::client::http_client;
 use super::sign::signature;
 use crate::store::{Attempt, Delivery};
 
@@ -35,7 +36,7 @@ pub(super) struct Sender {
 impl Sender {
     pub(super) fn new(allowed: Allowed) -> Self {
         let client = |tls: bool| {
-            let builder = Client::builder()
+            let builder = http_client()
                 .dns_resolver(Arc::new(allowed.clone()))
                 .redirect(redirect::Policy::none())
                 .no_proxy()

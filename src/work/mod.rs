@@ -3,6 +3,8 @@
 //! A worker knows nothing but the store: those in the next process or on the next machine are the
 //! same. Solver runs never block the reactor; there are as many workers as cores by default, and so as
 //! many solver threads.
+//!
+//! Invariant: a worker that has lost its lease writes nothing more.
 
 mod clock;
 mod maker;

@@ -216,7 +216,9 @@ fn settle(answered: Result<Answer, Unanswered>, told: Told, asked: Option<Reason
         },
         Err(Unanswered::Refused(faults)) => JobEnd {
             told,
-            ..JobEnd::without_result(EventBody::Failed { faults })
+            ..JobEnd::without_result(EventBody::Failed {
+                faults: faults.into(),
+            })
         },
         Err(Unanswered::Store(error)) => failed("store", &error),
         Err(Unanswered::Panicked(text)) => JobEnd {

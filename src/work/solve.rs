@@ -11,7 +11,7 @@ use super::maker::this_program;
 use super::stop::Stop;
 use crate::estimate::Outcome;
 use crate::flight::Maneuver;
-use crate::job::{self, EventBody, Fault, JobKind, JobSpec, StudyProgress};
+use crate::job::{self, EventBody, Faults, JobKind, JobSpec, StudyProgress};
 use crate::model::ModelDocument;
 use crate::store::{ResultParts, StoreError};
 
@@ -26,7 +26,7 @@ pub(super) struct Answer {
 #[derive(Debug)]
 pub(super) enum Unanswered {
     /// The job cannot be started.
-    Refused(Vec<Fault>),
+    Refused(Faults),
     Store(StoreError),
     /// The solver panicked, saying this.
     Panicked(String),

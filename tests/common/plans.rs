@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 use serde_json::{Value, json};
 use trimtab_core::estimate::{Evaluator, NormalEquations, ParameterEstimate};
 use trimtab_core::flight::{Channel, Maneuver, Unit};
-use trimtab_core::job::{self, Fault, JobResult, JobSpec, ModelSource, Plan};
+use trimtab_core::job::{self, Faults, JobResult, JobSpec, ModelSource, Plan};
 use trimtab_core::model::catalog;
 
 /// A recording of pure numbers, on the time axis `time`.
@@ -25,7 +25,7 @@ pub(crate) fn try_plan(
     model: Value,
     changes: Value,
     maneuvers: &[Arc<Maneuver>],
-) -> Result<Plan, Vec<Fault>> {
+) -> Result<Plan, Faults> {
     let uses: Vec<Value> = maneuvers
         .iter()
         .map(|maneuver| json!({"id": maneuver.digest()}))

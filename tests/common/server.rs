@@ -127,7 +127,7 @@ pub(crate) fn database(directory: &Path) -> PathBuf {
 
 pub(crate) fn client() -> reqwest::Client {
     // plain HTTP needs no certificates, and a small machine may have none
-    reqwest::Client::builder()
+    webhook::http_client()
         .tls_certs_only([])
         .no_proxy()
         .build()

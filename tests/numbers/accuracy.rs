@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 use trimtab_core::estimate::{ErrorBoundsKind, Outcome, Role};
 use trimtab_core::flight::Maneuver;
-use trimtab_core::job::{self, Fault, JobResult, JobSpec};
+use trimtab_core::job::{self, Faults, JobResult, JobSpec};
 use trimtab_core::model::{Model, ModelDocument, catalog};
 use trimtab_core::simulate::Scenario;
 
@@ -36,7 +36,7 @@ fn run(
     document: &ModelDocument,
     spec: Value,
     recordings: &[Arc<Maneuver>],
-) -> Result<JobResult, Vec<Fault>> {
+) -> Result<JobResult, Faults> {
     let spec: JobSpec = serde_json::from_value(spec).expect("a spec");
     let plan = job::prepare(&spec, document, recordings)?;
     job::run(&plan, &mut |_| ControlFlow::Continue(()))

@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 use serde_json::{Value, json};
 use trimtab_core::estimate::{Bound, Evaluator, NormalEquations, Outcome, Progress};
 use trimtab_core::flight::{Channel, Maneuver, Unit};
-use trimtab_core::job::{self, Fault, JobResult, JobSpec, ModelSource};
+use trimtab_core::job::{self, Faults, JobResult, JobSpec, ModelSource};
 
 /// x' = a x + b u, x(0) = x0; y = x + c. Exact data for a = -2, b = 3, c = 0.5, with some noise.
 fn model() -> Value {
@@ -51,11 +51,7 @@ fn maneuver(noise: f64) -> Arc<Maneuver> {
     )
 }
 
-fn try_solve(
-    model: Value,
-    changes: Value,
-    maneuver: &Arc<Maneuver>,
-) -> Result<JobResult, Vec<Fault>> {
+fn try_solve(model: Value, changes: Value, maneuver: &Arc<Maneuver>) -> Result<JobResult, Faults> {
     let mut spec = json!({"model": model, "maneuvers": [{"id": maneuver.digest()}]});
     for (key, value) in changes.as_object().expect("an object") {
         spec[key] = value.clone();
@@ -381,8 +377,8 @@ fn sizes_are_bounded_before_anything_is_made() {
         let recordings = vec![recording.clone(); spec.maneuvers.len()];
         job::prepare(&spec, document, &recordings)
             .err()
-            .expect("a refusal")
-            .remove(0)
+            .expect("a refusal")[0]
+            .clone()
     };
     let same = json!({"maneuvers": [{"id": "x", "label": "run"}, {"id": "x", "label": "run"}]});
     assert_eq!(refusal(same).code, "duplicate_label");

@@ -10,7 +10,7 @@ use rand_distr::{Distribution, StandardNormal};
 use serde_json::{Value, json};
 use trimtab_core::estimate::{Bound, FilterEvaluator, Outcome};
 use trimtab_core::flight::{Channel, Maneuver, Unit};
-use trimtab_core::job::{self, Fault, JobResult, JobSpec, ModelSource, Plan};
+use trimtab_core::job::{self, Faults, JobResult, JobSpec, ModelSource, Plan};
 use trimtab_core::model::{Model, ModelDocument};
 use trimtab_core::simulate::Scenario;
 
@@ -61,7 +61,7 @@ fn turbulence() -> Value {
     json!(TURBULENCE.into_iter().collect::<IndexMap<_, _>>())
 }
 
-fn prepare(model: Value, options: Value, maneuvers: &[Arc<Maneuver>]) -> Result<Plan, Vec<Fault>> {
+fn prepare(model: Value, options: Value, maneuvers: &[Arc<Maneuver>]) -> Result<Plan, Faults> {
     let uses: Vec<Value> = maneuvers
         .iter()
         .map(|m| json!({"id": m.digest()}))
@@ -481,7 +481,7 @@ fn what_it_cannot_have_is_refused_with_its_place() {
     let maneuver = flown(2, 5.0, turbulence());
     let refused = |options: Value| {
         let faults = prepare(model(), options, std::slice::from_ref(&maneuver)).err();
-        let fault = faults.expect("a refusal").remove(0);
+        let fault = faults.expect("a refusal")[0].clone();
         (fault.pointer, fault.code.to_string())
     };
     let with = |noise: Value| json!({"estimator": "filter_error", "process_noise": noise});

@@ -1,7 +1,7 @@
 //! Model documents that are wrong: each fault with its place, a stable word, and the remedy.
 
 use serde_json::{Value, json};
-use trimtab_core::flight::Fault;
+use trimtab_core::flight::Faults;
 use trimtab_core::model::{Edit, Model, ModelDocument};
 
 fn document() -> Value {
@@ -31,7 +31,7 @@ fn changed(pointer: &str, value: Value) -> Value {
     document
 }
 
-fn compile(document: Value) -> Result<Model, Vec<Fault>> {
+fn compile(document: Value) -> Result<Model, Faults> {
     Model::compile(
         &serde_json::from_value::<ModelDocument>(document).expect("the shape of a document"),
     )
@@ -39,9 +39,9 @@ fn compile(document: Value) -> Result<Model, Vec<Fault>> {
 
 /// Pointer, code and message of the only fault.
 fn fault(document: Value) -> (String, String, String) {
-    let mut faults = compile(document).expect_err("a fault");
+    let faults = compile(document).expect_err("a fault");
     assert_eq!(faults.len(), 1, "{faults:#?}");
-    let fault = faults.remove(0);
+    let fault = faults[0].clone();
     (fault.pointer, fault.code.into_owned(), fault.message)
 }
 

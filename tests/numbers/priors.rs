@@ -118,7 +118,8 @@ fn filter_error_has_shares_of_its_priors_too() {
         "parameters": {"Ma": {"prior": {"mean": -3.4, "sd": 0.05}}},
         "options": {"estimator": "filter_error"},
     });
-    let elevator = common::recordings::maneuver(common::recordings::elevator().as_bytes());
+    let elevator =
+        crate::common::recordings::maneuver(crate::common::recordings::elevator().as_bytes());
     let result = solve(json!("short-period"), changes, &[elevator]);
     let share = |name: &str| parameter(&result, name).prior_share.expect("a share");
     assert!(share("Ma") > 0.1 && share("Ma") < 1.0, "{}", share("Ma"));

@@ -12,7 +12,7 @@ use trimtab_core::estimate::{
     Derivatives, Estimate, Method, Outcome, Problem, Progress, StartMethod, StartReport, estimate,
 };
 use trimtab_core::flight::{Channel, Maneuver, Unit};
-use trimtab_core::job::{self, Fault, JobSpec, ModelSource};
+use trimtab_core::job::{self, Faults, JobSpec, ModelSource};
 
 /// Short period of an unstable aircraft: poles at +ln 2 (time to double 1 s) and -2.393 1/s.
 const TRUTH: [(&str, f64); 5] = [
@@ -115,7 +115,7 @@ fn try_solve(
     model: Value,
     options: Value,
     maneuver: &Arc<Maneuver>,
-) -> Result<(Estimate, Vec<StartReport>), Vec<Fault>> {
+) -> Result<(Estimate, Vec<StartReport>), Faults> {
     let mut spec = json!({"model": model, "maneuvers": [{"id": "x"}], "options": options});
     spec["options"]["input_interpolation"] = json!("hold");
     let spec: JobSpec = serde_json::from_value(spec).expect("a spec");

@@ -29,9 +29,11 @@ const COHERENT: f64 = 1e-3;
 
 /// Everything that a diagnosis comes to.
 pub struct Conclusion {
+    /// Verdict, effects, evidence.
     pub diagnosis: Diagnosis,
     /// Of the model with the effects in it.
     pub estimate: Estimate,
+    /// Measured outputs beside those of the model with its effects and of the declared one, for each segment.
     pub histories: Vec<TimeHistory>,
 }
 

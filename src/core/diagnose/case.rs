@@ -14,7 +14,9 @@ use crate::model::{ChannelFormula, Model, ModelDocument, Start};
 pub struct Case {
     /// The declared model, as it would be estimated.
     pub document: ModelDocument,
+    /// What was flown, of all roles.
     pub flights: Vec<Flight>,
+    /// How every model of the diagnosis is estimated.
     pub options: Options,
     /// Candidates of the user's own, tried beside the catalogue's.
     pub candidates: Vec<Effect>,
@@ -37,6 +39,7 @@ const SHORTEST_LAG: f64 = 0.45;
 pub struct Unfit(pub String);
 
 impl Case {
+    /// The flights that play a role.
     pub fn of_role(&self, role: Role) -> impl Iterator<Item = &Flight> {
         self.flights
             .iter()

@@ -10,7 +10,9 @@ use crate::model::{Edit, EditError, EditKind, Edited, ModelDocument, Start};
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(untagged)]
 pub enum EffectKind {
+    /// An edit of the model document.
     Edit(EditKind),
+    /// Another way to fit.
     Treatment(Treatment),
 }
 
@@ -29,10 +31,12 @@ pub enum Treatment {
 /// One candidate for what a model lacks.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Effect {
+    /// The word of the catalogue.
     pub kind: EffectKind,
     /// An output, an input, a state or a named coefficient; the name of a candidate of the user's own.
     #[schema(example = "alpha")]
     pub target: String,
+    /// What else the kind needs, as of an [`Edit`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "alpha^2")]
     pub term: Option<String>,
@@ -45,6 +49,7 @@ pub struct Effect {
 }
 
 impl Effect {
+    /// A single edit of the document.
     pub fn edit(kind: EditKind, target: impl Into<String>, term: Option<&str>) -> Self {
         Self::of(Edit {
             term: term.map(ToString::to_string),
@@ -63,6 +68,7 @@ impl Effect {
         }
     }
 
+    /// An effect that no equation expresses.
     pub fn treatment(kind: Treatment, target: impl Into<String>) -> Self {
         Self {
             kind: EffectKind::Treatment(kind),

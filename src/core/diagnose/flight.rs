@@ -11,10 +11,13 @@ use crate::simulate::{Segment, Steps};
 /// One continuous stretch of a recording.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Flight {
+    /// What tables call it.
     pub label: String,
+    /// Whether models are fitted to it, or predict it.
     pub role: Role,
     /// Recorded time, s.
     pub time: Vec<f64>,
+    /// From each sample to the next, s.
     pub steps: Steps,
     /// SI, by name: the model's inputs and outputs under the model's names, then all else that was recorded.
     pub channels: IndexMap<String, (Vec<f64>, Dimension)>,

@@ -9,6 +9,7 @@ use super::residual::ResidualAnalysis;
 use crate::estimate::{Estimate, OutputFit, Role};
 use crate::model::ModelDocument;
 
+/// What a diagnosis concludes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -25,6 +26,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// As it is written in JSON.
     pub fn name(self) -> &'static str {
         match self {
             Self::NothingMissing => "nothing_missing",
@@ -39,6 +41,7 @@ impl Verdict {
 /// The answer of a diagnosis.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Diagnosis {
+    /// What is concluded.
     pub verdict: Verdict,
     /// The verdict in a sentence.
     #[schema(
@@ -70,26 +73,33 @@ pub struct Diagnosis {
 /// An effect that was accepted.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct NamedEffect {
+    /// The likeliest of its group.
     #[serde(flatten)]
     pub effect: Effect,
     /// What it added, as estimated in the final model.
     pub parameters: Vec<EffectParameter>,
     /// Candidates that the data cannot tell from it, itself included, the likeliest first.
     pub group: Vec<Member>,
+    /// Why it was accepted.
     pub evidence: Evidence,
+    /// The effect with its size, in words.
     #[schema(example = "alpha is recorded 0.062 s late")]
     pub sentence: String,
 }
 
+/// A parameter that an effect added.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct EffectParameter {
+    /// The parameter's name in the edited document.
     #[schema(example = "alpha_delay")]
     pub name: String,
     /// SI
     #[schema(example = "s")]
     pub unit: String,
+    /// Which segment a per-maneuver parameter belongs to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub segment: Option<String>,
+    /// In `unit`.
     #[schema(example = 0.0621)]
     pub estimate: f64,
     /// Corrected for coloured residuals.
@@ -99,6 +109,7 @@ pub struct EffectParameter {
 /// A member of an alias group.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Member {
+    /// The candidate.
     #[serde(flatten)]
     pub effect: Effect,
     /// Share of the group's likelihood; the weights of a group add up to 1.
@@ -106,6 +117,7 @@ pub struct Member {
     pub weight: f64,
 }
 
+/// The numbers that an effect was accepted for.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Evidence {
     /// Twice the gain of the colour-aware log-likelihood on the estimation data.
@@ -132,32 +144,40 @@ pub struct Evidence {
     pub held_out_by_output: Vec<OutputGain>,
 }
 
+/// The share of one output in a gain of the log-likelihood.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct OutputGain {
+    /// The output's name.
     pub output: String,
     /// Negative: this output got worse.
     pub gain: f64,
 }
 
+/// A candidate that was not accepted.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct RefusedEffect {
+    /// The candidate.
     #[serde(flatten)]
     pub effect: Effect,
+    /// The first test that it failed.
     pub reason: Refusal,
     /// The reason in a sentence.
     pub sentence: String,
     /// Twice the gain of the colour-aware log-likelihood; absent of what was not tried.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub likelihood_ratio: Option<f64>,
+    /// How much of the effect the declared parameters cannot imitate, 0 to 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub visible_fraction: Option<f64>,
     /// The smallest effect that would have been seen with 80 % power, SI.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub smallest_seen: Option<f64>,
+    /// Twice the gain of the log-likelihood on flights that were not fitted; absent where there are none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub held_out: Option<f64>,
 }
 
+/// Why a candidate was not accepted.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Refusal {
@@ -179,23 +199,33 @@ pub enum Refusal {
     NotFitted,
 }
 
+/// The fit of one output, before and after.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct FitChange {
+    /// Of the segments that it is about.
     pub role: Role,
     /// Absent: over all segments of the estimation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub segment: Option<String>,
+    /// With the declared model.
     pub before: OutputFit,
+    /// With the effects added.
     pub after: OutputFit,
 }
 
+/// A declared parameter, before and after.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct ParameterChange {
+    /// The parameter's name.
     pub name: String,
+    /// The parameter's own unit.
     pub unit: String,
+    /// Which segment a per-maneuver parameter belongs to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub segment: Option<String>,
+    /// Its estimate with the declared model.
     pub before: f64,
+    /// Its estimate with the effects added.
     pub after: f64,
     /// Of the estimate after, corrected for coloured residuals.
     pub standard_error: Option<f64>,
@@ -203,13 +233,16 @@ pub struct ParameterChange {
     pub shift: Option<f64>,
 }
 
+/// One place of the document that the effects changed.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct DocumentChange {
     /// RFC 6901, into the document.
     #[schema(example = "/outputs/alpha/delay")]
     pub pointer: String,
+    /// The JSON value there before; absent: there was none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub before: Option<serde_json::Value>,
+    /// The JSON value there now; absent: there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<serde_json::Value>,
 }
@@ -220,32 +253,51 @@ pub struct DocumentChange {
 pub enum Step {
     /// A model was fitted: the declared one, or one with effects accepted.
     Fitted {
+        /// Which round of the diagnosis, from 1; 0 is before the first.
         round: usize,
+        /// -ln L at its estimate.
         cost: f64,
+        /// Iterations that the fit took.
         iterations: usize,
     },
     /// The catalogue was screened: how many candidates, and how many can be seen at all.
     Screened {
+        /// Which round of the diagnosis, from 1.
         round: usize,
+        /// Effects of the catalogue that make sense for the model, and the user's own.
         candidates: usize,
+        /// Those that the declared parameters cannot imitate wholly.
         visible: usize,
     },
     /// A candidate was fitted.
     Tried {
+        /// Which round of the diagnosis, from 1.
         round: usize,
+        /// The candidate.
         name: String,
+        /// Twice the gain of the colour-aware log-likelihood.
         likelihood_ratio: f64,
     },
+    /// A candidate failed a test.
     Refused {
+        /// Which round of the diagnosis, from 1.
         round: usize,
+        /// The candidate.
         name: String,
+        /// Which test.
         reason: Refusal,
+        /// The reason in a sentence.
         sentence: String,
     },
+    /// A candidate passed all tests and is in the model now.
     Accepted {
+        /// Which round of the diagnosis, from 1; 0 is before the first.
         round: usize,
+        /// The effect.
         name: String,
+        /// Twice the gain of the colour-aware log-likelihood.
         likelihood_ratio: f64,
+        /// The effect in words.
         sentence: String,
     },
 }

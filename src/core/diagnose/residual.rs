@@ -9,11 +9,14 @@ use crate::estimate::{OutputSeries, Series, TimeHistory};
 /// The residual of one output, over all segments that were fitted.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct ResidualAnalysis {
+    /// The output's name.
     #[schema(example = "alpha")]
     pub output: String,
     /// SI
     pub unit: String,
+    /// Samples that have a measured value.
     pub samples: usize,
+    /// Root mean square, in `unit`.
     pub rms: f64,
     /// At lags 0, 1, 2, ... samples.
     pub autocorrelation: Vec<f64>,
@@ -23,7 +26,9 @@ pub struct ResidualAnalysis {
     pub portmanteau: Portmanteau,
     /// By input: the correlation with the input's rate of change, by lag.
     pub cross_correlation: Vec<CrossCorrelation>,
+    /// By Welch's method, from the lowest frequency to the highest.
     pub spectrum: Vec<SpectralLine>,
+    /// Its shape, beside that of a normal distribution.
     pub distribution: Distribution,
     /// Samples that are further from the mean than noise goes.
     pub outliers: Vec<Outlier>,
@@ -31,24 +36,31 @@ pub struct ResidualAnalysis {
     pub localisation: Vec<Window>,
 }
 
+/// A test of all autocorrelations up to a lag at once.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Portmanteau {
+    /// Ljung and Box's Q.
     pub statistic: f64,
+    /// Autocorrelations in it.
     pub lags: usize,
     /// Probability of a greater statistic with white noise.
     pub probability: f64,
 }
 
+/// What a residual has in common with an input.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct CrossCorrelation {
+    /// The input's name.
     pub input: String,
     /// Of the residual at k with the input at k − lag, lags from −`lags` to `lags`.
     pub values: Vec<f64>,
+    /// The largest lag, samples.
     pub lags: usize,
     /// 95 % of the values of independent series are within ± this, their colours considered (Bartlett).
     pub band: f64,
 }
 
+/// Power at one frequency.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct SpectralLine {
     /// Hz
@@ -59,8 +71,10 @@ pub struct SpectralLine {
     pub coherence: f64,
 }
 
+/// The shape of a distribution.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Distribution {
+    /// 0 of a symmetric distribution.
     pub skewness: f64,
     /// 0 of a normal distribution.
     pub excess_kurtosis: f64,
@@ -68,8 +82,10 @@ pub struct Distribution {
     pub largest: f64,
 }
 
+/// A sample that is further from the mean than noise goes.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Outlier {
+    /// The segment's label.
     pub segment: String,
     /// s
     pub time: f64,
@@ -77,12 +93,16 @@ pub struct Outlier {
     pub deviation: f64,
 }
 
+/// A part of a segment.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Window {
+    /// The segment's label.
     pub segment: String,
     /// s
     pub from: f64,
+    /// s
     pub to: f64,
+    /// Root mean square of the residual in it.
     pub rms: f64,
     /// Over the RMS of all.
     pub ratio: f64,

@@ -5,7 +5,7 @@ use utoipa::ToSchema;
 
 use crate::estimate::report::estimate::Estimate;
 use crate::estimate::report::parameter::ParameterEstimate;
-use crate::flight::{self, Aircraft, Fault, Unit, WeightedSum};
+use crate::flight::{self, Aircraft, Faults, Unit, WeightedSum};
 
 /// A nondimensional stability or control derivative.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
@@ -29,13 +29,10 @@ pub struct Coefficient {
 ///
 /// # Errors
 /// Constants of the aircraft that are out of range, or needed and not given.
-pub fn coefficients(
-    estimate: &Estimate,
-    aircraft: &Aircraft,
-) -> Result<Vec<Coefficient>, Vec<Fault>> {
+pub fn coefficients(estimate: &Estimate, aircraft: &Aircraft) -> Result<Vec<Coefficient>, Faults> {
     let faults = aircraft.faults();
     if !faults.is_empty() {
-        return Err(faults);
+        return Err(faults.into());
     }
     let parameters = &estimate.parameters;
     let units: Vec<Unit> = (parameters.iter())
@@ -47,7 +44,7 @@ pub fn coefficients(
     let values: Vec<f64> = (parameters.iter().zip(&units))
         .map(|(parameter, unit)| unit.to_si(parameter.estimate))
         .collect();
-    let sums = flight::coefficients(&named, aircraft).map_err(|fault| vec![fault])?;
+    let sums = flight::coefficients(&named, aircraft)?;
     let coefficient = |sum: WeightedSum| Coefficient {
         from: (sum.terms.iter())
             .map(|&(i, _)| parameters[i].name.clone())

@@ -2,6 +2,8 @@
 //!
 //! Values inside Trimtab are SI (angles in radians). A channel is converted once, when it is built;
 //! nothing behind this room ever sees a degree or a knot.
+//!
+//! Invariant: a maneuver never changes, its time increases, and its channels are as long as its time.
 
 mod aircraft;
 mod convention;
@@ -20,7 +22,7 @@ pub use aircraft::Aircraft;
 pub use convention::{by_name, coefficient, steady_speed, wind};
 pub use derivatives::{Derivative, WeightedSum, coefficients, derivatives};
 pub use dimension::Dimension;
-pub use fault::{Fault, escape};
+pub use fault::{Fault, Faults, escape};
 pub use finding::{Finding, Severity};
 pub use maneuver::{Channel, Maneuver, ManeuverError};
 pub use physical::{Family, Motion, PhysicalQuantity};

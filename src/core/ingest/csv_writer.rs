@@ -40,7 +40,7 @@ impl CsvWriter {
         }
     }
 
-    /// Ends the row.
+    /// Ends the row; what follows begins the next.
     pub fn end_row(&mut self) {
         self.text.push('\n');
         self.is_in_row = false;

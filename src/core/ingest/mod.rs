@@ -8,8 +8,10 @@
 //! CSV and JSON say names and units themselves. MAT files and ASCII matrices do not: a [`Mapping`] says them. It can do so
 //! for CSV, too, where what the file says is not what is meant.
 //!
-//! What is readable may still be poor: [`quality`] finds gaps, missing values, stuck sensors and spikes,
-//! and [`summary`] is what a user sees of a maneuver without downloading it.
+//! What is readable may still be poor: [`quality()`] finds gaps, missing values, stuck sensors and spikes,
+//! and [`summary()`] is what a user sees of a maneuver without downloading it.
+//!
+//! Invariant: no bytes panic, and none use more memory than [`Limits`] allow.
 
 mod ascii;
 mod assemble;

@@ -1,8 +1,11 @@
 //! What a job is, without saying where it is kept or who runs it: its spec, its log of events, its
 //! status, and the pure function from a spec and its data to a result.
+//!
+//! Invariant: spec and data alone decide the result; all that bad input could break is found by [`prepare()`].
 
 mod event;
 mod no_start;
+mod one_call;
 mod plan;
 mod prepare;
 mod provenance;
@@ -11,8 +14,9 @@ mod run;
 mod spec;
 mod status;
 
-pub use crate::flight::Fault;
+pub use crate::flight::{Fault, Faults};
 pub use event::{Event, EventBody, Prepared};
+pub use one_call::{diagnose, fit};
 pub use plan::Plan;
 pub use prepare::{MOST_MANEUVERS, prepare};
 pub use provenance::Maker;

@@ -75,6 +75,26 @@ pub struct JobSpec {
     pub options: Options,
 }
 
+impl JobSpec {
+    /// A job on a model as it stands, with every option at its default.
+    pub fn new(kind: JobKind, model: ModelSource, maneuvers: Vec<ManeuverUse>) -> Self {
+        Self {
+            kind,
+            name: String::new(),
+            tags: Vec::new(),
+            priority: 0,
+            model,
+            edits: Vec::new(),
+            maneuvers,
+            channels: IndexMap::new(),
+            parameters: IndexMap::new(),
+            constants: IndexMap::new(),
+            candidates: Vec::new(),
+            options: Options::default(),
+        }
+    }
+}
+
 /// The highest priority that there is; the lowest is its negative.
 pub const HIGHEST_PRIORITY: i32 = 10;
 
@@ -203,6 +223,19 @@ pub struct ManeuverUse {
     /// What to do where the recording has gaps.
     #[serde(default)]
     pub gaps: Gaps,
+}
+
+impl ManeuverUse {
+    /// All of a recording, gaps splitting it.
+    pub fn new(id: impl Into<String>, role: Role) -> Self {
+        Self {
+            id: id.into(),
+            label: None,
+            rows: None,
+            role,
+            gaps: Gaps::default(),
+        }
+    }
 }
 
 /// What becomes of a gap, a place where the recording stopped and started again.

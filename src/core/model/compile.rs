@@ -15,17 +15,17 @@ use super::operation::{Binary, Unary};
 use super::paths::{Compiled, PathElement, Paths};
 use super::program::{Program, Slots};
 use super::{Model, ParameterInfo, Quantity, limits};
-use crate::flight::{Fault, Unit, escape};
+use crate::flight::{Fault, Faults, Unit, escape};
 
 impl Model {
     /// Compiles a document.
     ///
     /// # Errors
     /// Every fault with its place: syntax, unknown names, cycles, units that do not agree, bounds.
-    pub fn compile(document: &ModelDocument) -> Result<Self, Vec<Fault>> {
+    pub fn compile(document: &ModelDocument) -> Result<Self, Faults> {
         let mut faults = limits::check(document);
         if !faults.is_empty() {
-            return Err(faults);
+            return Err(faults.into());
         }
         if document.outputs.is_empty() {
             let message = "a model needs at least one output to compare with a recording";
@@ -35,7 +35,7 @@ impl Model {
         let equations = Equations::read(document, &names, &mut faults);
         let parameters = parameters(document, &mut faults);
         if !faults.is_empty() {
-            return Err(faults);
+            return Err(faults.into());
         }
         let slots = Slots {
             states: document.states.len(),
@@ -84,7 +84,7 @@ impl Model {
             document: document.clone(),
         };
         if graph.is_too_large() {
-            Err(vec![too_large()])
+            Err(too_large().into())
         } else {
             Ok(model)
         }

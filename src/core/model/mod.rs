@@ -2,6 +2,8 @@
 //!
 //! There is one way from a model to numbers: [`ModelDocument`] → [`Model::compile`] → [`Program`]s for
 //! f, g, x0 and their exact Jacobians. An effect is an [`Edit`] of the document.
+//!
+//! Invariant: a document from anybody compiles or is refused with the place; a compiled model reaches nothing but numbers.
 
 mod affine;
 pub mod catalog;

@@ -4,6 +4,9 @@
 //! [`simulate`] gives y for any kind of number; [`Sensitivities`] gives y and ∂y/∂θ, the adjoint the
 //! product (∂y/∂θ)ᵀ ȳ alone. A [`Scenario`] makes a maneuver of known truth. Inputs and outputs pass their paths
 //! (play, rate limit, lag, delay) here: inputs before a run, outputs behind it.
+//!
+//! Invariant: derivatives are those of the discretised model itself, and numbers do not depend on how many threads or
+//! lanes there are.
 
 mod adjoint;
 mod aligned;
@@ -38,7 +41,8 @@ mod transition_recursion;
 pub(crate) use adjoint::{Adjoint, Checkpoints};
 pub use block::Block;
 pub use columns::Columns;
-pub(crate) use input_path::{MOST_DELAY, driven, path_out_of_bounds};
+pub use input_path::MOST_DELAY;
+pub(crate) use input_path::{driven, path_out_of_bounds};
 pub(crate) use march::{March, Standing};
 pub use method::{InputInterpolation, Integrator};
 pub use outputs::Outputs;

@@ -2,7 +2,7 @@
 import { element } from './service.js';
 
 /** Beyond it a value is hardly in radians: no vane and no surface gets to 69 deg, little flies that turns faster, and other angles
- * are within a turn (as the service has it of jobs, src/job/plausible.rs). Without a bound, undefined. */
+ * are within a turn (as the service has it of jobs, src/core/job/prepare/plausible.rs). Without a bound, undefined. */
 function most(name, unit) {
   if (unit === 'rad/s') return 20;
   if (unit !== 'rad') return undefined;

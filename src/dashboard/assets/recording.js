@@ -1,5 +1,5 @@
 // The head of a recorded CSV file as the browser sees it: columns, units and first values. The service reads the whole with all its
-// rules (src/ingest/csv); what is told here is for people to look at.
+// rules (src/core/ingest/csv); what is told here is for people to look at.
 
 /** Bytes of the head. */
 const HEAD = 65536;

@@ -18,7 +18,7 @@ use crate::http::request::body;
 use crate::http::request::json;
 use crate::http::request::query::{Id, PageQuery, Parameters, bad_cursor, page_limit};
 use crate::http::service::{Server, Service};
-use crate::job::Fault;
+use crate::job::Faults;
 use crate::model::{Model, ModelDocument, catalog};
 use crate::store::{BadCursor, ModelRecord, Page, StoreError};
 
@@ -169,7 +169,7 @@ async fn add_model(
 }
 
 /// Compiles a model by itself; the pointers of its faults are into the document.
-pub(crate) fn check_model(document: &ModelDocument) -> Result<(), Vec<Fault>> {
+pub(crate) fn check_model(document: &ModelDocument) -> Result<(), Faults> {
     Model::compile(document).map(drop)
 }
 

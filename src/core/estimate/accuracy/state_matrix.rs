@@ -2,15 +2,11 @@
 
 use nalgebra::DMatrix;
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
-use num_complex::Complex64;
 
+use crate::estimate::evaluation::linearised::{at_start, slopes_at_start};
 use crate::estimate::problem::Problem;
 use crate::flight::{Dimension, Unit};
-use crate::model::{Model, Scalar};
-use crate::simulate::Segment;
-
-/// Beside numbers near one this loses nothing, and its square is zero.
-const COMPLEX_STEP: f64 = 1e-40;
+use crate::model::Model;
 
 /// Entries beyond this count as not finite: their squares would leave the range.
 const LARGEST: f64 = 1e100;
@@ -78,19 +74,15 @@ impl StateMatrix {
             }
             matrix
         };
-        let value = filled(&entries(model, data, &parameters));
+        let [value] = at_start(model, [jacobian], data, &parameters);
+        let value = filled(&value);
         let mut by_place = vec![DMatrix::zeros(n, n); theta.len()];
         let mut own = false;
-        let complex: Vec<Complex64> = parameters.iter().map(|&p| p.into()).collect();
         for parameter in 0..parameters.len() {
             let Some(place) = problem.unknowns.place(segment, parameter) else {
                 continue;
             };
-            let mut stepped = complex.clone();
-            stepped[parameter].im = COMPLEX_STEP;
-            let by: Vec<f64> = (entries(model, data, &stepped).iter())
-                .map(|entry| entry.im / COMPLEX_STEP)
-                .collect();
+            let [by] = slopes_at_start(model, [jacobian], data, &parameters, parameter);
             by_place[place] = filled(&by);
             own |= problem.unknowns.at(place).segment.is_some()
                 && by_place[place].iter().any(|&entry| entry != 0.0);
@@ -118,25 +110,4 @@ impl StateMatrix {
             }
         }
     }
-}
-
-/// The entries of ∂f/∂x at the start of a segment, in the order of the Jacobian.
-fn entries<T: Scalar>(model: &Model, segment: &Segment, parameters: &[T]) -> Vec<T> {
-    let mut initial = model.initial.workspace();
-    model.initial.set_parameters(&mut initial, parameters);
-    model.initial.run(&mut initial);
-    let program = &model.dynamics_jacobian.program;
-    let mut workspace = program.workspace();
-    program.set_parameters(&mut workspace, parameters);
-    model
-        .initial
-        .results(&initial, program.states(&mut workspace));
-    for (to, samples) in (program.inputs(&mut workspace).iter_mut()).zip(&segment.inputs) {
-        *to = T::from_f64(samples[0]);
-    }
-    *program.time(&mut workspace) = T::from_f64(0.0);
-    program.run(&mut workspace);
-    (0..model.dynamics_jacobian.by_state.len())
-        .map(|i| program.result(&workspace, i))
-        .collect()
 }

@@ -10,12 +10,14 @@ use crate::estimate::accuracy::fit::{fits, histories};
 use crate::estimate::accuracy::identifiability::data_information;
 use crate::estimate::accuracy::modes::modes;
 use crate::estimate::descent::Descent;
+use crate::estimate::descent::stopped::Stopped;
+use crate::estimate::likelihood::weighting::Weighting;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unknowns::Unknowns;
 use crate::estimate::report::estimate::Estimate;
 use crate::estimate::report::history::TimeHistory;
 use crate::estimate::report::identifiability::Identifiability;
-use crate::estimate::report::parameter::ParameterEstimate;
+use crate::estimate::report::parameter::{Bound, ParameterEstimate};
 use table::{Accuracy, table};
 
 /// Where an estimation ended.
@@ -68,12 +70,6 @@ pub(crate) fn answer_to(asked: Asked<'_>, problem: &Problem, descent: Descent<'_
     let histories = histories(problem, &at.theta);
     let colour = Colour::of(&histories);
     let bounds = ErrorBounds::at(problem, &mut evaluator, &at, &colour, &histories);
-    let held: Vec<String> = (0..at.held.len())
-        .filter(|&place| at.held[place].is_some())
-        .map(|place| problem.name(place))
-        .collect();
-    let collinear = bounds.collinear(|place| problem.name_and_scale(place));
-    let (outcome, reason) = stopped.say(problem.options.method, iterations, &held, &collinear);
     let before = first_information.and_then(|first| data_information(problem, &first));
     let estimates = problem.options.max_iterations > 0;
     let identifiability = before.map(|before| Identifiability {
@@ -82,31 +78,81 @@ pub(crate) fn answer_to(asked: Asked<'_>, problem: &Problem, descent: Descent<'_
     });
     let accuracy = Accuracy::new(&problem.unknowns, &at.information, &at.held, &bounds);
     let accuracy = accuracy.seen_from(asked.theta.len(), asked.solved);
-    let estimate = Estimate {
-        outcome,
-        reason,
+    let ending = Ending {
+        problem,
+        theta: &at.theta,
+        stopped,
         iterations,
         evaluations: evaluator.evaluations,
         simulations: evaluator.simulations,
-        cost: at.weighting.cost,
-        det_r: at.weighting.det(),
-        noise_covariance: rows(&at.weighting.covariance),
-        outputs: fits(problem, &histories, &colour),
+        weighting: &at.weighting,
+        held: &at.held,
+        bounds: &bounds,
+        histories: &histories,
+        colour: &colour,
+    };
+    let estimate = Estimate {
         parameters: table(asked.problem, &asked.theta, &accuracy),
-        error_bounds: bounds.kind,
         correlation: asked.correlation(problem, &bounds),
-        collinear,
         identifiability,
-        prediction: Vec::new(),
-        filter: None,
-        samples: problem.samples(),
-        modes: modes(problem, &at.theta, &bounds),
+        ..ending.estimate(|place| problem.name_and_scale(place))
     };
     Solution {
         theta: asked.theta,
         covariance: at.weighting.covariance,
         estimate,
         histories,
+    }
+}
+
+/// How an estimation ended, by whatever method.
+pub(crate) struct Ending<'a> {
+    pub problem: &'a Problem,
+    pub theta: &'a [f64],
+    pub stopped: Stopped,
+    pub iterations: usize,
+    pub evaluations: usize,
+    pub simulations: usize,
+    pub weighting: &'a Weighting,
+    /// By place of all unknowns.
+    pub held: &'a [Option<Bound>],
+    pub bounds: &'a ErrorBounds,
+    pub histories: &'a [TimeHistory],
+    pub colour: &'a Colour,
+}
+
+impl Ending<'_> {
+    /// Everything but the parameter table and what a method has of its own; `name` gives what the unknown at a place is
+    /// called, and the SI value of its unit.
+    pub(crate) fn estimate(&self, name: impl Fn(usize) -> (String, f64)) -> Estimate {
+        let problem = self.problem;
+        let held: Vec<String> = (0..self.held.len())
+            .filter(|&place| self.held[place].is_some())
+            .map(|place| name(place).0)
+            .collect();
+        let collinear = self.bounds.collinear(name);
+        let method = problem.options.method;
+        let (outcome, reason) = self.stopped.say(method, self.iterations, &held, &collinear);
+        Estimate {
+            outcome,
+            reason,
+            iterations: self.iterations,
+            evaluations: self.evaluations,
+            simulations: self.simulations,
+            cost: self.weighting.cost,
+            det_r: self.weighting.det(),
+            noise_covariance: rows(&self.weighting.covariance),
+            outputs: fits(problem, self.histories, self.colour),
+            parameters: Vec::new(),
+            error_bounds: self.bounds.kind,
+            correlation: self.bounds.correlation.clone(),
+            collinear,
+            identifiability: None,
+            prediction: Vec::new(),
+            samples: problem.samples(),
+            filter: None,
+            modes: modes(problem, self.theta, self.bounds),
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 //! rounding.
 
 pub(super) mod acceleration;
+pub(super) mod damping;
 pub(super) mod gauss_newton;
 pub(super) mod iterate;
 pub mod quasi_newton;

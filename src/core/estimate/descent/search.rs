@@ -6,18 +6,13 @@
 use nalgebra::DVector;
 
 use super::acceleration::Acceleration;
+use super::damping;
 use super::iterate::{Iterate, Taken};
 use super::step::{Newton, advanced, length};
 use crate::estimate::evaluation::evaluator::Evaluator;
 use crate::estimate::likelihood::weighting::Weighting;
 use crate::estimate::options::Method;
 use crate::estimate::problem::Problem;
-
-/// Damping: where it starts, what success and failure make of it, and below what it is none.
-pub(crate) const DAMPING_START: f64 = 1e-3;
-pub(crate) const DAMPING_EASED: f64 = 1e-2;
-pub(crate) const DAMPING_RAISED: f64 = 10.0;
-pub(crate) const DAMPING_NONE: f64 = 1e-10;
 
 /// Steps damped by less than this are full ones, as far as the next can learn from them.
 const DAMPING_SLIGHT: f64 = 1e-6;
@@ -46,10 +41,7 @@ impl<'p> Search<'p> {
     pub(crate) fn new(problem: &'p Problem) -> Self {
         Self {
             problem,
-            damping: match problem.options.method {
-                Method::LevenbergMarquardt => DAMPING_START,
-                Method::GaussNewton => 0.0,
-            },
+            damping: damping::start(problem.options.method),
             acceleration: Acceleration::default(),
             careful: false,
         }
@@ -72,8 +64,7 @@ impl<'p> Search<'p> {
             self.acceleration.forget();
         }
         self.careful = taken.halvings > 0;
-        let eased = taken.damping * DAMPING_EASED;
-        self.damping = if eased < DAMPING_NONE { 0.0 } else { eased };
+        self.damping = damping::eased(taken.damping);
         Ok(found)
     }
 
@@ -126,9 +117,7 @@ impl<'p> Search<'p> {
             }
             match problem.options.method {
                 Method::GaussNewton => share *= 0.5,
-                Method::LevenbergMarquardt => {
-                    damping = (damping * DAMPING_RAISED).max(DAMPING_START);
-                }
+                Method::LevenbergMarquardt => damping = damping::raised(damping),
             }
         }
         Err(Nothing { in_range })

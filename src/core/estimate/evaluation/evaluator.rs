@@ -13,6 +13,7 @@ use crate::estimate::likelihood::weighting::Weighting;
 use crate::estimate::linear::products::dot;
 use crate::estimate::options::technique::Derivatives;
 use crate::estimate::options::{Noise, NoiseStructure};
+use crate::estimate::problem::missing::present;
 use crate::estimate::problem::unusable::{Unusable, left_range};
 use crate::estimate::problem::{Problem, set_parameters};
 use crate::simulate::{Block, Outputs};
@@ -81,8 +82,7 @@ impl<'p> Evaluator<'p> {
             let run = self.outputs.run(segment, &self.parameters, |first, y| {
                 for ((residuals, y), z) in residuals.iter_mut().zip(y).zip(&segment.measured) {
                     residuals.clear();
-                    // a missing sample does not count, whatever the model says there
-                    let residual = |(z, y): (&f64, &f64)| if z.is_nan() { 0.0 } else { z - y };
+                    let residual = |(z, y): (&f64, &f64)| present(z - y, *z);
                     residuals.extend(z[first..].iter().zip(*y).map(residual));
                 }
                 for i in 0..outputs {

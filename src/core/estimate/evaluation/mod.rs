@@ -3,6 +3,7 @@
 
 pub mod derivatives;
 pub(super) mod evaluator;
+pub(super) mod linearised;
 mod local_sums;
 mod missing;
 pub(super) mod normal_equations;

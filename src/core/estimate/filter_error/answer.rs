@@ -8,10 +8,9 @@ use super::iterate::Iterate;
 use super::layout::Layout;
 use crate::estimate::accuracy::coloured_residuals::Colour;
 use crate::estimate::accuracy::error_bounds::ErrorBounds;
-use crate::estimate::accuracy::fit::{fits, histories_of};
-use crate::estimate::accuracy::modes::modes;
+use crate::estimate::accuracy::fit::histories_of;
 use crate::estimate::answer::table::{Accuracy, table};
-use crate::estimate::answer::{Solution, rows};
+use crate::estimate::answer::{Ending, Solution, rows};
 use crate::estimate::descent::stopped::Stopped;
 use crate::estimate::problem::Problem;
 use crate::estimate::report::estimate::Estimate;
@@ -22,7 +21,7 @@ pub(super) fn answer(
     at: &Iterate,
     bounds: &ErrorBounds,
     iterations: usize,
-    stopped: &Stopped,
+    stopped: Stopped,
 ) -> Solution {
     let problem = evaluator.problem;
     let model = &problem.model;
@@ -38,38 +37,29 @@ pub(super) fn answer(
     });
     let histories = histories_of(problem, |index, _| std::mem::take(&mut modelled[index]));
     let layout = &evaluator.layout;
-    let name = |place: usize| layout.name(problem, place);
-    let held: Vec<String> = (0..at.held.len())
-        .filter(|&place| at.held[place].is_some())
-        .map(|place| name(place).0)
-        .collect();
-    let collinear = bounds.collinear(name);
-    let (outcome, reason) = stopped.say(problem.options.method, iterations, &held, &collinear);
     let theta = &at.xi[..layout.parameters];
     let accuracy = Accuracy::new(&problem.unknowns, &at.information, &at.held, bounds);
-    let estimate = Estimate {
-        outcome,
-        reason,
+    let ending = Ending {
+        problem,
+        theta,
+        stopped,
         iterations,
         evaluations: evaluator.evaluations,
         simulations: evaluator.simulations,
-        cost: at.weighting.cost,
-        det_r: at.weighting.det(),
-        noise_covariance: rows(&at.weighting.covariance),
-        outputs: fits(problem, &histories, &Colour::of(&histories)),
+        weighting: &at.weighting,
+        held: &at.held,
+        bounds,
+        histories: &histories,
+        colour: &Colour::of(&histories),
+    };
+    let estimate = Estimate {
         parameters: table(problem, theta, &accuracy),
-        error_bounds: bounds.kind,
-        correlation: bounds.correlation.clone(),
-        collinear,
-        identifiability: None,
-        prediction: Vec::new(),
-        modes: modes(problem, theta, bounds),
-        samples: problem.samples(),
         filter: Some(FilterEstimate {
             process_noise: process_noise(problem, layout, at, bounds),
             gain_covariance: rows(&at.gain_noise.covariance),
             gains,
         }),
+        ..ending.estimate(|place| layout.name(problem, place))
     };
     Solution {
         theta: theta.to_vec(),

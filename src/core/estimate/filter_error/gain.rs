@@ -5,15 +5,12 @@
 //! segment's initial state and first inputs; the equation is that of a step Δt that is short against the motion.
 
 use nalgebra::{DMatrix, DVector};
-use num_complex::Complex64;
 
 use super::layout::Column;
 use super::riccati::SteadyCovariance;
-use crate::model::{Jacobian, Model, Scalar};
-use crate::simulate::{Segment, initial_state};
-
-/// Of complex-step differences: small enough that there is no truncation error at all.
-const COMPLEX_STEP: f64 = 1e-40;
+use crate::estimate::evaluation::linearised::{at_start, slopes_at_start};
+use crate::model::{Jacobian, Model};
+use crate::simulate::Segment;
 
 /// The place at which a gain is computed: one segment, all its parameters (SI), the intensities by state, and R⁻¹.
 #[derive(Clone, Copy)]
@@ -46,7 +43,8 @@ impl Gain {
     /// `None` where there is no steady gain.
     pub(super) fn steady(setting: &Setting<'_>) -> Option<Self> {
         let (model, segment) = (setting.model, setting.segment);
-        let (dynamics, observation) = linearised(model, segment, setting.parameters);
+        let [dynamics, observation] =
+            at_start(model, jacobians(model), segment, setting.parameters);
         let (states, outputs) = (model.states.len(), model.outputs.len());
         let a = by_state(&model.dynamics_jacobian, &dynamics, states, states);
         let c = by_state(&model.observation_jacobian, &observation, outputs, states);
@@ -128,57 +126,20 @@ impl Gain {
         parameter: usize,
     ) -> (DMatrix<f64>, DMatrix<f64>) {
         let model = setting.model;
-        let mut parameters: Vec<Complex64> = setting
-            .parameters
-            .iter()
-            .map(|&value| Complex64::from_f64(value))
-            .collect();
-        parameters[parameter].im = COMPLEX_STEP;
-        let (dynamics, observation) = linearised(model, setting.segment, &parameters);
-        let slope = |entries: Vec<Complex64>| -> Vec<f64> {
-            entries
-                .iter()
-                .map(|entry| entry.im / COMPLEX_STEP)
-                .collect()
-        };
+        let (segment, parameters) = (setting.segment, setting.parameters);
+        let [dynamics, observation] =
+            slopes_at_start(model, jacobians(model), segment, parameters, parameter);
         let (states, outputs) = (self.k.nrows(), self.k.ncols());
         (
-            by_state(&model.dynamics_jacobian, &slope(dynamics), states, states),
-            by_state(
-                &model.observation_jacobian,
-                &slope(observation),
-                outputs,
-                states,
-            ),
+            by_state(&model.dynamics_jacobian, &dynamics, states, states),
+            by_state(&model.observation_jacobian, &observation, outputs, states),
         )
     }
 }
 
-/// The entries of ∂f/∂x and ∂g/∂x at the initial state and the first inputs, for any kind of number.
-fn linearised<T: Scalar>(model: &Model, segment: &Segment, parameters: &[T]) -> (Vec<T>, Vec<T>) {
-    let state = initial_state(model, parameters);
-    let entries = |jacobian: &Jacobian| -> Vec<T> {
-        let program = &jacobian.program;
-        let mut workspace = program.workspace();
-        program.set_parameters(&mut workspace, parameters);
-        program.states(&mut workspace).copy_from_slice(&state);
-        for (to, samples) in program
-            .inputs(&mut workspace)
-            .iter_mut()
-            .zip(&segment.inputs)
-        {
-            *to = T::from_f64(samples[0]);
-        }
-        *program.time(&mut workspace) = T::from_f64(0.0);
-        program.run(&mut workspace);
-        (0..jacobian.by_state.len())
-            .map(|entry| program.result(&workspace, entry))
-            .collect()
-    };
-    (
-        entries(&model.dynamics_jacobian),
-        entries(&model.observation_jacobian),
-    )
+/// Those of ∂f/∂x and ∂g/∂x.
+fn jacobians(model: &Model) -> [&Jacobian; 2] {
+    [&model.dynamics_jacobian, &model.observation_jacobian]
 }
 
 /// ∂h/∂x as a matrix.

@@ -25,10 +25,9 @@ mod start;
 
 use crate::estimate::accuracy::error_bounds::ErrorBounds;
 use crate::estimate::answer::Solution;
+use crate::estimate::descent::damping;
 use crate::estimate::descent::iterate::Taken;
-use crate::estimate::descent::search::{DAMPING_EASED, DAMPING_NONE, DAMPING_START};
 use crate::estimate::descent::stopped::Stopped;
-use crate::estimate::options::Method;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::progress::Observer;
@@ -61,10 +60,7 @@ pub fn filter_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
     restore(&mut evaluator, &mut xi, &gain_noise.inverse, &[])?;
     let mut current = Iterate::at(&mut evaluator, xi, gain_noise)?;
     let mut taken = Taken::default();
-    let mut damping = match problem.options.method {
-        Method::LevenbergMarquardt => DAMPING_START,
-        Method::GaussNewton => 0.0,
-    };
+    let mut damping = damping::start(problem.options.method);
     let mut iteration = 0;
     let stopped = loop {
         let report = current.report(&evaluator, iteration, &taken);
@@ -103,8 +99,7 @@ pub fn filter_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
         let Ok(next) = relaxed(&mut evaluator, &current, lower) else {
             break Stopped::Stalled { distance };
         };
-        let eased = how.damping * DAMPING_EASED;
-        damping = if eased < DAMPING_NONE { 0.0 } else { eased };
+        damping = damping::eased(how.damping);
         (current, taken) = (next, how);
         iteration += 1;
     };
@@ -114,6 +109,6 @@ pub fn filter_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
         &current,
         &bounds,
         iteration,
-        &stopped,
+        stopped,
     ))
 }

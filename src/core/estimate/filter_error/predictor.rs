@@ -8,6 +8,7 @@ use nalgebra::DMatrix;
 use super::gain::{Change, Gain};
 use super::layout::Column;
 use crate::estimate::problem::Problem;
+use crate::estimate::problem::missing::present;
 use crate::model::{Jacobian, Model, Program, Workspace};
 use crate::simulate::{Segment, Stepper, between, initial_state};
 
@@ -110,7 +111,7 @@ impl<'p> Predictor<'p> {
         let pairs = to.innovations.iter_mut().zip(&to.outputs);
         for ((innovation, y), measured) in pairs.zip(&segment.measured) {
             let z = measured[k];
-            *innovation = if z.is_nan() { 0.0 } else { z - y };
+            *innovation = present(z - y, z);
         }
         if tangent.width == 0 {
             return;

@@ -5,8 +5,9 @@ use nalgebra::DVector;
 use super::evaluation::FilterEvaluator;
 use super::iterate::Iterate;
 use super::limit::restore;
+use crate::estimate::descent::damping;
 use crate::estimate::descent::iterate::Taken;
-use crate::estimate::descent::search::{DAMPING_RAISED, DAMPING_START, MOST_TRIALS, ROUNDING};
+use crate::estimate::descent::search::{MOST_TRIALS, ROUNDING};
 use crate::estimate::descent::step::length;
 use crate::estimate::likelihood::weighting::Weighting;
 use crate::estimate::options::Method;
@@ -56,7 +57,7 @@ pub(super) fn search(
         }
         match problem.options.method {
             Method::GaussNewton => share *= 0.5,
-            Method::LevenbergMarquardt => damping = (damping * DAMPING_RAISED).max(DAMPING_START),
+            Method::LevenbergMarquardt => damping = damping::raised(damping),
         }
     }
     Err(Nothing { in_range })

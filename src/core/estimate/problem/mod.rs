@@ -1,5 +1,6 @@
 //! An estimation problem: a model, its data, its unknowns, and how to go about it. Built once, then only read.
 
+pub(super) mod missing;
 pub(super) mod unknowns;
 pub(super) mod unusable;
 
@@ -7,6 +8,7 @@ use crate::estimate::options::Options;
 use crate::flight::Unit;
 use crate::model::{Model, ParameterInfo};
 use crate::simulate::{Columns, Segment, path_out_of_bounds};
+use missing::counts;
 use unknowns::Unknowns;
 use unusable::Unusable;
 
@@ -105,16 +107,4 @@ pub(crate) fn set_parameters(
         Some(place) => Err(Unusable::Path { segment, place }),
         None => Ok(()),
     }
-}
-
-/// How many samples of each output have a value, over all segments.
-fn counts(outputs: usize, segments: &[Segment]) -> Vec<usize> {
-    let present = |output: usize| {
-        segments
-            .iter()
-            .flat_map(|segment| &segment.measured[output])
-            .filter(|z| !z.is_nan())
-            .count()
-    };
-    (0..outputs).map(present).collect()
 }

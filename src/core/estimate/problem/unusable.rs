@@ -8,9 +8,9 @@ pub enum Unusable {
     /// The simulation left the range of numbers.
     #[error("the simulation leaves the range of numbers (segment {}, sample {})", segment + 1, sample + 1)]
     LeftRange {
-        /// Its index.
+        /// Index of the segment.
         segment: usize,
-        /// Index of the first sample, as far as it is known.
+        /// Index of the first sample that is not finite, as far as it is known.
         sample: usize,
     },
     /// Outputs are finite, but the cost or a derivative of an output is not.
@@ -19,15 +19,15 @@ pub enum Unusable {
     /// The Riccati equation of the Kalman filter has no solution with which the filter is stable.
     #[error("the Kalman filter of segment {} has no steady gain with which it is stable", segment + 1)]
     NoSteadyGain {
-        /// Its index.
+        /// Index of the segment.
         segment: usize,
     },
-    /// An element of a path has a size that it cannot have ; by its place in [`crate::model::Paths::at`].
+    /// An element of a path has a size that it cannot have; by its place in [`crate::model::Paths::at`].
     #[error("an element of the path of an input or output in segment {} has a size that it cannot have: play, rate limit, lag, or a delay of more than {MOST_DELAY} samples", segment + 1)]
     Path {
-        /// Its index.
+        /// Index of the segment.
         segment: usize,
-        /// Of the element.
+        /// Place of the element.
         place: usize,
     },
     /// The covariance of the residuals is singular: some outputs' residuals are not independent.

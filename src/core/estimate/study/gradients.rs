@@ -10,7 +10,8 @@ use crate::estimate::evaluation::derivatives::perturbation::{Perturbation, colum
 use crate::estimate::likelihood::weighting::Weighting;
 use crate::estimate::options::technique::Derivatives;
 use crate::estimate::problem::Problem;
-use crate::estimate::problem::unusable::Unusable;
+use crate::estimate::problem::missing::present;
+use crate::estimate::problem::unusable::{Unusable, left_range};
 use crate::simulate::Sensitivities;
 
 /// ∂J/∂θ at some places of θ. The adjoint makes R anew from the same residuals, as it always does.
@@ -103,12 +104,7 @@ fn direct(
             for k in 0..block.len {
                 for (output, e) in residual.iter_mut().enumerate() {
                     let measured = segment.measured[output][block.first + k];
-                    // a missing sample does not count
-                    *e = if measured.is_nan() {
-                        0.0
-                    } else {
-                        measured - block.output(output)[k]
-                    };
+                    *e = present(measured - block.output(output)[k], measured);
                 }
                 weighting.weighted(&residual, &mut weighted);
                 for (output, own) in own.iter_mut().enumerate() {
@@ -118,10 +114,7 @@ fn direct(
                 }
             }
         });
-        done.map_err(|diverged| Unusable::LeftRange {
-            segment: index,
-            sample: diverged.sample,
-        })?;
+        done.map_err(|diverged| left_range(index, &diverged))?;
         for (output, own) in own.iter().enumerate() {
             for (&parameter, value) in columns.of_output(output).iter().zip(own) {
                 if let Some(place) = problem.unknowns.place(index, parameter) {

@@ -173,11 +173,11 @@ mod tests {
         );
         refused(
             "1;1.234,5",
-            "line 1, column 2: '1.234,5' has more than one mark",
+            "line 1, column 2: '1.234,5' has more than one separator",
         );
         refused(
             "1;1,234,567",
-            "line 1, column 2: '1,234,567' has more than one mark",
+            "line 1, column 2: '1,234,567' has more than one separator",
         );
     }
 }

@@ -24,7 +24,7 @@ use super::plan::Plan;
 use super::spec::{JobKind, JobSpec};
 use crate::diagnose::Flight;
 use crate::estimate::{Options, Problem, Role, Unknowns, Validation};
-use crate::flight::{Fault, Finding, Maneuver};
+use crate::flight::{Fault, Faults, Finding, Maneuver};
 use crate::model::{Model, ModelDocument};
 use crate::simulate::Segment;
 
@@ -37,7 +37,7 @@ pub fn prepare(
     spec: &JobSpec,
     declared: &ModelDocument,
     maneuvers: &[Arc<Maneuver>],
-) -> Result<Plan, Vec<Fault>> {
+) -> Result<Plan, Faults> {
     let (mut faults, mut findings) = (Vec::new(), Vec::new());
     let document = document::edited(spec, declared, &mut faults);
     checks::check_shape(spec, maneuvers.len(), &mut faults);

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use super::run;
 use crate::diagnose::{Inconclusive, Step, diagnose};
 use crate::estimate::Outcome;
-use crate::flight::Fault;
+use crate::flight::{Fault, Faults};
 use crate::job::no_start::no_start;
 use crate::job::plan::Plan;
 use crate::job::result::JobResult;
@@ -17,10 +17,10 @@ use crate::job::result::JobResult;
 pub fn run_diagnosis(
     plan: &Plan,
     watcher: &mut dyn FnMut(Option<&Step>) -> ControlFlow<()>,
-) -> Result<JobResult, Vec<Fault>> {
+) -> Result<JobResult, Faults> {
     let Some(case) = &plan.case else {
         let message = "the job was not prepared as a diagnosis";
-        return Err(vec![Fault::new("/kind", "bad_option", message)]);
+        return Err(Fault::new("/kind", "bad_option", message).into());
     };
     match diagnose(case, watcher) {
         Ok(conclusion) => Ok(JobResult {
@@ -30,12 +30,10 @@ pub fn run_diagnosis(
             study: None,
             diagnosis: Some(conclusion.diagnosis),
         }),
-        Err(Inconclusive::Unfit(why)) => Err(vec![Fault::new(
-            "/parameters",
-            "diverged_at_start",
-            why.to_string(),
-        )]),
-        Err(Inconclusive::NoStart(why)) => Err(vec![no_start(&plan.problem, why)]),
+        Err(Inconclusive::Unfit(why)) => {
+            Err(Fault::new("/parameters", "diverged_at_start", why.to_string()).into())
+        }
+        Err(Inconclusive::NoStart(why)) => Err(no_start(&plan.problem, why).into()),
         // what there is so far is where the declared model starts from
         Err(Inconclusive::Stopped) => {
             let mut result = run(plan, &mut |_| ControlFlow::Break(()))?;

@@ -12,7 +12,7 @@ use super::no_start::no_start;
 use super::plan::Plan;
 use super::result::JobResult;
 use crate::estimate::{self, Outcome, Solution, estimate, predict};
-use crate::flight::Fault;
+use crate::flight::Faults;
 
 /// Runs a plan; `watcher` is told of its progress and may stop it.
 ///
@@ -21,14 +21,14 @@ use crate::flight::Fault;
 pub fn run(
     plan: &Plan,
     watcher: &mut dyn FnMut(estimate::Progress<'_>) -> ControlFlow<()>,
-) -> Result<JobResult, Vec<Fault>> {
+) -> Result<JobResult, Faults> {
     let problem = &plan.problem;
     let Solution {
         theta,
         covariance,
         estimate: mut result,
         mut histories,
-    } = estimate(problem, watcher).map_err(|why| vec![no_start(problem, why)])?;
+    } = estimate(problem, watcher).map_err(|why| no_start(problem, why))?;
     if result.outcome != Outcome::Cancelled {
         for validation in &plan.validation {
             let (prediction, history) = predict(problem, &theta, &covariance, validation);

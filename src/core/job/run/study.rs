@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use super::run;
 use crate::estimate::study::{self, Clock, NoStudy, StudyStep};
 use crate::estimate::{self, Outcome};
-use crate::flight::Fault;
+use crate::flight::Faults;
 use crate::job::no_start::no_start;
 use crate::job::plan::Plan;
 use crate::job::result::JobResult;
@@ -29,7 +29,7 @@ pub fn run_study(
     plan: &Plan,
     clock: &dyn Clock,
     observer: &mut dyn FnMut(StudyProgress<'_>) -> ControlFlow<()>,
-) -> Result<JobResult, Vec<Fault>> {
+) -> Result<JobResult, Faults> {
     let mut result = run(plan, &mut |progress| {
         observer(StudyProgress::Estimation(progress))
     })?;
@@ -41,7 +41,7 @@ pub fn run_study(
     };
     match study::study(&plan.problem, clock, &mut listener) {
         Ok(study) => result.study = Some(study),
-        Err(NoStudy::Unusable(why)) => return Err(vec![no_start(&plan.problem, why)]),
+        Err(NoStudy::Unusable(why)) => return Err(no_start(&plan.problem, why).into()),
         Err(NoStudy::Stopped) => {
             result.estimate.outcome = Outcome::Cancelled;
             result.estimate.reason = format!(

@@ -1,9 +1,10 @@
 //! Effects in the equations of motion: terms, channels and states that the model leaves out.
 
 use super::edited::AddedRole;
+use super::error::EditError;
 use super::sheet::{Sheet, dimension, unknown};
 use super::text::{names, replace};
-use super::{Edit, EditError, Reference};
+use super::written::{Edit, Reference};
 use crate::flight::{Dimension, Unit};
 use crate::model::dimensions::measure;
 use crate::model::document::{Parameter, Per};

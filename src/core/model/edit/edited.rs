@@ -5,6 +5,7 @@ use crate::model::document::ModelDocument;
 /// A document with an effect in it.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Edited {
+    /// The document, a model as any other.
     pub document: ModelDocument,
     /// The parameters that were added; what the effect is called after comes first.
     pub added: Vec<Added>,
@@ -15,7 +16,9 @@ pub struct Edited {
 /// A parameter that an edit added.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Added {
+    /// Its name in the edited document.
     pub name: String,
+    /// What it is there for.
     pub role: AddedRole,
 }
 
@@ -26,14 +29,19 @@ pub enum AddedRole {
     Size,
     /// Where the effect sets in: the largest rate, the angle of separation.
     Limit,
+    /// The time in which a lag follows, s.
     TimeConstant,
+    /// By how much something comes later, s.
     Delay,
     /// When it begins, after the start of the maneuver.
     Onset,
     /// How long it takes to pass.
     Duration,
+    /// The natural frequency of a mode, rad/s.
     Frequency,
+    /// The damping ratio of a mode.
     Damping,
+    /// How sharply a flow separates with the angle of attack.
     Steepness,
     /// The value of something at the start of the maneuver, or in its steady part: read off the recording.
     Reference,

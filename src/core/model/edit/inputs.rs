@@ -1,7 +1,7 @@
 //! Effects between a recorded input and the control surface.
 
-use super::EditError;
 use super::edited::AddedRole;
+use super::error::EditError;
 use super::sensors::{DELAY, LAG, SCALE, add_to};
 use super::sheet::{Sheet, of_a_difference, per_second, unknown};
 use crate::model::document::{Parameter, Start};

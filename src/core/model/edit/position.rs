@@ -1,7 +1,7 @@
 //! The lever arm of a sensor that is not where the model has it: a vane or an accelerometer.
 
-use super::EditError;
 use super::edited::AddedRole;
+use super::error::EditError;
 use super::lookup::Speed;
 use super::sensors::{Sensor, arm};
 use super::sheet::{Sheet, dimension};

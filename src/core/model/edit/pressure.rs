@@ -5,8 +5,8 @@
 
 use std::collections::BTreeMap;
 
-use super::EditError;
 use super::edited::AddedRole;
+use super::error::EditError;
 use super::lookup::Speed;
 use super::sheet::{Sheet, unknown};
 use super::text::laws;

@@ -2,8 +2,8 @@
 //!
 //! The target is an output, or an input that is measured: there the model sees the recorded value less the error.
 
-use super::EditError;
 use super::edited::AddedRole;
+use super::error::EditError;
 use super::sheet::{Sheet, dimension, of_a_difference, per_second, unknown};
 use crate::flight::{Dimension, PhysicalQuantity};
 use crate::model::document::Parameter;

@@ -1,8 +1,9 @@
 //! A document while it is edited: free names, what a name measures, what a quantity is called.
 
 use super::edited::{Added, AddedRole};
+use super::error::EditError;
 use super::text::{names, replace};
-use super::{Edit, EditError};
+use super::written::Edit;
 use crate::flight::{Dimension, PhysicalQuantity, Unit};
 use crate::model::document::{ModelDocument, Parameter, Per, Start, State};
 use crate::model::expression::{self, Function};

@@ -1,8 +1,8 @@
 //! Stall: separation of the flow with hysteresis, after Kirchhoff, Goman and Khrabrov.
 
-use super::EditError;
 use super::dynamics::angle;
 use super::edited::AddedRole;
+use super::error::EditError;
 use super::sheet::{Sheet, dimension, unknown};
 use super::text::replace_name;
 use crate::flight::Dimension;

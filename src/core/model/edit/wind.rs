@@ -1,7 +1,7 @@
 //! Moving air: a gust, and wind that the model does not have, or has as a constant.
 
-use super::EditError;
 use super::edited::AddedRole;
+use super::error::EditError;
 use super::sheet::{Sheet, unknown};
 use super::text::{laws, names, replace_name};
 use crate::flight::{Dimension, PhysicalQuantity, wind as by_name};

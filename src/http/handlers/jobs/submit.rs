@@ -151,7 +151,7 @@ pub(crate) async fn check(
                         .compute
                         .run(move || models::check_model(&model))
                         .await?;
-                    let of_model = checked.err().unwrap_or_default().into_iter();
+                    let of_model = checked.err().into_iter().flatten();
                     faults.extend(of_model.map(|fault| fault.under("/model")));
                 }
             }
@@ -166,7 +166,7 @@ pub(crate) async fn check(
     match service.compute.run(prepare).await? {
         Ok(checked) if faults.is_empty() => Ok(checked),
         prepared => {
-            faults.extend(prepared.err().unwrap_or_default());
+            faults.extend(prepared.err().into_iter().flatten());
             Err(Problem::of_faults(Code::InvalidJob, faults))
         }
     }

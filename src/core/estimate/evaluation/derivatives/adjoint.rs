@@ -9,6 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::estimate::likelihood::priors;
 use crate::estimate::likelihood::sums::mirror;
 use crate::estimate::likelihood::weighting::Weighting;
+use crate::estimate::problem::missing::present;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::problem::{Problem, set_parameters};
 use crate::simulate::{Adjoint, Checkpoints};
@@ -77,10 +78,7 @@ impl<'p> CostAndGradient<'p> {
                 }
             };
             let kept = self.machinery.forward(segment, &parameters, add);
-            let kept = kept.map_err(|diverged| Unusable::LeftRange {
-                segment: index,
-                sample: diverged.sample,
-            })?;
+            let kept = kept.map_err(|diverged| left_range(index, &diverged))?;
             self.checkpoints.push(kept);
         }
         mirror(&mut sums);
@@ -130,9 +128,4 @@ impl<'p> CostAndGradient<'p> {
         let kept: usize = self.checkpoints.iter().map(Checkpoints::bytes).sum();
         kept + self.machinery.bytes()
     }
-}
-
-/// A residual; 0 where nothing was measured, whatever the model says there.
-fn present(residual: f64, measured: f64) -> f64 {
-    if measured.is_nan() { 0.0 } else { residual }
 }

@@ -6,6 +6,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::estimate::likelihood::sums::{Product, Sums, mirror, pairs};
+use crate::estimate::problem::missing::present;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::problem::{Problem, set_parameters};
 use crate::model::Scalar;
@@ -117,10 +118,10 @@ pub(crate) fn columns<P: Perturbation>(
         }
         for (i, y) in y.iter_mut().enumerate() {
             let measured = &segment.measured[i][first..until];
-            y.iter_mut().zip(measured).for_each(|(y, z)| *y = z - *y);
-            // a missing sample does not count
+            y.iter_mut()
+                .zip(measured)
+                .for_each(|(y, z)| *y = present(z - *y, *z));
             for k in (0..len).filter(|&k| measured[k].is_nan()) {
-                y[k] = 0.0;
                 slopes[i].row_mut(k).fill(0.0);
             }
         }

@@ -24,6 +24,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::DVector;
 
+use crate::estimate::descent::damping;
 use crate::estimate::descent::gauss_newton::descend;
 use crate::estimate::descent::step::{Newton, advanced, held};
 use crate::estimate::evaluation::evaluator::Evaluator;
@@ -53,9 +54,8 @@ const CLOSED: f64 = 1.0;
 const MOST_DESCENTS: usize = 4;
 const DESCENT_ITERATIONS: usize = 20;
 
-const DAMPING_START: f64 = 1e-3;
+/// The damping falls to this share after a step that succeeds.
 const DAMPING_EASED: f64 = 0.1;
-const DAMPING_RAISED: f64 = 10.0;
 const MOST_TRIALS: usize = 10;
 
 /// How often intervals are halved when the first simulation runs away: its jumps are longer, in the states' noise,
@@ -198,7 +198,7 @@ fn close(
 ) -> Closed {
     let mut evaluator = Evaluator::new(cut.problem);
     let constants = cost_of_constants(cut.problem);
-    let (mut damping, mut penalty) = (DAMPING_START, PENALTY_START);
+    let (mut damping, mut penalty) = (damping::START, PENALTY_START);
     let (mut steps, mut descents) = (0, 0);
     let mut stopped = false;
     let mut best: Option<(f64, Vec<f64>)> = None;
@@ -213,7 +213,7 @@ fn close(
         for _ in 0..most {
             let before = point.merit(penalty);
             let Some(next) = step(cut, &point, noise, penalty, &mut damping) else {
-                damping = DAMPING_START;
+                damping = damping::START;
                 break;
             };
             point = next;
@@ -285,7 +285,7 @@ fn step(
                 return Some(next);
             }
         }
-        *damping = (*damping * DAMPING_RAISED).max(DAMPING_START);
+        *damping = damping::raised(*damping);
     }
     None
 }
