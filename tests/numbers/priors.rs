@@ -122,7 +122,10 @@ fn filter_error_has_shares_of_its_priors_too() {
         crate::common::recordings::maneuver(crate::common::recordings::elevator().as_bytes());
     let result = solve(json!("short-period"), changes, &[elevator]);
     let share = |name: &str| parameter(&result, name).prior_share.expect("a share");
-    assert!(share("Ma") > 0.1 && share("Ma") < 1.0, "{}", share("Ma"));
+    // of a lone prior it is the squared bound over the squared deviation
+    let bound = parameter(&result, "Ma").conventional_standard_error;
+    let expected = (bound.expect("a bound") / 0.05).powi(2);
+    assert!((share("Ma") - expected).abs() < 1e-3, "{}", share("Ma"));
     assert!(share("q_bias") < share("Ma"), "{}", share("q_bias"));
 }
 
