@@ -249,7 +249,7 @@ async fn the_list_follows_jobs_and_is_filtered() {
         assert_eq!(browser.count("#jobs tbody tr").await, 1);
         browser.choose("select[name=kind]", "diagnose").await;
         browser.click("form button").await;
-        browser.says("#jobs", "No job is like that").await;
+        browser.says("#jobs", "No job matches").await;
         browser.click("form a").await;
         browser.until(&row("of today")).await;
         assert_eq!(browser.count("#jobs tbody tr").await, 2);
