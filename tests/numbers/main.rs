@@ -18,6 +18,7 @@ mod common {
     pub(crate) mod study_problems;
 }
 
+mod absence;
 mod accuracy;
 mod bundled_data;
 mod bundled_effects;
@@ -36,6 +37,8 @@ mod missing_samples;
 mod model_documents;
 mod modes;
 mod one_step;
+mod paths;
+mod play_and_limits;
 mod priors;
 mod sensitivities;
 mod starts;

@@ -93,7 +93,8 @@ pub struct Constant {
     pub description: String,
 }
 
-/// A recorded quantity and the path on which it comes to the equations: play, rate limit, lag, delay, in this order.
+/// A recorded quantity that drives the model, and the path on which it comes to the equations: play, rate limit, lag,
+/// delay, in this order.
 #[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Input {
@@ -175,7 +176,8 @@ pub struct Definition {
     pub description: String,
 }
 
-/// What is compared with a recorded channel, and the path on which it comes to the recorder: lag, then delay.
+/// An output y, which is compared with the recorded channel of its name, and the path on which it comes to the recorder:
+/// lag, then delay.
 #[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Output {

@@ -17,10 +17,10 @@ pub enum Element {
 }
 
 impl Element {
-    /// In the order in which a signal passes them.
+    /// In the order in which an input passes them.
     pub const ALL: [Self; 4] = [Self::Play, Self::RateLimit, Self::Lag, Self::Delay];
 
-    /// The field of a document, and what it is called.
+    /// The field of a document.
     pub fn field(self) -> &'static str {
         match self {
             Self::Play => "play",
@@ -30,7 +30,7 @@ impl Element {
         }
     }
 
-    /// As it is called in messages.
+    /// What it is called.
     pub fn words(self) -> &'static str {
         match self {
             Self::RateLimit => "rate limit",

@@ -15,9 +15,9 @@ use super::scalar::Scalar;
 /// An element in the path of an input or output, which goes by its index.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct PathElement {
-    /// Index of the input or output.
+    /// Which input or output.
     pub signal: usize,
-    /// What the signal passes.
+    /// What it passes.
     pub element: Element,
 }
 
@@ -54,22 +54,22 @@ impl Paths {
         }
     }
 
-    /// Whether no input and no output has a path.
+    /// Whether no signal passes anything.
     pub fn is_empty(&self) -> bool {
         self.elements.is_empty()
     }
 
-    /// By place.
+    /// All of them, by place.
     pub fn elements(&self) -> &[PathElement] {
         &self.elements
     }
 
-    /// Elements of the inputs, in the order of the sizes.
+    /// Those of inputs.
     pub fn of_inputs(&self) -> &[PathElement] {
         &self.elements[..self.of_inputs]
     }
 
-    /// Elements of the outputs, whose sizes follow those of the inputs.
+    /// Those of outputs.
     pub fn of_outputs(&self) -> &[PathElement] {
         &self.elements[self.of_inputs..]
     }

@@ -9,7 +9,7 @@ use super::signal::Signal;
 use crate::model::{Element, Model};
 
 /// Most samples that an input or output may be delayed by, either way.
-pub(crate) const MOST_DELAY: f64 = 1000.0;
+pub const MOST_DELAY: f64 = 1000.0;
 
 /// The segment with inputs that have a path replaced by v = y(ψ0) - Σ ρ_i ψ0_i, and the ρ_i = ∂y/∂ψ_i behind all inputs,
 /// where ψ0 = ψ(θ); see [`crate::model::Paths`]. A model whose inputs have no paths sees what is recorded.
@@ -53,7 +53,11 @@ pub(crate) fn driven<'s>(
 
 /// The first element of `model`'s paths whose size is out of bounds in a segment, by its place in
 /// [`crate::model::Paths::at`]: no number, a rate limit below 0, or a delay of more than [`MOST_DELAY`] samples.
-pub(crate) fn path_out_of_bounds(model: &Model, segment: &Segment, parameters: &[f64]) -> Option<usize> {
+pub(crate) fn path_out_of_bounds(
+    model: &Model,
+    segment: &Segment,
+    parameters: &[f64],
+) -> Option<usize> {
     if model.paths.is_empty() {
         return None;
     }

@@ -3,8 +3,7 @@
 
 use super::method::{InputInterpolation, Integrator};
 use super::segment::Segment;
-use super::simulation::initial_state;
-use super::simulation::simulate;
+use super::simulation::{initial_state, simulate};
 use super::stepper::Stepper;
 use crate::model::{Model, Scalar, Workspace};
 

@@ -2,8 +2,8 @@
 //!
 //! dx/dt = f(x, u, θ), x(0) = x0(θ), y_k = g(x_k, u_k, θ), stepped once a sample by an explicit method.
 //! [`simulate`] gives y for any kind of number; [`Sensitivities`] gives y and ∂y/∂θ, the adjoint the
-//! product (∂y/∂θ)ᵀ ȳ alone. A [`Scenario`] makes a maneuver of known truth. Inputs and outputs pass their paths
-//! (play, rate limit, lag, delay) here: inputs before a run, outputs behind it.
+//! product (∂y/∂θ)ᵀ ȳ alone. A [`Scenario`] makes a maneuver of known truth. Inputs and outputs pass their paths (play,
+//! rate limit, lag, delay) here: inputs before a run, outputs behind it.
 //!
 //! Invariant: derivatives are those of the discretised model itself, and numbers do not depend on how many threads or
 //! lanes there are.

@@ -1,17 +1,18 @@
 //! Outputs alone, along the same trajectory as [`super::Sensitivities`]: the same numbers, for less work.
 
+use super::input_path::driven;
+use super::interpolation::Axis;
 use super::linearised::Linearised;
 use super::method::{InputInterpolation, Integrator};
+use super::output_path;
 use super::segment::Segment;
-use super::simulation::{Diverged, simulate};
+use super::simulation::Diverged;
 use super::trajectory::Trajectory;
 use crate::model::{BLOCK, Model};
 
 /// The machinery for one model, reusable for any segment and θ.
 pub struct Outputs<'m> {
     model: &'m Model,
-    integrator: Integrator,
-    interpolation: InputInterpolation,
     trajectory: Trajectory<'m>,
     outputs: Linearised<'m>,
 }
@@ -25,8 +26,6 @@ impl<'m> Outputs<'m> {
     ) -> Self {
         Self {
             model,
-            integrator,
-            interpolation,
             trajectory: Trajectory::new(model, integrator, interpolation),
             outputs: Linearised::new(&model.observation, 1),
         }
@@ -43,10 +42,32 @@ impl<'m> Outputs<'m> {
         parameters: &[f64],
         mut sink: impl FnMut(usize, &[&[f64]]),
     ) -> Result<(), Diverged> {
-        if !self.model.paths.is_empty() {
-            self.run_with_paths(segment, parameters, sink);
-            return Ok(());
+        let model = self.model;
+        let sizes = model.paths.at(parameters);
+        let segment = &*driven(model, self.trajectory.interpolation(), segment, &sizes);
+        if model.paths.of_outputs().is_empty() {
+            return self.advance(segment, parameters, sink);
         }
+        // a delayed output looks back and ahead: the whole segment is one block
+        let mut outputs = vec![Vec::with_capacity(segment.len()); model.outputs.len()];
+        self.advance(segment, parameters, |_, y| {
+            let series = outputs.iter_mut().zip(y);
+            series.for_each(|(series, y)| series.extend_from_slice(y));
+        })?;
+        let sizes = &sizes[model.paths.of_inputs().len()..];
+        output_path::pass(model, &Axis::new(segment), sizes, &mut outputs);
+        let outputs: Vec<&[f64]> = outputs.iter().map(Vec::as_slice).collect();
+        sink(0, &outputs);
+        Ok(())
+    }
+
+    /// Along a driven segment, outputs before their paths.
+    fn advance(
+        &mut self,
+        segment: &Segment,
+        parameters: &[f64],
+        mut sink: impl FnMut(usize, &[&[f64]]),
+    ) -> Result<(), Diverged> {
         self.trajectory.start(segment, parameters);
         self.outputs.set_parameters(parameters);
         for first in (0..segment.len()).step_by(BLOCK) {
@@ -59,31 +80,5 @@ impl<'m> Outputs<'m> {
             sink(first, &outputs);
         }
         Ok(())
-    }
-
-    /// A delayed output looks back and ahead: the whole segment is one block.
-    fn run_with_paths(
-        &self,
-        segment: &Segment,
-        parameters: &[f64],
-        mut sink: impl FnMut(usize, &[&[f64]]),
-    ) {
-        let mut outputs = vec![Vec::with_capacity(segment.len()); self.outputs.results()];
-        let keep = |_, y: &[f64]| {
-            outputs
-                .iter_mut()
-                .zip(y)
-                .for_each(|(series, &y)| series.push(y));
-        };
-        simulate(
-            self.model,
-            self.integrator,
-            self.interpolation,
-            segment,
-            parameters,
-            keep,
-        );
-        let outputs: Vec<&[f64]> = outputs.iter().map(Vec::as_slice).collect();
-        sink(0, &outputs);
     }
 }

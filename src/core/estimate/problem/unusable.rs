@@ -22,12 +22,13 @@ pub enum Unusable {
         /// Index of the segment.
         segment: usize,
     },
-    /// An element of a path has a size that it cannot have; by its place in [`crate::model::Paths::at`].
-    #[error("an element of the path of an input or output in segment {} has a size that it cannot have: play, rate limit, lag, or a delay of more than {MOST_DELAY} samples", segment + 1)]
+    /// An element of a path has a size that it cannot have: no number, a rate limit below 0, or a delay of more than
+    /// [`MOST_DELAY`] samples.
+    #[error("in segment {} an input or output is delayed by more than {MOST_DELAY} samples, or its rate limited to less than nothing", segment + 1)]
     Path {
         /// Index of the segment.
         segment: usize,
-        /// Place of the element.
+        /// Which element, by its place in [`crate::model::Paths::at`].
         place: usize,
     },
     /// The covariance of the residuals is singular: some outputs' residuals are not independent.

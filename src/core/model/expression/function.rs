@@ -40,7 +40,7 @@ pub enum Function {
     First,
     /// `mean(channel, seconds)`: the mean over the first seconds.
     Mean,
-    /// `largest_rate(channel)`: the largest rate between two samples, per second.
+    /// `largest_rate(channel)`: the largest rate of change from one sample to the next, up or down.
     LargestRate,
     /// `interpolated(channel)`: missing samples filled linearly from their neighbours.
     Interpolated,
