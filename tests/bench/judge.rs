@@ -47,6 +47,8 @@ mod options;
 mod oracle;
 #[path = "judge/plant.rs"]
 mod plant;
+#[path = "judge/polish.rs"]
+mod polish;
 #[path = "judge/random.rs"]
 mod random;
 #[path = "judge/record.rs"]

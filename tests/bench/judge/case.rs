@@ -1,6 +1,7 @@
 //! One case: an aircraft, what is wrong with it and how strongly, flown and recorded.
 
 use serde_json::json;
+use trimtab_core::diagnose::Effect;
 use trimtab_core::model::ModelDocument;
 
 use crate::aircraft::{Aircraft, Kind};
@@ -20,6 +21,8 @@ pub(crate) struct Setting {
     pub noises: Vec<Noise>,
     pub colour: Colour,
     pub seed: u64,
+    /// Controls are recorded to a coarse digit.
+    coarse: bool,
     names: Vec<(&'static str, &'static str)>,
 }
 
@@ -47,7 +50,9 @@ impl Setting {
             toml::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", kind.name));
         let outputs = aircraft.channels.iter().filter(|c| c.output);
         let noises = outputs.map(|_| Noise::of(colour, &mut random)).collect();
+        let coarse = random.chance(0.3);
         Self {
+            coarse,
             aircraft,
             document,
             noises,
@@ -65,6 +70,21 @@ impl Setting {
     /// And the way back.
     pub(crate) fn own(&self, text: &str) -> String {
         renamed(text, &reversed(&self.names))
+    }
+
+    /// Target and term of an effect in the judge's words. The arm of a position is an axis, not a channel.
+    pub(crate) fn place(&self, effect: &Effect) -> (String, Option<String>) {
+        let is_arm = effect.word() == "sensor_position";
+        let term = |term: &String| if is_arm { term.clone() } else { self.own(term) };
+        (self.own(&effect.target), effect.term.as_ref().map(term))
+    }
+
+    /// What an effect is called, in the judge's words.
+    pub(crate) fn called(&self, effect: &Effect) -> String {
+        match self.place(effect) {
+            (target, Some(term)) => format!("{} {term} in {target}", effect.word()),
+            (target, None) => format!("{} {target}", effect.word()),
+        }
     }
 
     /// Standard deviations of the outputs' noise, SI.
@@ -98,7 +118,7 @@ impl Setting {
                 channels: &aircraft.channels,
                 noises: &self.noises,
                 noisy,
-                quantum: aircraft.quantum,
+                coarse: self.coarse,
                 sample: aircraft.sample,
             };
             let mut random = Random::new(self.seed, &format!("noise of flight {number}"));

@@ -1,18 +1,17 @@
 //! Likelihood of residuals whose colour is known, which only the judge does.
 
-use trimtab_core::job::JobResult;
+use trimtab_core::estimate::TimeHistory;
 
 use crate::noise::Noise;
 
 /// Residuals by output, then flight, SI.
 pub(crate) type Residuals = Vec<Vec<Vec<f64>>>;
 
-pub(crate) fn residuals(result: &JobResult) -> Residuals {
-    let outputs = result.histories.first().map_or(0, |h| h.outputs.len());
+pub(crate) fn of_histories(histories: &[TimeHistory]) -> Residuals {
+    let outputs = histories.first().map_or(0, |h| h.outputs.len());
     (0..outputs)
         .map(|i| {
-            result
-                .histories
+            histories
                 .iter()
                 .map(|h| h.outputs[i].residual.to_vec())
                 .collect()
@@ -20,27 +19,33 @@ pub(crate) fn residuals(result: &JobResult) -> Residuals {
         .collect()
 }
 
+/// By output: what noise of these colours is made of, all flights in a row.
+pub(crate) fn innovations(residuals: &Residuals, noises: &[Noise]) -> Vec<Vec<f64>> {
+    let of = |(flights, noise): (&Vec<Vec<f64>>, &Noise)| {
+        flights.iter().flat_map(|e| noise.whitened(e)).collect()
+    };
+    residuals.iter().zip(noises).map(of).collect()
+}
+
 /// Σ w² over whitened residuals, in units of the noise's variance; `deviations` are those of the noise, SI.
 pub(crate) fn squares(residuals: &Residuals, noises: &[Noise], deviations: &[f64]) -> f64 {
-    let of = |(i, flights): (usize, &Vec<Vec<f64>>)| {
-        let sum: f64 = flights
-            .iter()
-            .flat_map(|e| noises[i].whitened(e))
-            .map(|w| w * w)
-            .sum();
-        sum / (deviations[i] * deviations[i])
+    let of = |(white, deviation): (&Vec<f64>, &f64)| {
+        white.iter().map(|w| (w / deviation).powi(2)).sum::<f64>()
     };
-    residuals.iter().enumerate().map(of).sum()
+    innovations(residuals, noises)
+        .iter()
+        .zip(deviations)
+        .map(of)
+        .sum()
 }
 
 /// ln L with the variance of each output estimated, but for constants.
 pub(crate) fn ln_likelihood(residuals: &Residuals, noises: &[Noise]) -> f64 {
-    let of = |(i, flights): (usize, &Vec<Vec<f64>>)| {
-        let all: Vec<f64> = flights.iter().flat_map(|e| noises[i].whitened(e)).collect();
-        let n = all.len() as f64;
-        -0.5 * n * (all.iter().map(|w| w * w).sum::<f64>() / n).ln()
+    let of = |white: &Vec<f64>| {
+        let n = white.len() as f64;
+        -0.5 * n * (white.iter().map(|w| w * w).sum::<f64>() / n).ln()
     };
-    residuals.iter().enumerate().map(of).sum()
+    innovations(residuals, noises).iter().map(of).sum()
 }
 
 /// ln L of residuals under the best autoregression of each output, less what its order costs (Schwarz).

@@ -53,6 +53,10 @@ impl Noise {
         }
     }
 
+    pub(crate) fn is_coloured(&self) -> bool {
+        self.pole != 0.0
+    }
+
     pub(crate) fn series(&self, count: usize, random: &mut Random) -> Vec<f64> {
         let drive = (1.0 - self.pole * self.pole).sqrt();
         let (slow, white) = ((1.0 - self.floor).sqrt(), self.floor.sqrt());

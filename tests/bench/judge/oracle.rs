@@ -6,8 +6,8 @@ use trimtab_core::model::{EditKind, ModelDocument, Start};
 
 use crate::case::Setting;
 use crate::fault::Fault;
-use crate::job::estimate;
-use crate::likelihood::{Residuals, ln_likelihood, residuals};
+use crate::likelihood::{Residuals, ln_likelihood};
+use crate::polish;
 use crate::record::Recording;
 
 /// Units of ln L within which two names are one and the same to these data.
@@ -54,8 +54,8 @@ pub(crate) fn of_effect(
 
 fn fitted(setting: &Setting, recordings: &[Recording], document: &ModelDocument) -> Option<f64> {
     let options = json!({"error_bounds": "conventional"});
-    let result = estimate(document, recordings, &options).ok()?;
-    Some(ln_likelihood(&residuals(&result), &setting.noises))
+    let left = polish::fitted(document, recordings, &options, &setting.noises, None).ok()?;
+    Some(ln_likelihood(&left, &setting.noises))
 }
 
 /// A value in SI as a parameter's start.
@@ -104,14 +104,45 @@ pub(crate) fn shortfall(
     Some(truth - best)
 }
 
-/// Whether a named effect is an alias of the truth.
+/// The catalogue's own edit is the truth's model where it falls no shorter of it than this: what its own noise lets the
+/// true model reach scatters by some units.
+const ITS_MODEL: f64 = 10.0;
+
+/// ln L that the true model must be thought to reach, of flights that do not tell it to rounding: inputs have noise too,
+/// and are sampled. What the declared model loses by that on the same flights without any fault, the truth loses as well.
+fn reached(setting: &Setting, recordings: &[Recording], faults: usize) -> f64 {
+    let lost = setting.flown(&Vec::new(), true).and_then(|calm| {
+        let found = fitted(setting, &calm, &setting.document)?;
+        Some(of_truth(setting, &calm, 0) - found)
+    });
+    of_truth(setting, recordings, faults) - lost.unwrap_or(0.0).max(0.0)
+}
+
+/// Whether a named effect is an alias of the truth: it fits within three units of ln L of what the truth reaches.
 pub(crate) fn is_alias(
     setting: &Setting,
     recordings: &[Recording],
-    faults: usize,
+    (fault, size): (&Fault, f64),
     effect: &Effect,
     parameters: &[EffectParameter],
 ) -> bool {
-    of_effect(setting, recordings, effect, parameters)
-        .is_some_and(|found| found > of_truth(setting, recordings, faults) - ALIKE)
+    let Some(found) = of_effect(setting, recordings, effect, parameters) else {
+        return false;
+    };
+    let expected = reached(setting, recordings, 1);
+    let own = shortfall(setting, recordings, fault, size);
+    let own = own.map(|shortfall| of_truth(setting, recordings, 1) - shortfall);
+    let truth = own.filter(|own| fault.known && (own - expected).abs() < ITS_MODEL);
+    found > truth.unwrap_or(expected) - ALIKE
+}
+
+/// Whether a document explains the flights as well as the truth with its faults does.
+pub(crate) fn explains(
+    setting: &Setting,
+    recordings: &[Recording],
+    document: &ModelDocument,
+    faults: usize,
+) -> bool {
+    let expected = reached(setting, recordings, faults);
+    fitted(setting, recordings, document).is_some_and(|found| found > expected - ALIKE)
 }

@@ -64,8 +64,8 @@ pub(crate) struct Recorder<'r> {
     pub noises: &'r [Noise],
     /// Without it nothing disturbs the truth.
     pub noisy: bool,
-    /// Steps of the digits of controls, in their units; 0 is none.
-    pub quantum: f64,
+    /// Controls are recorded to a digit of four times their noise.
+    pub coarse: bool,
     /// s between samples
     pub sample: f64,
 }
@@ -121,10 +121,11 @@ impl Recorder<'_> {
                 {
                     change(&mut samples, channel.noise);
                 }
-                if self.quantum > 0.0 && matches!(channel.quantity, Quantity::Command(_)) {
+                if self.coarse && matches!(channel.quantity, Quantity::Command(_)) {
+                    let digit = 4.0 * channel.noise;
                     samples
                         .iter_mut()
-                        .for_each(|y| *y = (*y / self.quantum).round() * self.quantum);
+                        .for_each(|y| *y = (*y / digit).round() * digit);
                 }
             }
             if channel.output {

@@ -12,7 +12,7 @@ use crate::oracle;
 use crate::random::Random;
 use crate::replay::Replay;
 use crate::strength::{size, worth};
-use crate::verdict::{Outcome, judge, points, refusal};
+use crate::verdict::{Judge, Outcome};
 
 /// One case and its answer.
 #[derive(Clone, Debug, Serialize)]
@@ -100,15 +100,24 @@ pub(crate) fn run(design: &Design, seed: u64, manner: &Manner<'_>) -> Line {
         samples: 0,
         step: setting.aircraft.sample,
     };
-    let sized: Option<Sized> = (design.faults.iter())
-        .map(|&fault| Some((fault, size(&setting, fault, design.strength)?)))
+    let found: Option<Vec<(f64, Option<f64>)>> = (design.faults.iter())
+        .map(|&fault| size(&setting, fault, design.strength))
         .collect();
-    let Some(sized) = sized else {
+    let Some(found) = found else {
         return line;
     };
-    line.sizes = sized.iter().map(|(_, size)| *size).collect();
+    let sized: Sized = design
+        .faults
+        .iter()
+        .zip(&found)
+        .map(|(fault, (size, _))| (*fault, *size))
+        .collect();
+    line.sizes = found.iter().map(|(size, _)| *size).collect();
+    line.worth = match found[..] {
+        [(_, worth)] => worth,
+        _ => worth(&setting, &sized),
+    };
     line.outcome = Outcome::NotTestable;
-    line.worth = worth(&setting, &sized);
     let Some(recordings) = setting.flown(&sized, true) else {
         return line;
     };
@@ -133,12 +142,15 @@ pub(crate) fn run(design: &Design, seed: u64, manner: &Manner<'_>) -> Line {
             line.sentence = why;
         }
         Ok(diagnosis) => {
-            line.outcome = judge(&setting, &recordings, design, &diagnosis);
-            if design.set == Set::Unknown {
-                let fault = &setting.aircraft.faults[design.faults[0]];
-                line.points = Some(points(&setting, fault, &diagnosis));
-            }
-            line.refused = refusal(&setting, design, &diagnosis);
+            let judge = Judge {
+                setting: &setting,
+                recordings: &recordings,
+                set: design.set,
+                sized: &sized,
+            };
+            line.outcome = judge.outcome(&diagnosis);
+            line.points = (design.set == Set::Unknown).then(|| judge.points(&diagnosis));
+            line.refused = judge.refusal(&diagnosis);
             tell(&mut line, &setting, &diagnosis);
         }
     }
@@ -151,9 +163,9 @@ fn tell(line: &mut Line, setting: &Setting, diagnosis: &Diagnosis) {
     line.named = diagnosis
         .effects
         .iter()
-        .map(|e| setting.own(&e.effect.name()))
+        .map(|e| setting.called(&e.effect))
         .collect();
     let first = diagnosis.effects.first();
     let members = first.iter().flat_map(|first| &first.group);
-    line.group = members.map(|m| setting.own(&m.effect.name())).collect();
+    line.group = members.map(|m| setting.called(&m.effect)).collect();
 }

@@ -1,11 +1,13 @@
 //! Sizes of faults: by what they are worth to someone who knows them, as a likelihood ratio.
 
 use serde_json::{Map, json};
+use trimtab_core::job::JobResult;
 
 use crate::case::{Setting, Sized};
-use crate::fault::Sizing;
+use crate::fault::{Fault, Sizing};
 use crate::job::estimate;
-use crate::likelihood::{ln_likelihood_of_best_colour, residuals, squares};
+use crate::likelihood::{ln_likelihood_of_best_colour, of_histories, squares};
+use crate::polish;
 use crate::random::Random;
 
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -39,59 +41,64 @@ impl Strength {
 /// How many times a size is tried.
 const TRIES: usize = 9;
 
-/// The size of a fault that has a strength; `None` where the model imitates it, or no aircraft has that much of it.
-pub(crate) fn size(setting: &Setting, fault: usize, strength: Strength) -> Option<f64> {
+/// The size of a fault that has a strength, and what it is worth, where that is known; `None` where the model imitates
+/// it, or no aircraft has that much of it.
+pub(crate) fn size(
+    setting: &Setting,
+    fault: usize,
+    strength: Strength,
+) -> Option<(f64, Option<f64>)> {
     let mut random = Random::new(setting.seed, "strength");
-    let (least, most_worth) = strength.range();
-    let wanted = least * (most_worth / least).powf(random.uniform());
-    let sign = if setting.aircraft.faults[fault].signed {
-        random.sign()
-    } else {
-        1.0
+    let (least, most) = strength.range();
+    let wanted = least * (most / least).powf(random.uniform());
+    let Fault { signed, sizing, .. } = setting.aircraft.faults[fault];
+    let sign = if signed { random.sign() } else { 1.0 };
+    let (size, worth) = match sizing {
+        Sizing::Given(sizes) => return Some((sizes[2 - strength as usize], None)),
+        Sizing::Worth { guess, most } => {
+            // without the fault: what sampling makes of the inputs
+            let none = worth(setting, &vec![])?;
+            let of = |size: f64| Some(worth(setting, &vec![(fault, sign * size)])? - none);
+            search(wanted, guess.abs(), most.abs(), of)?
+        }
+        Sizing::Disturbance { guess, most } => {
+            let of = |size: f64| worth_of_disturbance(setting, fault, sign * size);
+            search(wanted, guess, most, of)?
+        }
     };
-    let (guess, most, disturbs) = match setting.aircraft.faults[fault].sizing {
-        Sizing::Given(sizes) => return Some(sizes[2 - strength as usize]),
-        Sizing::Worth { guess, most } => (guess, most, false),
-        Sizing::Disturbance { guess, most } => (guess, most, true),
-    };
-    let mut size = sign * guess;
-    // without the fault: what sampling and discrete inputs make
-    let none = if disturbs {
-        0.0
-    } else {
-        worth(setting, &vec![])?
-    };
-    let mut below = 0.0;
-    let mut above = f64::INFINITY;
+    Some((sign * size, Some(worth)))
+}
+
+/// A size above zero that is worth what is wanted, or nearly: worth grows with the square, or so.
+fn search(
+    wanted: f64,
+    guess: f64,
+    most: f64,
+    worth: impl Fn(f64) -> Option<f64>,
+) -> Option<(f64, f64)> {
+    let (mut size, mut below, mut above) = (guess, 0.0_f64, f64::INFINITY);
     for _ in 0..TRIES {
-        let found = match disturbs {
-            true => worth_of_disturbance(setting, fault, size),
-            false => worth(setting, &vec![(fault, size)]).map(|w| w - none),
-        };
         // what does not stay in the air is too large
-        let found = found.unwrap_or(f64::INFINITY);
+        let found = worth(size).unwrap_or(f64::INFINITY);
         if (0.8 * wanted..1.25 * wanted).contains(&found) {
-            return (size.abs() <= most.abs()).then_some(size);
+            return (size <= most).then_some((size, found));
         }
-        let now = size.abs();
         if found < wanted {
-            below = now.max(below);
+            below = below.max(size);
         } else {
-            above = now.min(above);
+            above = above.min(size);
         }
-        if below >= most.abs() {
+        if below >= most {
             return None;
         }
-        let share = (wanted / found.max(1e-3)).sqrt().clamp(0.1, 6.0);
-        let mut next = now * share;
-        if above.is_finite() && !(below..above).contains(&next) || (found.is_infinite()) {
-            next = if below > 0.0 {
+        size *= (wanted / found.max(1e-3)).sqrt().clamp(0.1, 6.0);
+        if above.is_finite() && !(below..above).contains(&size) {
+            size = if below > 0.0 {
                 (below * above).sqrt()
             } else {
                 0.3 * above
             };
         }
-        size = sign * next;
     }
     None
 }
@@ -100,12 +107,15 @@ pub(crate) fn size(setting: &Setting, fault: usize, strength: Strength) -> Optio
 /// declared model has done what it can.
 pub(crate) fn worth(setting: &Setting, sized: &Sized) -> Option<f64> {
     let recordings = setting.flown(sized, false)?;
-    let result = estimate(&setting.document, &recordings, &setting.known_noise()).ok()?;
-    Some(squares(
-        &residuals(&result),
+    let (options, noise) = (setting.known_noise(), setting.deviations());
+    let left = polish::fitted(
+        &setting.document,
+        &recordings,
+        &options,
         &setting.noises,
-        &setting.deviations(),
-    ))
+        Some(&noise),
+    );
+    Some(squares(&left.ok()?, &setting.noises, &noise))
 }
 
 /// The same of what disturbs a state: by the filter, against the best that coloured noise explains.
@@ -125,6 +135,6 @@ fn worth_of_disturbance(setting: &Setting, fault: usize, size: f64) -> Option<f6
         .collect();
     let options = json!({"estimator": "filter_error", "error_bounds": "conventional", "process_noise": still});
     let filtered = estimate(&setting.document, &recordings, &options).ok()?;
-    let of = |result| ln_likelihood_of_best_colour(&residuals(result));
+    let of = |result: &JobResult| ln_likelihood_of_best_colour(&of_histories(&result.histories));
     Some((2.0 * (of(&filtered) - of(&plain))).max(0.0))
 }

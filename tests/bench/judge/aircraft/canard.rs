@@ -159,8 +159,7 @@ pub(super) fn make(random: &mut Random, replay: Option<&Replay>) -> Aircraft {
         document: DOCUMENT.replace("{SPEED}", &format!("{speed:?}")),
         channels,
         sorties,
-        sample: sample(random),
-        quantum: 0.0,
+        sample: sample(random).min(0.04),
         faults: both(faults(), unknown_faults()),
     }
 }

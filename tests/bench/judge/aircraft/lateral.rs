@@ -238,7 +238,6 @@ fn aircraft(
         channels,
         sorties,
         sample: sample(random),
-        quantum: 0.0,
         faults: both(faults, unknown_faults()),
     }
 }

@@ -27,8 +27,6 @@ pub(crate) struct Aircraft {
     pub sorties: Vec<Sortie>,
     /// s between samples
     pub sample: f64,
-    /// Digits of recorded controls, in their unit; 0 is none.
-    pub quantum: f64,
     pub faults: Vec<Fault>,
 }
 

@@ -142,7 +142,6 @@ pub(super) fn make(random: &mut Random, replay: Option<&Replay>) -> Aircraft {
         channels,
         sorties,
         sample: sample(random),
-        quantum: 0.0,
         faults: both(faults(), unknown_faults()),
     }
 }

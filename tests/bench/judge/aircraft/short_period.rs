@@ -154,7 +154,6 @@ pub(crate) fn make(random: &mut Random, replay: Option<&Replay>) -> Aircraft {
         channels,
         sorties,
         sample: sample(random),
-        quantum: if random.chance(0.3) { 0.01 } else { 0.0 },
         faults: both(faults(), unknown_faults()),
     }
 }

@@ -172,8 +172,7 @@ pub(super) fn flown(
         document: document.to_string(),
         channels,
         sorties,
-        sample: sample(random).max(0.02),
-        quantum: 0.0,
+        sample: sample(random).clamp(0.02, 0.025),
         faults: both(faults, unknown),
     }
 }
