@@ -31,6 +31,7 @@ mod effects;
 mod estimation;
 mod filter_error;
 mod invisible_effects;
+mod knowledge;
 mod likelihood;
 mod machine_code;
 mod missing_samples;

@@ -14,6 +14,7 @@ use super::names::{Meaning, Names};
 use super::operation::{Binary, Unary};
 use super::paths::{Compiled, PathElement, Paths};
 use super::program::{Program, Slots};
+use super::quantities;
 use super::{Model, ParameterInfo, Quantity, limits};
 use crate::flight::{Fault, Faults, Unit, escape};
 
@@ -32,6 +33,7 @@ impl Model {
             faults.push(Fault::new("/outputs", "no_outputs", message));
         }
         let names = Names::collect(document, &mut faults);
+        quantities::check(document, &mut faults);
         let equations = Equations::read(document, &names, &mut faults);
         let parameters = parameters(document, &mut faults);
         if !faults.is_empty() {

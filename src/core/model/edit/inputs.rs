@@ -36,14 +36,16 @@ pub(super) fn scale(sheet: &mut Sheet) -> Result<(), EditError> {
     Ok(())
 }
 
+/// One delay for all targets, which share a clock.
 pub(super) fn delay(sheet: &mut Sheet) -> Result<(), EditError> {
-    let target = sheet.target();
-    sheet.input(target)?;
-    let name = sheet.name(&format!("{target}_delay"))?;
-    if let Some(input) = sheet.document.inputs.get_mut(target) {
-        add_to(&mut input.delay, &name);
+    let name = sheet.name(&format!("{}_delay", sheet.stem()))?;
+    for target in sheet.edit.target.split('+').map(str::trim) {
+        sheet.input(target)?;
+        if let Some(input) = sheet.document.inputs.get_mut(target) {
+            add_to(&mut input.delay, &name);
+        }
     }
-    let words = format!("time delay of {target}");
+    let words = format!("time delay of {}", sheet.edit.target);
     sheet.add(
         &name,
         AddedRole::Delay,

@@ -99,10 +99,8 @@ impl Sheet<'_> {
         let told = self.edit.channels.get(name);
         let input = Input {
             unit: unit.to_string(),
-            delay: told.and_then(|told| told.delay.clone()),
-            quantity: told.and_then(|told| told.quantity),
             description: description.to_string(),
-            ..Input::default()
+            ..told.cloned().unwrap_or_default()
         };
         self.document.inputs.insert(name.to_string(), input);
         self.inputs.push(name.to_string());

@@ -1,6 +1,7 @@
 //! What the quantities of a document are: what it declares, and otherwise what names, units and equations tell.
 
 mod attitude;
+mod check;
 mod control;
 mod equations;
 mod flow;
@@ -10,6 +11,7 @@ mod names;
 mod sums;
 mod velocity;
 
+pub(super) use check::check;
 pub use known::{Quantities, Source, Taken};
 
 use equations::Equations;

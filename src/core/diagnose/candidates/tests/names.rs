@@ -4,7 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::{BESIDE, beside, case, names, offered};
 use crate::diagnose::candidates::taken_for;
-use crate::diagnose::effect::Effect;
 use crate::flight::PhysicalQuantity;
 use crate::model::{ModelDocument, Quantities, catalog};
 
