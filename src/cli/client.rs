@@ -13,7 +13,7 @@ use serde_json::Value;
 
 use super::Failure;
 use super::recording::format_of;
-use super::server::Server;
+use super::server::ServerOption;
 use crate::diagnose::Diagnosis;
 use crate::estimate::{Estimate, TimeHistory};
 use crate::job::{Event, JobSpec};
@@ -37,14 +37,14 @@ const RECONNECT_AFTER: Duration = Duration::from_secs(1);
 const READY_WITHIN: Duration = Duration::from_secs(4);
 
 impl Client {
-    pub(super) fn of(server: &Server) -> Result<Self, Failure> {
+    pub(super) fn of(server: &ServerOption) -> Result<Self, Failure> {
         Self::new(&server.url, server.key.as_deref())
     }
 
     pub(super) fn new(server: &str, key: Option<&str>) -> Result<Self, Failure> {
         let server: Url = server
             .parse()
-            .map_err(|error| Failure::new(format!("'{server}' is no URL: {error}")))?;
+            .map_err(|error| Failure::new(format!("'{server}' is not a URL: {error}")))?;
         let builder = reqwest::Client::builder();
         // without TLS no certificates are needed, and a small image may have none
         let builder = if server.scheme() == "http" {
@@ -55,14 +55,14 @@ impl Client {
         let mut headers = HeaderMap::new();
         if let Some(key) = key {
             let mut value = HeaderValue::try_from(format!("Bearer {key}"))
-                .map_err(|_| Failure::new("the key has characters that no key has"))?;
+                .map_err(|_| Failure::new("the key has characters that keys do not have"))?;
             value.set_sensitive(true);
             headers.insert(AUTHORIZATION, value);
         }
         let http = builder
             .default_headers(headers)
             .build()
-            .map_err(|error| Failure::new(format!("no HTTP client: {error}")))?;
+            .map_err(|error| Failure::new(format!("the HTTP client cannot be set up: {error}")))?;
         Ok(Self { http, server })
     }
 

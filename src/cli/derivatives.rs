@@ -51,7 +51,7 @@ impl Derivatives {
         let found = coefficients(&estimate, &aircraft)
             .map_err(|faults| Failure::faults(&place, &faults))?;
         if self.json {
-            println!("{}", json(&found)?);
+            println!("{}", serde_json::to_string_pretty(&found)?);
         } else {
             println!("{}", table::coefficients(&found));
         }
@@ -89,7 +89,7 @@ impl Derivatives {
             })
             .collect();
         if self.json {
-            println!("{}", json(&found)?);
+            println!("{}", serde_json::to_string_pretty(&found)?);
             return Ok(());
         }
         for (name, value) in &found {
@@ -97,10 +97,6 @@ impl Derivatives {
         }
         Ok(())
     }
-}
-
-fn json(value: &impl serde::Serialize) -> Result<String, Failure> {
-    serde_json::to_string_pretty(value).map_err(|error| Failure::new(error.to_string()))
 }
 
 /// A file that is JSON where it says so, else TOML.

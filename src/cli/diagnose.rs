@@ -3,12 +3,10 @@
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use comfy_table::Table;
-use comfy_table::presets::UTF8_BORDERS_ONLY;
-
-use super::progress::Progress;
+use super::progress::ProgressLine;
 use super::request::Request;
-use super::{Failure, figures, table};
+use super::table::{self, bordered};
+use super::{Failure, figures};
 use crate::dashboard::history_svg;
 use crate::diagnose::{Diagnosis, FitChange, Refusal};
 use crate::estimate::{Role, TimeHistory, five_digits};
@@ -32,16 +30,8 @@ pub(super) struct Diagnose {
 
 impl Diagnose {
     pub(super) fn run(&self) -> Result<(), Failure> {
-        let maneuvers = self.request.recordings()?;
-        let ids: Vec<String> = maneuvers.iter().map(|maneuver| maneuver.digest()).collect();
-        let mut spec = self.request.spec(&ids)?;
-        spec.kind = JobKind::Diagnose;
-        let plan = job::prepare(&spec, &self.request.document()?, &maneuvers)
-            .map_err(|faults| Failure::faults("the job cannot start", &faults))?;
-        for finding in &plan.prepared.findings {
-            eprintln!("note: {}; {}", finding.message, finding.remedy);
-        }
-        let progress = Progress::new(spec.options.tolerance);
+        let plan = self.request.plan(JobKind::Diagnose)?;
+        let progress = ProgressLine::new(self.request.tolerance);
         let result = job::run_diagnosis(&plan, &mut |step| {
             if let Some(step) = step {
                 progress.diagnosis(step);
@@ -54,9 +44,7 @@ impl Diagnose {
         };
         progress.finish(diagnosis.verdict.name());
         if self.json {
-            let text = serde_json::to_string_pretty(&result)
-                .map_err(|error| Failure::new(error.to_string()))?;
-            println!("{text}");
+            println!("{}", serde_json::to_string_pretty(&result)?);
         } else {
             println!("{}", table::result(&result.estimate, None));
             println!("{}", conclusion(diagnosis, self.all));
@@ -91,40 +79,10 @@ pub(super) fn conclusion(diagnosis: &Diagnosis, all: bool) -> String {
     {
         text += &format!("refused {}: {}\n", refused.effect.name(), refused.sentence);
     }
-    let mut shifts = Table::new();
-    shifts.load_style(UTF8_BORDERS_ONLY);
-    shifts.set_header([
-        "parameter",
-        "declared model",
-        "with effects",
-        "shift, standard errors",
-    ]);
-    for change in &diagnosis.parameters {
-        shifts.add_row([
-            change.name.clone(),
-            five_digits(change.before),
-            five_digits(change.after),
-            change
-                .shift
-                .map_or("-".to_string(), |shift| format!("{shift:+.1}")),
-        ]);
-    }
     if !diagnosis.effects.is_empty() {
-        text += &format!("{shifts}\n");
+        text += &format!("{}\n", shifts(diagnosis));
     }
-    let mut errors = Table::new();
-    errors.load_style(UTF8_BORDERS_ONLY);
-    errors.set_header(["RMS error", "output", "before", "after", "ratio"]);
-    for fit in &diagnosis.fits {
-        errors.add_row([
-            place(fit),
-            fit.before.name.clone(),
-            format!("{:.4e} {}", fit.before.rms, fit.before.unit),
-            format!("{:.4e} {}", fit.after.rms, fit.after.unit),
-            format!("{:.3}", fit.after.rms / fit.before.rms),
-        ]);
-    }
-    text += &format!("{errors}\n");
+    text += &format!("{}\n", errors(diagnosis));
     for remark in &diagnosis.remarks {
         text += &format!("note: {remark}\n");
     }
@@ -134,6 +92,44 @@ pub(super) fn conclusion(diagnosis: &Diagnosis, all: bool) -> String {
         diagnosis.sentence
     );
     text
+}
+
+/// How far the effects move the parameters of the declared model.
+fn shifts(diagnosis: &Diagnosis) -> String {
+    let header = [
+        "parameter",
+        "declared model",
+        "with effects",
+        "shift, standard errors",
+    ];
+    let rows = diagnosis.parameters.iter().map(|change| {
+        let shift = change.shift;
+        vec![
+            change.name.clone(),
+            five_digits(change.before),
+            five_digits(change.after),
+            shift.map_or("-".to_string(), |shift| format!("{shift:+.1}")),
+        ]
+    });
+    bordered(header, rows, 0..0)
+}
+
+/// The error of each output, before and after.
+fn errors(diagnosis: &Diagnosis) -> String {
+    let rows = diagnosis.fits.iter().map(|fit| {
+        vec![
+            place(fit),
+            fit.before.name.clone(),
+            format!("{:.4e} {}", fit.before.rms, fit.before.unit),
+            format!("{:.4e} {}", fit.after.rms, fit.after.unit),
+            format!("{:.3}", fit.after.rms / fit.before.rms),
+        ]
+    });
+    bordered(
+        ["RMS error", "output", "before", "after", "ratio"],
+        rows,
+        0..0,
+    )
 }
 
 fn place(fit: &FitChange) -> String {

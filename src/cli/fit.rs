@@ -2,10 +2,10 @@
 
 use std::ops::ControlFlow;
 
-use super::progress::Progress;
+use super::progress::ProgressLine;
 use super::request::Request;
 use super::{Failure, table};
-use crate::job;
+use crate::job::{self, JobKind};
 
 /// Fits a model to recordings and prints the parameter table.
 #[derive(clap::Args, Debug)]
@@ -19,15 +19,8 @@ pub(super) struct Fit {
 
 impl Fit {
     pub(super) fn run(&self) -> Result<(), Failure> {
-        let maneuvers = self.request.recordings()?;
-        let ids: Vec<String> = maneuvers.iter().map(|maneuver| maneuver.digest()).collect();
-        let spec = self.request.spec(&ids)?;
-        let plan = job::prepare(&spec, &self.request.document()?, &maneuvers)
-            .map_err(|faults| Failure::faults("the job cannot start", &faults))?;
-        for finding in &plan.prepared.findings {
-            eprintln!("note: {}; {}", finding.message, finding.remedy);
-        }
-        let progress = Progress::new(spec.options.tolerance);
+        let plan = self.request.plan(JobKind::Estimate)?;
+        let progress = ProgressLine::new(self.request.tolerance);
         let result = job::run(&plan, &mut |told| {
             progress.told(told);
             ControlFlow::Continue(())
@@ -35,9 +28,7 @@ impl Fit {
         .map_err(|faults| Failure::faults("the job failed", &faults))?;
         progress.finish(&result.estimate.reason);
         if self.json {
-            let text = serde_json::to_string_pretty(&result)
-                .map_err(|error| Failure::new(error.to_string()))?;
-            println!("{text}");
+            println!("{}", serde_json::to_string_pretty(&result)?);
         } else {
             println!("{}", table::result(&result.estimate, None));
         }

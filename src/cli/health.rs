@@ -2,13 +2,13 @@
 
 use super::Failure;
 use super::client::Client;
-use super::server::Server;
+use super::server::ServerOption;
 
 /// Says whether a server can serve requests, its database included; the exit code is 0 or 1.
 #[derive(clap::Args, Debug)]
 pub(super) struct Health {
     #[command(flatten)]
-    server: Server,
+    server: ServerOption,
 }
 
 impl Health {

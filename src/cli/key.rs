@@ -121,7 +121,7 @@ impl New {
         let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-_.".contains(&byte);
         if !(1..=64).contains(&self.project.len()) || !self.project.bytes().all(plain) {
             return Err(Failure::new(format!(
-                "'{}' is no name of a project; use 1 to 64 letters, digits, '-', '_' and '.'",
+                "'{}' is not a project name; use 1 to 64 letters, digits, '-', '_' and '.'",
                 self.project
             )));
         }
@@ -189,7 +189,7 @@ impl Rotate {
         let made = store.rotate_key(None, self.id, overlap).await?;
         let made = made.ok_or_else(|| unknown(self.id))?;
         show(&made);
-        eprintln!("the old key is good for {} h more", self.overlap);
+        eprintln!("the old key stays valid for {} h", self.overlap);
         close(store).await
     }
 }
@@ -209,7 +209,7 @@ impl Revoke {
 
 fn unknown(id: Uuid) -> Failure {
     Failure::new(format!(
-        "there is no key {id} that is good; 'trimtab key list' shows all"
+        "there is no valid key {id}; 'trimtab key list' shows all"
     ))
 }
 

@@ -7,6 +7,7 @@ mod derivatives;
 mod diagnose;
 mod failure;
 mod figures;
+mod file_rows;
 mod fit;
 mod health;
 mod key;
@@ -22,8 +23,8 @@ mod retain;
 mod serve;
 mod server;
 mod simulate;
-mod stretch;
 mod study;
+mod study_tables;
 mod submit;
 mod table;
 mod watch;
@@ -35,7 +36,7 @@ use clap::{Parser, Subcommand};
 
 use failure::Failure;
 
-pub use study::tables as study_tables;
+pub use study_tables::tables as study_tables;
 
 #[derive(Parser)]
 #[command(

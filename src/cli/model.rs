@@ -24,7 +24,7 @@ impl ShowModel {
                 .map(|document| document.name)
                 .collect();
             Failure::new(format!(
-                "there is no catalog model '{name}'; known are {}",
+                "there is no catalog model '{name}'; the catalog has {}",
                 known.join(", ")
             ))
         })?;

@@ -11,12 +11,12 @@ const LONGEST_STEP: f64 = 100.0;
 const LENGTH: u64 = 1000;
 
 /// Shows iterations as they come; where output is no terminal, one line each.
-pub(super) struct Progress {
+pub(super) struct ProgressLine {
     bar: ProgressBar,
     tolerance: f64,
 }
 
-impl Progress {
+impl ProgressLine {
     /// `tolerance` is the length of step, in standard errors, at which the solver stops.
     pub(super) fn new(tolerance: f64) -> Self {
         let bar = ProgressBar::with_draw_target(Some(LENGTH), ProgressDrawTarget::stderr());

@@ -6,13 +6,13 @@ use std::sync::Arc;
 use indexmap::{IndexMap, IndexSet};
 
 use super::Failure;
+use super::file_rows::FileRows;
 use super::mapping::MappingOption;
 use super::recording::{format_of, read_bytes, read_text};
-use super::stretch::Stretch;
 use crate::estimate::{Derivatives, Estimator, Method, Options, Role};
 use crate::flight::Maneuver;
 use crate::ingest::{self, Limits};
-use crate::job::{Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride};
+use crate::job::{self, Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride, Plan};
 use crate::model::{ModelDocument, Start, catalog};
 
 #[derive(clap::Args, Debug)]
@@ -20,13 +20,13 @@ pub(super) struct Request {
     /// Recordings: CSV with `name[unit]` headers (.csv), JSON (.json), MAT files (.mat) or ASCII matrices (.asc), the last
     /// two with --mapping; rows count from 1. Several are fitted together.
     #[arg(required = true, value_name = "FILE[:FIRST-LAST]")]
-    pub files: Vec<Stretch>,
+    pub files: Vec<FileRows>,
     /// A recording that the model is not fitted to but predicts, to see whether it holds.
     #[arg(long, value_name = "FILE[:FIRST-LAST]")]
-    pub validate: Vec<Stretch>,
+    pub validate: Vec<FileRows>,
     /// A recording that is predicted at the very end: a diagnosis makes no decision with it.
     #[arg(long = "final", value_name = "FILE[:FIRST-LAST]")]
-    pub last: Vec<Stretch>,
+    pub last: Vec<FileRows>,
     #[command(flatten)]
     pub mapping: MappingOption,
     /// A catalog model (short-period, lateral-directional-2, ...) or a model document (.toml, .json).
@@ -68,19 +68,17 @@ pub(super) struct Request {
 
 impl Request {
     /// All recordings: those to fit, then those to predict.
-    pub(super) fn stretches(&self) -> impl Iterator<Item = &Stretch> {
+    pub(super) fn file_rows(&self) -> impl Iterator<Item = &FileRows> {
         self.files.iter().chain(&self.validate).chain(&self.last)
     }
 
     /// The file of each recording, once where several rows of it are used.
     pub(super) fn files(&self) -> IndexSet<&Path> {
-        self.stretches()
-            .map(|stretch| stretch.file.as_path())
-            .collect()
+        self.file_rows().map(|rows| rows.file.as_path()).collect()
     }
 
-    /// The recording of each stretch.
-    pub(super) fn recordings(&self) -> Result<Vec<Arc<Maneuver>>, Failure> {
+    /// The recording of each.
+    fn recordings(&self) -> Result<Vec<Arc<Maneuver>>, Failure> {
         let read = |file: &Path| {
             let (bytes, mapping) = (read_bytes(file)?, self.mapping.of(file)?);
             ingest::read_mapped(
@@ -94,8 +92,8 @@ impl Request {
         };
         let files = self.files().into_iter().map(|file| Ok((file, read(file)?)));
         let files: IndexMap<&Path, Arc<Maneuver>> = files.collect::<Result<_, Failure>>()?;
-        let of = |stretch: &Stretch| files[stretch.file.as_path()].clone();
-        Ok(self.stretches().map(of).collect())
+        let of = |rows: &FileRows| files[rows.file.as_path()].clone();
+        Ok(self.file_rows().map(of).collect())
     }
 
     /// The model: a name that the catalog (or the server) knows, or the document in a file.
@@ -113,7 +111,7 @@ impl Request {
     }
 
     /// The document that `model` stands for here, without a server.
-    pub(super) fn document(&self) -> Result<ModelDocument, Failure> {
+    fn document(&self) -> Result<ModelDocument, Failure> {
         match self.model()? {
             ModelSource::Document(document) => Ok(*document),
             ModelSource::Reference(name) => catalog::find(&name).ok_or_else(|| {
@@ -122,7 +120,7 @@ impl Request {
                     .map(|document| document.name)
                     .collect();
                 Failure::new(format!(
-                    "there is no catalog model '{name}'; known are {}, or give a .toml file",
+                    "there is no catalog model '{name}'; the catalog has {}; or give a .toml file",
                     known.join(", ")
                 ))
             }),
@@ -136,10 +134,26 @@ impl Request {
             let known = Derivatives::all().map(|technique| technique.name());
             let name = &self.derivatives;
             Failure::new(format!(
-                "there is no technique '{name}'; known are {}",
+                "there is no technique '{name}'; choose one of {}",
                 known.join(", ")
             ))
         })
+    }
+
+    /// The job, ready to be run here. What is to be known of its data is said.
+    pub(super) fn plan(&self, kind: JobKind) -> Result<Plan, Failure> {
+        let maneuvers = self.recordings()?;
+        let ids: Vec<String> = maneuvers.iter().map(|maneuver| maneuver.digest()).collect();
+        let spec = JobSpec {
+            kind,
+            ..self.spec(&ids)?
+        };
+        let plan = job::prepare(&spec, &self.document()?, &maneuvers)
+            .map_err(|faults| Failure::faults("the job cannot start", &faults))?;
+        for finding in &plan.prepared.findings {
+            eprintln!("note: {}; {}", finding.message, finding.remedy);
+        }
+        Ok(plan)
     }
 
     /// The job, for recordings that are known by `ids`.
@@ -164,7 +178,7 @@ impl Request {
         let constants = self.constants.iter().map(|text| {
             let (name, value) = pair(text, "--constant")?;
             let value = (value.parse()).map_err(|_| {
-                Failure::new(format!("--constant '{text}': '{value}' is no number"))
+                Failure::new(format!("--constant '{text}': '{value}' is not a number"))
             })?;
             Ok((name.to_string(), value))
         });
@@ -172,10 +186,10 @@ impl Request {
         let predicted = self.validate.iter().map(|file| (file, Role::Validation));
         let last = self.last.iter().map(|file| (file, Role::Final));
         let gaps = if self.join { Gaps::Join } else { Gaps::Split };
-        let usage = |(id, (stretch, role)): (&String, (&Stretch, Role))| ManeuverUse {
+        let usage = |(id, (used, role)): (&String, (&FileRows, Role))| ManeuverUse {
             id: id.clone(),
-            label: stretch.label(),
-            rows: stretch.rows,
+            label: used.label(),
+            rows: used.rows,
             role,
             gaps,
         };

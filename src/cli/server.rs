@@ -6,7 +6,7 @@ use clap::Args;
 const DEFAULT: &str = "http://127.0.0.1:8300";
 
 #[derive(Args, Debug)]
-pub(super) struct Server {
+pub(super) struct ServerOption {
     #[arg(long = "server", env = "TRIMTAB_SERVER", value_name = "URL", default_value = DEFAULT)]
     pub url: String,
 

@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 use super::client::Client;
 use super::recording::read_bytes;
 use super::request::Request;
-use super::server::Server;
+use super::server::ServerOption;
 use super::watch::{conclude, follow};
 use super::{Failure, table};
 use crate::job::JobKind;
@@ -16,7 +16,7 @@ pub(super) struct Submit {
     #[command(flatten)]
     request: Request,
     #[command(flatten)]
-    server: Server,
+    server: ServerOption,
     /// Find what the model lacks: a job of the kind `diagnose`.
     #[arg(long)]
     diagnose: bool,
@@ -37,9 +37,9 @@ impl Submit {
             let stored = client.upload(&name, file, mapping.as_deref(), read_bytes(file)?);
             uploaded.insert(file, stored.await?.id);
         }
-        let stretches = self.request.stretches();
-        let ids: Vec<String> = stretches
-            .map(|stretch| uploaded[stretch.file.as_path()].clone())
+        let recordings = self.request.file_rows();
+        let ids: Vec<String> = recordings
+            .map(|rows| uploaded[rows.file.as_path()].clone())
             .collect();
         let mut spec = self.request.spec(&ids)?;
         if self.diagnose {

@@ -1,5 +1,7 @@
 //! Results as tables for the terminal.
 
+use std::ops::RangeBounds;
+
 use comfy_table::presets::UTF8_BORDERS_ONLY;
 use comfy_table::{CellAlignment, Table};
 use indexmap::IndexMap;
@@ -64,16 +66,8 @@ fn parameters(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) -> Str
         row.push(estimate.remark(parameter).to_string());
         row
     });
-    let mut table = Table::new();
-    table
-        .load_style(UTF8_BORDERS_ONLY)
-        .set_header(header)
-        .add_rows(rows);
-    let last = table.column_count() - 1;
-    for column in table.column_iter_mut().take(last).skip(2) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
-    table.to_string()
+    let last = header.len() - 1;
+    bordered(header, rows, 2..last)
 }
 
 /// How well each output is reproduced.
@@ -95,25 +89,18 @@ fn outputs(outputs: &[OutputFit]) -> String {
             format!("{:.0}", output.effective_samples),
         ]
     });
-    let mut table = Table::new();
-    table.load_style(UTF8_BORDERS_ONLY);
-    table
-        .set_header([
-            "output",
-            "unit",
-            "rms residual",
-            "mean residual",
-            "R²",
-            "Theil",
-            "bias/var/cov",
-            "lag 1",
-            "eff. samples",
-        ])
-        .add_rows(rows);
-    for column in table.column_iter_mut().skip(2) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
-    table.to_string()
+    let header = [
+        "output",
+        "unit",
+        "rms residual",
+        "mean residual",
+        "R²",
+        "Theil",
+        "bias/var/cov",
+        "lag 1",
+        "eff. samples",
+    ];
+    bordered(header, rows, 2..)
 }
 
 /// The intensity of the process noise of each state.
@@ -127,15 +114,8 @@ fn process_noise(filter: &FilterEstimate) -> String {
             noise.remark().to_string(),
         ]
     });
-    let mut table = Table::new();
-    table
-        .load_style(UTF8_BORDERS_ONLY)
-        .set_header(["process noise of", "unit", "intensity", "std. error", ""])
-        .add_rows(rows);
-    for column in table.column_iter_mut().take(4).skip(2) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
-    table.to_string()
+    let header = ["process noise of", "unit", "intensity", "std. error", ""];
+    bordered(header, rows, 2..4)
 }
 
 /// Nondimensional coefficients.
@@ -150,12 +130,11 @@ pub(super) fn coefficients(coefficients: &[Coefficient]) -> String {
             coefficient.from.join(", "),
         ]
     });
-    let mut table = Table::new();
-    table
-        .load_style(UTF8_BORDERS_ONLY)
-        .set_header(["coefficient", "value", "std. error", "%", "from"])
-        .add_rows(rows);
-    table.to_string()
+    bordered(
+        ["coefficient", "value", "std. error", "%", "from"],
+        rows,
+        0..0,
+    )
 }
 
 /// Modes of the motion.
@@ -173,20 +152,35 @@ fn modes(modes: &[Mode]) -> String {
             mode.remark.clone(),
         ]
     });
+    let header = [
+        "mode",
+        "eigenvalue, 1/s",
+        "frequency, rad/s",
+        "damping",
+        "period or time constant, s",
+        "to half, s",
+        "to double, s",
+        "",
+    ];
+    bordered(header, rows, 0..0)
+}
+
+/// A table whose columns `numeric` are aligned on the right.
+pub(super) fn bordered<'h>(
+    header: impl IntoIterator<Item = &'h str>,
+    rows: impl IntoIterator<Item = Vec<String>>,
+    numeric: impl RangeBounds<usize>,
+) -> String {
     let mut table = Table::new();
     table
         .load_style(UTF8_BORDERS_ONLY)
-        .set_header([
-            "mode",
-            "eigenvalue, 1/s",
-            "frequency, rad/s",
-            "damping",
-            "period or time constant, s",
-            "to half, s",
-            "to double, s",
-            "",
-        ])
+        .set_header(header.into_iter().collect::<Vec<_>>())
         .add_rows(rows);
+    for (number, column) in table.column_iter_mut().enumerate() {
+        if numeric.contains(&number) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
     table.to_string()
 }
 

@@ -1,8 +1,8 @@
 //! `trimtab watch`: a job of a server, followed to its end.
 
 use super::client::Client;
-use super::progress::Progress;
-use super::server::Server;
+use super::progress::ProgressLine;
+use super::server::ServerOption;
 use super::{Failure, diagnose, plots, table};
 use crate::estimate::{Estimate, Outcome};
 use crate::job::{EventBody, JobKind};
@@ -13,7 +13,7 @@ pub(super) struct Watch {
     /// The job's id.
     job: String,
     #[command(flatten)]
-    server: Server,
+    server: ServerOption,
 }
 
 impl Watch {
@@ -43,7 +43,7 @@ pub(super) async fn conclude(
 /// Follows a job with a progress bar; the estimate, when there is one.
 pub(super) async fn follow(client: &Client, job: &str) -> Result<Estimate, Failure> {
     let tolerance = client.spec(job).await?.options.tolerance;
-    let progress = Progress::new(tolerance);
+    let progress = ProgressLine::new(tolerance);
     let mut ending = None;
     client
         .follow(job, |event| match &event.body {
@@ -85,6 +85,6 @@ pub(super) async fn follow(client: &Client, job: &str) -> Result<Estimate, Failu
             }
         })
         .await?;
-    ending.unwrap_or_else(|| Err(Failure::new("the job's log ended without an ending")))?;
+    ending.unwrap_or_else(|| Err(Failure::new("the job's log ended before the job did")))?;
     client.estimate(job).await
 }

@@ -18,6 +18,8 @@
 //! and deterministic: no server, no database, no clock, no environment, no hidden randomness. The service around it
 //! is the crate `trimtab`.
 
+#![warn(missing_docs)]
+
 pub mod diagnose;
 pub mod estimate;
 pub mod flight;

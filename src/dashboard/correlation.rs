@@ -19,7 +19,7 @@ pub(super) fn map(estimate: &Estimate) -> Markup {
     let pairs = high_pairs(&free, rows);
     html! {
         @if rows.is_empty() || rows.len() != free.len() {
-            p.soft { "There is none: the outcome was no minimum, or nothing was free." }
+            p.soft { "There is none: no minimum was reached, or nothing was free." }
         } @else {
             @if pairs.is_empty() {
                 p { "No pair is correlated beyond " (HIGH) "." }

@@ -3,6 +3,8 @@
 
 use plotters::prelude::*;
 
+use super::chart::{Area, Chart, Margins, axes, extent, faint, in_words, svg};
+use super::decimate::rows_to_plot;
 use super::style::{DECLARED, MEASURED, MODEL};
 use crate::estimate::{OutputSeries, Series, TimeHistory};
 use crate::flight::{Shown, shown_in};
@@ -16,7 +18,13 @@ const INPUT: u32 = 110;
 /// Height of the line that says what is what.
 const LEGEND: u32 = 24;
 
-/// Points drawn of a series; of more, the least and the greatest of each bucket are kept.
+const MARGINS: Margins = Margins {
+    around: 6,
+    below: 26,
+    left: 64,
+};
+
+/// Points drawn of a series.
 const MOST_POINTS: usize = 1_600;
 
 /// One segment as SVG; angles in degrees, as people expect them.
@@ -24,13 +32,9 @@ const MOST_POINTS: usize = 1_600;
 /// # Errors
 /// The drawing library's words; none is known for finite numbers.
 pub fn history_svg(history: &TimeHistory) -> Result<String, String> {
-    let mut svg = String::new();
-    {
-        let outputs = history.outputs.len() as u32;
-        let inputs = history.inputs.len() as u32;
-        let height = LEGEND + PANEL * outputs + INPUT * inputs;
-        let area = SVGBackend::with_string(&mut svg, (WIDTH, height)).into_drawing_area();
-        area.fill(&WHITE).map_err(|error| error.to_string())?;
+    let (outputs, inputs) = (history.outputs.len() as u32, history.inputs.len() as u32);
+    let height = LEGEND + PANEL * outputs + INPUT * inputs;
+    svg((WIDTH, height), |area| {
         let (legend, mut rest) = area.split_vertically(LEGEND);
         key(history, &legend)?;
         for output in &history.outputs {
@@ -44,9 +48,8 @@ pub fn history_svg(history: &TimeHistory) -> Result<String, String> {
             draw_input(&history.time, input, &panel)?;
             rest = below;
         }
-        area.present().map_err(|error| error.to_string())?;
-    }
-    Ok(svg)
+        Ok(())
+    })
 }
 
 /// What is what, once for all panels and above them, where it hides nothing.
@@ -71,9 +74,9 @@ fn key(history: &TimeHistory, area: &Area<'_>) -> Result<(), String> {
             let line = vec![(x, middle), (x + 18, middle)];
             area.draw(&PathElement::new(line, colour.stroke_width(width)))
         }
-        .map_err(|error| error.to_string())?;
+        .map_err(in_words)?;
         let text = Text::new(text, (x + 24, middle - 6), ("sans-serif", 12));
-        area.draw(&text).map_err(|error| error.to_string())?;
+        area.draw(&text).map_err(in_words)?;
     }
     Ok(())
 }
@@ -81,22 +84,19 @@ fn key(history: &TimeHistory, area: &Area<'_>) -> Result<(), String> {
 fn draw_input(time: &[f64], input: &Series, area: &Area<'_>) -> Result<(), String> {
     let Shown { scale, unit } = shown_in(&input.unit);
     let values = points(time, &input.values, scale);
-    let mut chart = axes(area, time, range_of(values.iter()))?;
+    let mut chart = over_time(area, time, range_of(values.iter()))?;
     let mut mesh = chart.configure_mesh();
-    mesh.light_line_style(TRANSPARENT)
-        .bold_line_style(BLACK.mix(0.12))
-        .y_labels(3);
-    mesh.x_desc("t [s]")
+    faint(&mut mesh);
+    mesh.y_labels(3)
+        .x_desc("t [s]")
         .y_desc(format!("{} [{unit}]", input.name))
         .label_style(("sans-serif", 12))
         .draw()
-        .map_err(|error| error.to_string())?;
+        .map_err(in_words)?;
     let line = LineSeries::new(values, BLACK.mix(0.7).stroke_width(1));
-    chart.draw_series(line).map_err(|error| error.to_string())?;
+    chart.draw_series(line).map_err(in_words)?;
     Ok(())
 }
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
 fn draw(
     time: &[f64],
@@ -112,37 +112,35 @@ fn draw(
     let label = format!("{} [{unit}]", output.name);
 
     let range = range_of(measured.iter().chain(&model).chain(&declared));
-    let mut chart = axes(above, time, range)?;
+    let mut chart = over_time(above, time, range)?;
     let mut mesh = chart.configure_mesh();
-    mesh.light_line_style(TRANSPARENT)
-        .bold_line_style(BLACK.mix(0.12))
-        .x_labels(0)
-        .y_labels(5);
-    mesh.y_desc(label)
+    faint(&mut mesh);
+    mesh.x_labels(0)
+        .y_labels(5)
+        .y_desc(label)
         .label_style(("sans-serif", 13))
         .draw()
-        .map_err(|error| error.to_string())?;
+        .map_err(in_words)?;
     let dots = measured
         .iter()
         .map(|&at| Circle::new(at, 1, MEASURED.filled()));
-    chart.draw_series(dots).map_err(|error| error.to_string())?;
+    chart.draw_series(dots).map_err(in_words)?;
     for (points, colour) in [(declared, DECLARED), (model, MODEL)] {
         let line = LineSeries::new(points, colour.stroke_width(2));
-        chart.draw_series(line).map_err(|error| error.to_string())?;
+        chart.draw_series(line).map_err(in_words)?;
     }
     let before = output.measured.iter().zip(&output.declared);
     let before: Vec<f64> = before.map(|(z, y)| z - y).collect();
     let before = points(time, &before, scale);
-    let mut chart = axes(below, time, range_of(residual.iter().chain(&before)))?;
+    let mut chart = over_time(below, time, range_of(residual.iter().chain(&before)))?;
     let mut mesh = chart.configure_mesh();
-    mesh.light_line_style(TRANSPARENT)
-        .bold_line_style(BLACK.mix(0.12))
-        .y_labels(3);
-    mesh.x_desc("t [s]")
+    faint(&mut mesh);
+    mesh.y_labels(3)
+        .x_desc("t [s]")
         .y_desc("residual")
         .label_style(("sans-serif", 12))
         .draw()
-        .map_err(|error| error.to_string())?;
+        .map_err(in_words)?;
     // a line only where samples follow each other: not across what is missing
     let gaps = output.residual.iter().any(|residual| residual.is_nan());
     for (points, colour) in [(before, DECLARED), (residual, MEASURED)] {
@@ -153,70 +151,38 @@ fn draw(
             let line = LineSeries::new(points, colour.stroke_width(1));
             chart.draw_series(line).map(|_| ())
         }
-        .map_err(|error| error.to_string())?;
+        .map_err(in_words)?;
     }
     Ok(())
 }
 
-type Chart<'a, 'b> = ChartContext<
-    'a,
-    SVGBackend<'b>,
-    Cartesian2d<plotters::coord::types::RangedCoordf64, plotters::coord::types::RangedCoordf64>,
->;
-
-fn axes<'a, 'b>(
+/// Axes over the time of a segment.
+fn over_time<'a, 'b>(
     area: &'a Area<'b>,
     time: &[f64],
-    (low, high): (f64, f64),
+    range: (f64, f64),
 ) -> Result<Chart<'a, 'b>, String> {
-    let (first, last) = (
-        time.first().copied().unwrap_or(0.0),
-        time.last().copied().unwrap_or(1.0),
-    );
-    ChartBuilder::on(area)
-        .margin(6)
-        .margin_right(24)
-        .x_label_area_size(26)
-        .y_label_area_size(64)
-        .build_cartesian_2d(first..last.max(first + 1e-9), low..high)
-        .map_err(|error| error.to_string())
+    let first = time.first().copied().unwrap_or(0.0);
+    let last = time.last().copied().unwrap_or(1.0);
+    axes(area, (first, last.max(first + 1e-9)), range, &MARGINS)
 }
 
+/// The samples that are numbers, and of very many those that a plot shows.
 fn points(time: &[f64], values: &[f64], scale: f64) -> Vec<(f64, f64)> {
-    let all: Vec<(f64, f64)> = time
-        .iter()
-        .zip(values)
-        .filter(|(_, v)| v.is_finite())
-        .map(|(&t, &v)| (t, v * scale))
-        .collect();
-    if all.len() <= MOST_POINTS {
-        return all;
-    }
-    let bucket = all.len().div_ceil(MOST_POINTS / 2);
-    let extremes = |bucket: &[(f64, f64)]| {
-        let by_value = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
-        let mut both: Vec<(f64, f64)> = bucket
-            .iter()
-            .min_by(by_value)
-            .into_iter()
-            .chain(bucket.iter().max_by(by_value))
-            .copied()
-            .collect();
-        both.sort_by(|a, b| a.0.total_cmp(&b.0));
-        both
-    };
-    all.chunks(bucket).flat_map(extremes).collect()
+    let samples = time.iter().copied().zip(values.iter().copied());
+    let (time, values): (Vec<f64>, Vec<f64>) =
+        samples.filter(|(_, value)| value.is_finite()).unzip();
+    let shown = rows_to_plot(&[&values], values.len(), MOST_POINTS);
+    (shown.into_iter())
+        .map(|row| (time[row], values[row] * scale))
+        .collect()
 }
 
 /// From the least to the greatest value, with some room, never empty.
 fn range_of<'a>(points: impl Iterator<Item = &'a (f64, f64)>) -> (f64, f64) {
-    let (low, high) = points.fold(
-        (f64::INFINITY, f64::NEG_INFINITY),
-        |(low, high), &(_, v)| (low.min(v), high.max(v)),
-    );
-    if low > high {
+    let Some((low, high)) = extent(points.map(|&(_, value)| value)) else {
         return (-1.0, 1.0);
-    }
+    };
     let room = (0.08 * (high - low)).max(1e-9 + 1e-6 * high.abs());
     (low - room, high + room)
 }

@@ -151,7 +151,7 @@ pub(super) fn findings(view: &JobView) -> Markup {
     let unfinished = (view.estimate.as_ref()).filter(|estimate| !estimate.outcome.is_minimum());
     html! {
         @if unfinished.is_some() {
-            p.note { strong { "These numbers are no estimate yet" } ": the best that was reached before the solver stopped, short of a minimum. Standard errors mean little there." }
+            p.note { strong { "These numbers are not an estimate yet" } ": the best that was reached before the solver stopped, short of a minimum. Standard errors mean little there." }
         }
         @for remark in view.estimate.as_ref().map(Estimate::remarks).unwrap_or_default() {
             p.note { (remark) }
@@ -186,7 +186,7 @@ fn progress(view: &JobView) -> Markup {
 fn result(estimate: &Estimate, has_course: bool) -> Markup {
     html! {
         h2 id="histories" { "Measured and model" }
-        p.soft { "Drag to look closer, double-click for the whole. All plots have one time." }
+        p.soft { "Drag to look closer, double-click for the whole. All plots share the time axis." }
         div id="histories-plots" data-loading="true" {}
         (tables(estimate, [&html! {}, &html! {}]))
         h2 { "Residuals" }

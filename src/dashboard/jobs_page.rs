@@ -114,7 +114,7 @@ fn filters(chosen: &Chosen) -> Markup {
 fn table(view: &JobsView) -> Markup {
     html! {
         @if view.jobs.is_empty() {
-            p { "No job is like that." }
+            p { "No job matches." }
         } @else {
             div.scroll tabindex="0" role="region" aria-label="Jobs" {
                 table {

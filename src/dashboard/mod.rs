@@ -4,7 +4,9 @@
 //! file or a test alike. Scripts add what moves: live iterations, plots to zoom into, forms.
 
 mod assets;
+mod chart;
 mod correlation;
+mod decimate;
 mod diagnosis;
 mod eigenvalues;
 mod estimate_tables;
@@ -33,6 +35,7 @@ mod tolerances;
 mod unit_list;
 
 pub use assets::{Asset, asset};
+pub use decimate::rows_to_plot;
 pub use figure::history_svg;
 pub use job_page::{JobView, NamedModel, UsedManeuver, job_page};
 pub use jobs_page::{Chosen, JobRow, JobsView, jobs_page};

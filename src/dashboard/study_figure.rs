@@ -1,8 +1,9 @@
 //! The figures of a derivative study: error against step, and cost against the number of parameters.
 
-use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
+use super::chart::{Chart, Margins, axes, extent, faint, in_words, svg};
+use super::style::{MEASURED, MODEL, THIRD};
 use crate::estimate::study::{CostPoint, ErrorCurve};
 
 const SIZE: (u32, u32) = (900, 460);
@@ -11,24 +12,28 @@ const LEAST_STEP: f64 = -20.0;
 const LEAST_ERROR: f64 = -17.0;
 const MOST_ERROR: f64 = 3.0;
 
-/// Okabe and Ito's colours, told apart by colour-blind readers; markers differ too.
-const COLOURS: [RGBColor; 3] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-];
+const MARGINS: Margins = Margins {
+    around: 10,
+    below: 42,
+    left: 66,
+};
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
-type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+/// Told apart by colour-blind readers; markers differ too.
+const COLOURS: [RGBColor; 3] = [MEASURED, MODEL, THIRD];
 
 /// Error of the gradient against the step, both logarithmic, as SVG. Errors of 0 are drawn at 1e-17.
 ///
 /// # Errors
 /// The drawing library's words; none is known.
 pub fn error_figure(curves: &[ErrorCurve]) -> Result<String, String> {
-    draw(|area| {
+    svg(SIZE, |area| {
         let x = (LEAST_STEP, 0.0);
-        let mut chart = axes(area, x, (LEAST_ERROR, with_legend(LEAST_ERROR, MOST_ERROR)))?;
+        let mut chart = axes(
+            area,
+            x,
+            (LEAST_ERROR, with_legend(LEAST_ERROR, MOST_ERROR)),
+            &MARGINS,
+        )?;
         mesh(
             &mut chart,
             "relative step",
@@ -71,7 +76,7 @@ fn label(name: &str, points: &[(f64, f64)]) -> String {
 /// # Errors
 /// The drawing library's words; none is known.
 pub fn cost_figure(costs: &[CostPoint]) -> Result<String, String> {
-    draw(|area| {
+    svg(SIZE, |area| {
         let panels = area.split_evenly((1, 2));
         type Pick = fn(&CostPoint) -> f64;
         let figures: [(&str, [Pick; 2]); 2] = [
@@ -100,7 +105,7 @@ pub fn cost_figure(costs: &[CostPoint]) -> Result<String, String> {
             let y = range(all.iter().flatten().map(|point| point.1));
             let x = range(all.iter().flatten().map(|point| point.0));
             let (bottom, top) = (y.0.floor(), with_legend(y.0.floor(), y.1));
-            let mut chart = axes(panel, (0.0, x.1.max(0.1)), (bottom, top))?;
+            let mut chart = axes(panel, (0.0, x.1.max(0.1)), (bottom, top), &MARGINS)?;
             let decades = 2 * (top - bottom) as usize + 1;
             mesh(&mut chart, "free parameters", what, (4, decades))?;
             for (number, name) in ["direct (forward sensitivities)", "adjoint"]
@@ -122,35 +127,7 @@ fn with_legend(bottom: f64, top: f64) -> f64 {
 }
 
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
-        (low.min(v), high.max(v))
-    });
-    if low <= high {
-        (low - 0.05, high + 0.05)
-    } else {
-        (-1.0, 1.0)
-    }
-}
-
-fn draw(onto: impl FnOnce(&Area<'_>) -> Result<(), String>) -> Result<String, String> {
-    let mut svg = String::new();
-    {
-        let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
-        area.fill(&WHITE).map_err(|error| error.to_string())?;
-        onto(&area)?;
-        area.present().map_err(|error| error.to_string())?;
-    }
-    Ok(svg)
-}
-
-fn axes<'a, 'b>(area: &'a Area<'b>, x: (f64, f64), y: (f64, f64)) -> Result<Chart<'a, 'b>, String> {
-    ChartBuilder::on(area)
-        .margin(10)
-        .margin_right(24)
-        .x_label_area_size(42)
-        .y_label_area_size(66)
-        .build_cartesian_2d(x.0..x.1, y.0..y.1)
-        .map_err(|error| error.to_string())
+    extent(values).map_or((-1.0, 1.0), |(low, high)| (low - 0.05, high + 0.05))
 }
 
 /// Axes hold exponents; labels say the numbers.
@@ -170,11 +147,9 @@ fn mesh(
             (false, false) => format!("{value:.0e}"),
         }
     };
-    chart
-        .configure_mesh()
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(BLACK.mix(0.12))
-        .x_labels(x_labels)
+    let mut mesh = chart.configure_mesh();
+    faint(&mut mesh);
+    mesh.x_labels(x_labels)
         .y_labels(y_labels)
         .x_label_formatter(&power)
         .y_label_formatter(&power)
@@ -182,7 +157,7 @@ fn mesh(
         .y_desc(y)
         .label_style(("sans-serif", 13))
         .draw()
-        .map_err(|error| error.to_string())
+        .map_err(in_words)
 }
 
 fn series(
@@ -195,25 +170,24 @@ fn series(
     let line = LineSeries::new(points.iter().copied(), colour.stroke_width(2));
     chart
         .draw_series(line)
-        .map_err(|error| error.to_string())?
+        .map_err(in_words)?
         .label(name)
         .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], colour.stroke_width(3)));
-    let error = |error: DrawingAreaErrorKind<_>| error.to_string();
     let style = colour.filled();
     match number % 3 {
         0 => chart
             .draw_series(points.iter().map(|&at| Circle::new(at, 4, style)))
-            .map_err(error)?,
+            .map_err(in_words)?,
         1 => chart
             .draw_series(points.iter().map(|&at| TriangleMarker::new(at, 5, style)))
-            .map_err(error)?,
+            .map_err(in_words)?,
         _ => chart
             .draw_series(
                 points
                     .iter()
                     .map(|&at| Cross::new(at, 4, colour.stroke_width(2))),
             )
-            .map_err(error)?,
+            .map_err(in_words)?,
     };
     Ok(())
 }
@@ -229,7 +203,7 @@ fn legend<'a, 'b: 'a>(
         .border_style(BLACK.mix(0.2))
         .label_font(("sans-serif", 13))
         .draw()
-        .map_err(|error| error.to_string())
+        .map_err(in_words)
 }
 
 #[cfg(test)]

@@ -1,9 +1,13 @@
-//! Colours of figures.
+//! Colours of figures: those of Okabe and Ito, which colour-blind readers tell apart, and print does.
 
-/// Measured and model must be told apart by colour-blind readers and in print: blue dots, orange line
-/// (Okabe and Ito).
-pub(super) const MEASURED: plotters::style::RGBColor = plotters::style::RGBColor(0, 114, 178);
-pub(super) const MODEL: plotters::style::RGBColor = plotters::style::RGBColor(213, 94, 0);
+use plotters::style::RGBColor;
+
+/// Blue, in dots.
+pub(super) const MEASURED: RGBColor = RGBColor(0, 114, 178);
+/// Orange, in lines.
+pub(super) const MODEL: RGBColor = RGBColor(213, 94, 0);
+/// Green, where there is a third of equal rank.
+pub(super) const THIRD: RGBColor = RGBColor(0, 158, 115);
 
 /// The model before its effects were found: grey, behind.
-pub(super) const DECLARED: plotters::style::RGBColor = plotters::style::RGBColor(150, 150, 150);
+pub(super) const DECLARED: RGBColor = RGBColor(150, 150, 150);

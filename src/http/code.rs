@@ -97,14 +97,14 @@ codes! {
     /// Jobs use the maneuver, and could not be run again without it.
     InUse "in_use" CONFLICT "It is in use";
     /// A request with this `Idempotency-Key` is still in hand. Send it again after `Retry-After` seconds.
-    KeyInHand "idempotency_key_in_hand" CONFLICT "The request is in hand";
+    KeyInHand "idempotency_key_in_hand" CONFLICT "The request is being worked on";
     /// The `Idempotency-Key` was used for another request within the last 24 hours.
     KeyReused "idempotency_key_reused" UNPROCESSABLE_ENTITY "The key was used for another request";
     /// The key asks more often than it may. Ask again after `Retry-After` seconds.
     TooManyRequests "too_many_requests" TOO_MANY_REQUESTS "Too many requests";
     /// More jobs wait than may: `detail` names the limit and the use. Submit again after `Retry-After` seconds.
     QueueFull "queue_full" TOO_MANY_REQUESTS "The queue is full";
-    /// The project keeps as much as it may: `detail` names the limit and the use. Delete what is needed no more.
+    /// The project keeps as much as it may: `detail` names the limit and the use. Delete what is no longer needed.
     QuotaExceeded "quota_exceeded" PAYLOAD_TOO_LARGE "The project is full";
     /// The body is longer than the limit that `detail` names.
     BodyTooLarge "body_too_large" PAYLOAD_TOO_LARGE "The body is too large";
@@ -116,10 +116,10 @@ codes! {
     InvalidModel "invalid_model" UNPROCESSABLE_ENTITY "The model has faults";
     /// The job cannot be started. `errors` lists all faults, each with its place in the spec.
     InvalidJob "invalid_job" UNPROCESSABLE_ENTITY "The job has faults";
-    /// The key cannot be made so. `errors` lists all faults, each with its place.
-    InvalidKey "invalid_key" UNPROCESSABLE_ENTITY "The key cannot be made so";
-    /// The webhook cannot be made so: `errors` tells the place.
-    InvalidWebhook "invalid_webhook" UNPROCESSABLE_ENTITY "The webhook cannot be made so";
+    /// The key cannot be made like this. `errors` lists all faults, each with its place.
+    InvalidKey "invalid_key" UNPROCESSABLE_ENTITY "The key cannot be made like this";
+    /// The webhook cannot be made like this: `errors` tells the place.
+    InvalidWebhook "invalid_webhook" UNPROCESSABLE_ENTITY "The webhook cannot be made like this";
     /// The mapping has a fault. `errors` tells the place.
     InvalidMapping "invalid_mapping" UNPROCESSABLE_ENTITY "The mapping has faults";
     /// The aircraft's constants have faults. `errors` lists all of them.

@@ -88,7 +88,7 @@ fn needs_a_key(operation: &mut Operation, method: &Method, path: &str) {
     for (status, description) in [
         (
             "401",
-            "`key_needed`: there is no key in the request, or it is good no more.",
+            "`key_needed`: there is no key in the request, or it is no longer valid.",
         ),
         ("403", "`scope_missing`: the key is not for this."),
     ] {

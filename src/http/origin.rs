@@ -23,7 +23,7 @@ impl FromStr for Origin {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let refuse =
-            || format!("'{text}' is no origin; give it as https://HOST or https://HOST:PORT");
+            || format!("'{text}' is not an origin; write it as https://HOST or https://HOST:PORT");
         let uri: Uri = text.parse().map_err(|_| refuse())?;
         let is_web = matches!(uri.scheme_str(), Some("http" | "https"));
         let plain = uri.authority().map(|authority| {

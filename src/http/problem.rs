@@ -159,6 +159,14 @@ impl From<StoreError> for Problem {
     }
 }
 
+impl From<serde_json::Error> for Problem {
+    /// Of *writing* JSON; what is wrong with JSON that was read is said by `json`.
+    fn from(error: serde_json::Error) -> Self {
+        tracing::error!(%error, "json");
+        Self::internal()
+    }
+}
+
 impl Problem {
     pub fn internal() -> Self {
         let detail =

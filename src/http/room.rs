@@ -16,7 +16,7 @@ pub(super) struct Room(Arc<Semaphore>);
 
 /// What one body takes of it, given back when this goes away.
 #[derive(Default)]
-pub(super) struct Taken(Option<OwnedSemaphorePermit>);
+pub(super) struct Occupied(Option<OwnedSemaphorePermit>);
 
 /// Room is given out by so many bytes.
 const STEP: usize = 65_536;
@@ -32,7 +32,7 @@ impl Room {
     }
 
     /// Takes more, if need be, so that there is room for a body of so many bytes.
-    pub(super) async fn extend(&self, taken: &mut Taken, bytes: usize) -> Result<(), Problem> {
+    pub(super) async fn extend(&self, taken: &mut Occupied, bytes: usize) -> Result<(), Problem> {
         let has = taken
             .0
             .as_ref()

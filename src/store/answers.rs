@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use sqlx::{AssertSqlSafe, Row};
 use uuid::Uuid;
 
-use super::jobs::read_id;
+use super::row::read_id;
 use super::{Project, StoreError};
 
 /// How long a request stays with whoever took it in hand; then it is thought to have died with its process.

@@ -4,8 +4,10 @@ use sqlx::any::AnyRow;
 use sqlx::{AssertSqlSafe, Row};
 use uuid::Uuid;
 
-use super::log::{Head, append, read_status};
+use super::log::{Head, read_status};
 use super::page::one_more;
+use super::record::record;
+use super::row::read_id;
 use super::writing::Writing;
 use super::{BadCursor, Page, Project, Signal, StoreError, queue};
 use crate::job::{EventBody, Status};
@@ -83,11 +85,6 @@ fn read_job(row: &AnyRow) -> Result<JobRecord, StoreError> {
         attempt: u32::try_from(row.try_get::<i64, _>("attempt")?).unwrap_or(u32::MAX),
         ending,
     })
-}
-
-pub(super) fn read_id(row: &AnyRow, column: &str) -> Result<Uuid, StoreError> {
-    let text: &str = row.try_get(column)?;
-    Uuid::parse_str(text).map_err(|error| StoreError::corrupt(format!("id '{text}'"), error))
 }
 
 impl Project {
@@ -168,7 +165,7 @@ impl Project {
             last_seq: 0,
         };
         let queued = [EventBody::Queued];
-        append(writing.connection(), id, &mut head, &now, &queued).await?;
+        record(writing.connection(), id, &mut head, &now, &queued).await?;
         Ok(Some(JobRecord {
             id,
             kind: job.kind.clone(),
@@ -309,7 +306,7 @@ impl Project {
         };
         if !events.is_empty() {
             let now = self.store.clock.now_text();
-            append(writing.connection(), id, &mut head, &now, events).await?;
+            record(writing.connection(), id, &mut head, &now, events).await?;
             writing.tell(Signal::Log(id));
             writing.tell(Signal::Cancel(id));
         }

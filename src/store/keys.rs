@@ -11,8 +11,8 @@ use sqlx::{AssertSqlSafe, Row};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-use super::jobs::read_id;
-use super::{Clock, Store, StoreError};
+use super::row::read_id;
+use super::{Clock, Project, Store, StoreError};
 
 /// What every key begins with: tools that look for leaked secrets find it by that.
 const PREFIX: &str = "trimtab_";
@@ -111,7 +111,7 @@ pub struct KeyRecord {
 
 /// What there is to say to somebody who shows a key.
 #[derive(Clone, PartialEq, Debug)]
-pub enum Shown {
+pub enum KeyCheck {
     Good(Box<KeyRecord>),
     Unknown,
     Revoked,
@@ -203,31 +203,31 @@ impl Store {
     ///
     /// # Errors
     /// The database does not answer.
-    pub async fn look_up_key(&self, key: &str) -> Result<Shown, StoreError> {
+    pub async fn look_up_key(&self, key: &str) -> Result<KeyCheck, StoreError> {
         let row = sqlx::query(AssertSqlSafe(format!("SELECT {COLUMNS} WHERE digest = $1")))
             .bind(digest(key))
             .fetch_optional(&self.readers)
             .await?;
         let Some(row) = row else {
-            return Ok(Shown::Unknown);
+            return Ok(KeyCheck::Unknown);
         };
         let record = read_key(&row)?;
         let now = self.clock.now_text();
         if record.revoked.is_some() {
-            return Ok(Shown::Revoked);
+            return Ok(KeyCheck::Revoked);
         }
         if record
             .expires
             .as_ref()
             .is_some_and(|expires| *expires <= now)
         {
-            return Ok(Shown::Expired);
+            return Ok(KeyCheck::Expired);
         }
         // whoever has a good key comes in, even where that cannot be written down
         if let Err(error) = self.note_use(&record).await {
             tracing::warn!(%error, key = %record.id, "its use was not noted");
         }
-        Ok(Shown::Good(Box::new(record)))
+        Ok(KeyCheck::Good(Box::new(record)))
     }
 
     async fn note_use(&self, key: &KeyRecord) -> Result<(), StoreError> {
@@ -323,5 +323,36 @@ impl Store {
             .fetch_optional(&self.readers)
             .await?;
         row.as_ref().map(read_key).transpose()
+    }
+}
+
+/// What a project does with its own keys.
+impl Project {
+    /// # Errors
+    /// As [`Store::keys`].
+    pub async fn keys(&self) -> Result<Vec<KeyRecord>, StoreError> {
+        self.store.keys(Some(&self.name)).await
+    }
+
+    /// # Errors
+    /// As [`Store::add_key`].
+    pub async fn add_key(&self, new: &NewKey) -> Result<(KeyRecord, Key), StoreError> {
+        self.store.add_key(new).await
+    }
+
+    /// # Errors
+    /// As [`Store::revoke_key`].
+    pub async fn revoke_key(&self, id: Uuid) -> Result<Option<KeyRecord>, StoreError> {
+        self.store.revoke_key(Some(&self.name), id).await
+    }
+
+    /// # Errors
+    /// As [`Store::rotate_key`].
+    pub async fn rotate_key(
+        &self,
+        id: Uuid,
+        overlap: Duration,
+    ) -> Result<Option<(KeyRecord, Key)>, StoreError> {
+        self.store.rotate_key(Some(&self.name), id, overlap).await
     }
 }

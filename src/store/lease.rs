@@ -11,8 +11,9 @@ use sqlx::any::AnyRow;
 use sqlx::{AnyConnection, AssertSqlSafe, Row};
 use uuid::Uuid;
 
-use super::jobs::read_id;
-use super::log::{Head, append, read_status};
+use super::log::{Head, read_status};
+use super::record::record;
+use super::row::read_id;
 use super::writing::Writing;
 use super::{ResultParts, Signal, Store, StoreError, queue, results};
 use crate::job::{EventBody, Fault, JobSpec, Status};
@@ -89,7 +90,7 @@ impl Store {
                     attempt: u32::try_from(attempt).unwrap_or(u32::MAX),
                 },
             };
-            append(writing.connection(), job, &mut head, &now, &[event]).await?;
+            record(writing.connection(), job, &mut head, &now, &[event]).await?;
             sqlx::query(
                 "UPDATE jobs SET attempt = $2, lost = $3, written = 0, lease_owner = $4, lease_until = $5 WHERE id = $1",
             )
@@ -141,7 +142,7 @@ impl Store {
         let (mut writing, mut held) = self.begin_as(claim).await?;
         let missing = held.missing(before, events);
         let now = self.clock.now_text();
-        append(
+        record(
             writing.connection(),
             claim.job,
             &mut held.head,
@@ -179,7 +180,7 @@ impl Store {
             results::insert(writing.connection(), claim.job, result).await?;
         }
         let now = self.clock.now_text();
-        append(writing.connection(), claim.job, &mut held.head, &now, &last).await?;
+        record(writing.connection(), claim.job, &mut held.head, &now, &last).await?;
         give_up_lease(&mut writing, claim).await?;
         writing.commit().await
     }
@@ -194,7 +195,7 @@ impl Store {
             reason: reason.to_string(),
         };
         let now = self.clock.now_text();
-        append(
+        record(
             writing.connection(),
             claim.job,
             &mut held.head,

@@ -4,7 +4,7 @@ use sqlx::{AnyConnection, Row};
 use uuid::Uuid;
 
 use super::page::one_more;
-use super::{Clock, Page, Project, StoreError, tallies, webhooks};
+use super::{Page, Project, StoreError};
 use crate::job::{EventBody, Status};
 
 /// An event as it is kept. The body stays JSON: most readers hand it on as it is.
@@ -85,39 +85,7 @@ pub(super) async fn append(
     .bind(finished)
     .execute(&mut *connection)
     .await?;
-    for event in events {
-        note(connection, &job, event, now).await?;
-    }
     Ok(())
-}
-
-/// What follows from the first claim of a job, and from its end: they are counted, and who wants to know is owed it.
-async fn note(
-    connection: &mut AnyConnection,
-    job: &str,
-    event: &EventBody,
-    now: &str,
-) -> Result<(), StoreError> {
-    let how = match event {
-        EventBody::Claimed { attempt: 1, .. } => None,
-        EventBody::Failed { faults } => Some(faults.first().map_or("failed", |fault| &fault.code)),
-        event if event.is_last() => Some(event.name()),
-        _ => return Ok(()),
-    };
-    let row = sqlx::query("SELECT project, created, started FROM jobs WHERE id = $1")
-        .bind(job)
-        .fetch_one(&mut *connection)
-        .await?;
-    let since = |moment: &str| Clock::seconds_between(moment, now).unwrap_or(0.0).max(0.0);
-    match how {
-        None => tallies::count_wait(connection, since(row.try_get("created")?)).await,
-        Some(how) => {
-            let started: Option<&str> = row.try_get("started")?;
-            tallies::count_end(connection, how, started.map(since)).await?;
-            let project = row.try_get("project")?;
-            webhooks::owe(connection, project, job, event.name(), now).await
-        }
-    }
 }
 
 pub(super) fn read_status(text: &str) -> Result<Status, StoreError> {

@@ -1,5 +1,6 @@
 //! Maneuvers, identified by what is in them.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -7,7 +8,8 @@ use sqlx::Row;
 use sqlx::any::AnyRow;
 
 use super::page::one_more;
-use super::{BadCursor, Page, Project, StoreError, columns, off_reactor};
+use super::reactor::off_reactor;
+use super::{BadCursor, Page, Project, StoreError, columns};
 use crate::flight::{Channel, Maneuver, Unit};
 
 /// A maneuver without its data.
@@ -27,6 +29,14 @@ pub enum Uploaded {
     New(ManeuverRecord),
     /// The same content was here before, under the name it had then.
     Known(ManeuverRecord),
+}
+
+/// Why a recording was not loaded, with its place among those that were asked for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum NotLoaded {
+    Unknown(usize),
+    /// With it, what was loaded would be too much.
+    TooMuch(usize),
 }
 
 /// What stands beside the numbers of a maneuver. The numbers are SI; `unit` tells what they measure.
@@ -66,7 +76,7 @@ fn decode(id: &str, bytes: &[u8]) -> Result<Maneuver, StoreError> {
         columns::decode(bytes).map_err(|error| corrupt(error.to_string()))?;
     if columns.len() != 1 + header.channels.len() {
         return Err(corrupt(
-            "it has another number of columns than its header says".into(),
+            "it does not have as many columns as its header says".into(),
         ));
     }
     let mut columns = columns.into_iter();
@@ -187,6 +197,44 @@ impl Project {
         let id = id.to_string();
         let decode = move || decode(&id, row.try_get("content")?);
         off_reactor("a maneuver", decode).await.map(Some)
+    }
+
+    /// Recordings in the order of `ids`, each read once, or why some are not there. Beyond `most_values` (samples times
+    /// channels, time included) no more are read.
+    ///
+    /// # Errors
+    /// As [`Project::maneuver_data`].
+    pub async fn load(
+        &self,
+        ids: &[&str],
+        most_values: usize,
+    ) -> Result<Result<Vec<Arc<Maneuver>>, Vec<NotLoaded>>, StoreError> {
+        let mut known: HashMap<&str, Arc<Maneuver>> = HashMap::new();
+        let (mut loaded, mut missing, mut values) = (Vec::new(), Vec::new(), 0);
+        for (place, &id) in ids.iter().enumerate() {
+            // parts of one recording are often used side by side
+            if let Some(maneuver) = known.get(id) {
+                loaded.push(maneuver.clone());
+                continue;
+            }
+            let Some(maneuver) = self.maneuver_data(id).await? else {
+                missing.push(NotLoaded::Unknown(place));
+                continue;
+            };
+            values += maneuver.len() * (1 + maneuver.channels().len());
+            if values > most_values {
+                missing.push(NotLoaded::TooMuch(place));
+                break;
+            }
+            let maneuver = Arc::new(maneuver);
+            known.insert(id, maneuver.clone());
+            loaded.push(maneuver);
+        }
+        Ok(if missing.is_empty() {
+            Ok(loaded)
+        } else {
+            Err(missing)
+        })
     }
 
     /// Maneuvers, newest first.

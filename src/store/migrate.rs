@@ -2,7 +2,8 @@
 
 use sqlx::{AssertSqlSafe, Row};
 
-use super::{Store, StoreError};
+use super::database::Store;
+use super::error::StoreError;
 
 /// In order, from version 1. A step that was released is never edited: a change is a further step.
 const STEPS: &[&str] = &[

@@ -4,8 +4,8 @@ use sqlx::Row;
 use sqlx::any::AnyRow;
 use uuid::Uuid;
 
-use super::jobs::read_id;
 use super::page::one_more;
+use super::row::read_id;
 use super::{Page, Project, StoreError};
 use crate::model::ModelDocument;
 

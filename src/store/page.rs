@@ -9,7 +9,7 @@ pub struct Page<T> {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
-#[error("it is none that a list has answered with")]
+#[error("it is not one that a list has answered with")]
 pub struct BadCursor;
 
 impl<T> Page<T> {

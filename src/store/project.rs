@@ -4,11 +4,10 @@
 //! there. What workers and operators do is done with the [`Store`].
 
 use std::sync::Arc;
-use std::time::Duration;
 
-use uuid::Uuid;
-
-use super::{Clock, Expired, Key, KeyRecord, Listener, NewKey, Rule, Store, StoreError};
+use super::clock::Clock;
+use super::database::Store;
+use super::signal::Listener;
 
 /// The project of those who need no key, and of what was stored before there were keys.
 pub const DEFAULT_PROJECT: &str = "default";
@@ -46,51 +45,5 @@ impl Project {
     /// As [`Store::listen`].
     pub fn listen(&self) -> Listener {
         self.store.listen()
-    }
-
-    /// # Errors
-    /// As [`Store::keys`].
-    pub async fn keys(&self) -> Result<Vec<KeyRecord>, StoreError> {
-        self.store.keys(Some(&self.name)).await
-    }
-
-    /// # Errors
-    /// As [`Store::add_key`].
-    pub async fn add_key(&self, new: &NewKey) -> Result<(KeyRecord, Key), StoreError> {
-        self.store.add_key(new).await
-    }
-
-    /// # Errors
-    /// As [`Store::revoke_key`].
-    pub async fn revoke_key(&self, id: Uuid) -> Result<Option<KeyRecord>, StoreError> {
-        self.store.revoke_key(Some(&self.name), id).await
-    }
-
-    /// # Errors
-    /// As [`Store::rotate_key`].
-    pub async fn rotate_key(
-        &self,
-        id: Uuid,
-        overlap: Duration,
-    ) -> Result<Option<(KeyRecord, Key)>, StoreError> {
-        self.store.rotate_key(Some(&self.name), id, overlap).await
-    }
-
-    /// Deletes what is older than `age`; see [`Store::expire`].
-    ///
-    /// # Errors
-    /// As [`Store::expire`].
-    pub async fn expire(
-        &self,
-        age: Duration,
-        keep_tag: &str,
-        dry_run: bool,
-    ) -> Result<Expired, StoreError> {
-        let rule = Rule {
-            project: Some(self.name.to_string()),
-            before: self.store.clock.text_before(age),
-            keep_tag: keep_tag.to_string(),
-        };
-        self.store.expire(&rule, dry_run).await
     }
 }

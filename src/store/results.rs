@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 use sqlx::{AnyConnection, Row};
 use uuid::Uuid;
 
-use super::{Project, StoreError, columns, off_reactor};
+use super::reactor::off_reactor;
+use super::{Project, StoreError, columns};
 use crate::estimate::{OutputSeries, Role, Series, TimeHistory};
 use crate::job::{JobResult, Maker};
 
@@ -162,7 +163,7 @@ fn decode_history(bytes: &[u8]) -> Result<TimeHistory, StoreError> {
     let of_outputs: usize = header.outputs.iter().map(SeriesHeader::columns).sum();
     if columns.len() != 1 + header.inputs.len() + of_outputs {
         return Err(corrupt(
-            "it has another number of columns than its header says".into(),
+            "it does not have as many columns as its header says".into(),
         ));
     }
     let mut columns = columns.into_iter();
@@ -237,24 +238,23 @@ impl Project {
     /// # Errors
     /// The database does not answer.
     pub async fn histories(&self, job: Uuid) -> Result<Option<Vec<TimeHistory>>, StoreError> {
-        let rows = sqlx::query(
-            "SELECT part, body FROM results WHERE job = (SELECT id FROM jobs WHERE id = $1 AND project = $2) ORDER BY part",
-        )
+        let sql = "SELECT body FROM results WHERE job = (SELECT id FROM jobs WHERE id = $1 AND project = $2) \
+                   AND part LIKE 'history/%' ORDER BY part";
+        let rows = sqlx::query(sql)
             .bind(job.to_string())
             .bind(&*self.name)
             .fetch_all(&self.store.readers)
             .await?;
-        if rows.is_empty() {
+        // every result has an estimate
+        if rows.is_empty() && self.result_part(job, Part::Estimate).await?.is_none() {
             return Ok(None);
         }
         let decode = move || {
-            let mut histories = Vec::new();
-            for row in rows {
-                if row.try_get::<&str, _>("part")?.starts_with("history/") {
-                    histories.push(decode_history(row.try_get("body")?)?);
-                }
-            }
-            Ok(Some(histories))
+            let histories = rows.iter();
+            histories
+                .map(|row| decode_history(row.try_get("body")?))
+                .collect::<Result<_, _>>()
+                .map(Some)
         };
         off_reactor("a time history", decode).await
     }

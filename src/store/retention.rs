@@ -3,6 +3,8 @@
 //! Which maneuvers a job uses stands in its spec and nowhere else: a maneuver's id is a digest of 64 digits, so that a spec
 //! that has it in its text uses it. That takes a look at every spec, which deleting, done seldom, can afford.
 
+use std::time::Duration;
+
 use sqlx::{AnyConnection, AssertSqlSafe, Row};
 use uuid::Uuid;
 
@@ -88,6 +90,24 @@ impl Project {
             .await?;
         writing.commit().await?;
         Ok(Deleted::Gone)
+    }
+
+    /// Deletes what is older than `age`; see [`Store::expire`].
+    ///
+    /// # Errors
+    /// As [`Store::expire`].
+    pub async fn expire(
+        &self,
+        age: Duration,
+        keep_tag: &str,
+        dry_run: bool,
+    ) -> Result<Expired, StoreError> {
+        let rule = Rule {
+            project: Some(self.name.to_string()),
+            before: self.store.clock.text_before(age),
+            keep_tag: keep_tag.to_string(),
+        };
+        self.store.expire(&rule, dry_run).await
     }
 }
 

@@ -10,7 +10,7 @@ use sqlx::any::AnyRow;
 use sqlx::{AnyConnection, AssertSqlSafe, Row};
 use uuid::Uuid;
 
-use super::jobs::read_id;
+use super::row::read_id;
 use super::{Project, Store, StoreError, clock};
 
 /// How long a delivery stays with the process that took it.

@@ -17,14 +17,14 @@ pub struct Allowed(Arc<BTreeSet<String>>);
 
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 pub enum Refused {
-    #[error("'{0}' is no URL; give it as https://HOST/PATH")]
+    #[error("'{0}' is not a URL; write it as https://HOST/PATH")]
     NoUrl(String),
     #[error("'{0}' has a user or password in it; what signs a message is its secret")]
     Credentials(String),
-    #[error("only https is spoken to hosts that are not allowed by name (--webhook-allow)")]
+    #[error("hosts that are not allowed by name are spoken to by https only (--webhook-allow)")]
     NotHttps,
     #[error(
-        "{0} is on this machine or its network; messages go there only if the host is allowed by name (--webhook-allow)"
+        "{0} is on this machine or its network; messages are sent there only if the host is allowed by name (--webhook-allow)"
     )]
     NotPublic(String),
 }

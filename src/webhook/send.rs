@@ -50,7 +50,7 @@ impl Sender {
         };
         // a small image may have no certificates: plain http still goes to hosts that are allowed by name
         let http = client(true).or_else(|error| {
-            tracing::warn!(%error, "no certificates: webhooks cannot be sent by https");
+            tracing::warn!(%error, "there are no certificates: webhooks cannot be sent by https");
             client(false)
         });
         Self {

@@ -13,7 +13,7 @@ use super::stop::{Reason, Stop};
 use crate::estimate::Outcome;
 use crate::flight::Maneuver;
 use crate::job::{EventBody, Fault, Status};
-use crate::store::{Claim, LEASE, ResultParts, Signal, Store, StoreError};
+use crate::store::{Claim, LEASE, NotLoaded, ResultParts, Signal, Store, StoreError};
 
 /// How long a solver may take to notice that the process ends; the job is released in any case.
 const SHUTDOWN_GRACE: Duration = Duration::from_secs(2);
@@ -46,19 +46,19 @@ pub(super) async fn run_job(store: &Store, claim: Claim, shutdown: &Cancellation
 }
 
 enum Settled {
-    Ended(Ending),
+    Ended(JobEnd),
     Released,
     Abandoned,
 }
 
-struct Ending {
+struct JobEnd {
     /// What was told last and is not written yet: it is, together with the end.
     told: Told,
     event: EventBody,
     result: Option<ResultParts>,
 }
 
-impl Ending {
+impl JobEnd {
     fn without_result(event: EventBody) -> Self {
         Self {
             told: Told::default(),
@@ -79,7 +79,7 @@ struct Told {
 async fn work_on(store: &Store, claim: &Arc<Claim>, shutdown: &CancellationToken) -> Settled {
     if claim.cancelling {
         let event = EventBody::Cancelled { has_result: false };
-        return Settled::Ended(Ending::without_result(event));
+        return Settled::Ended(JobEnd::without_result(event));
     }
     let stop = Stop::default();
     let run = async {
@@ -104,31 +104,21 @@ async fn work_on(store: &Store, claim: &Arc<Claim>, shutdown: &CancellationToken
 
 /// The maneuvers of the spec, in its order.
 async fn load(store: &Store, claim: &Claim) -> Result<Vec<Arc<Maneuver>>, Unanswered> {
-    let mut maneuvers: Vec<Arc<Maneuver>> = Vec::new();
-    let uses = &claim.spec.maneuvers;
+    let uses = claim.spec.maneuvers.iter();
+    let ids: Vec<&str> = uses.map(|used| used.id.as_str()).collect();
     let project = store.project(&claim.project, "");
-    for (number, used) in uses.iter().enumerate() {
-        // parts of one recording are often used side by side
-        if let Some(same) = uses[..number]
-            .iter()
-            .position(|earlier| earlier.id == used.id)
-        {
-            maneuvers.push(maneuvers[same].clone());
-            continue;
-        }
-        let loaded = persist("load", || project.maneuver_data(&used.id)).await?;
-        let Some(maneuver) = loaded else {
-            let message = "there is no maneuver of this id any more; upload it again";
-            let fault = Fault::new(
-                format!("/maneuvers/{number}/id"),
-                "unknown_maneuver",
-                message,
-            );
-            return Err(Unanswered::Refused(vec![fault]));
-        };
-        maneuvers.push(Arc::new(maneuver));
-    }
-    Ok(maneuvers)
+    let loaded = persist("load", || project.load(&ids, usize::MAX)).await?;
+    loaded.map_err(|missing| Unanswered::Refused(missing.into_iter().map(not_there).collect()))
+}
+
+fn not_there(why: NotLoaded) -> Fault {
+    // they are as much as was accepted
+    let (NotLoaded::Unknown(place) | NotLoaded::TooMuch(place)) = why;
+    Fault::new(
+        format!("/maneuvers/{place}/id"),
+        "unknown_maneuver",
+        "there is no longer a maneuver of this id; upload it again",
+    )
 }
 
 /// Writes what the solver tells, all that comes within a moment in one transaction; what came last is left for the
@@ -209,7 +199,7 @@ fn settle(answered: Result<Answer, Unanswered>, told: Told, asked: Option<Reason
         Ok(answer) if stopped(&answer) && asked == Some(Reason::Shutdown) => {
             return Settled::Released;
         }
-        Ok(answer) if stopped(&answer) => Ending {
+        Ok(answer) if stopped(&answer) => JobEnd {
             told,
             event: EventBody::Cancelled { has_result: true },
             result: Some(answer.parts),
@@ -219,17 +209,17 @@ fn settle(answered: Result<Answer, Unanswered>, told: Told, asked: Option<Reason
             outcome,
             reason,
             parts,
-        }) => Ending {
+        }) => JobEnd {
             told,
             event: EventBody::Succeeded { outcome, reason },
             result: Some(parts),
         },
-        Err(Unanswered::Refused(faults)) => Ending {
+        Err(Unanswered::Refused(faults)) => JobEnd {
             told,
-            ..Ending::without_result(EventBody::Failed { faults })
+            ..JobEnd::without_result(EventBody::Failed { faults })
         },
         Err(Unanswered::Store(error)) => failed("store", &error),
-        Err(Unanswered::Panicked(text)) => Ending {
+        Err(Unanswered::Panicked(text)) => JobEnd {
             told,
             ..failed("solver", &text)
         },
@@ -238,19 +228,19 @@ fn settle(answered: Result<Answer, Unanswered>, told: Told, asked: Option<Reason
     Settled::Ended(ending)
 }
 
-fn failed(where_: &str, error: &dyn std::fmt::Display) -> Ending {
+fn failed(where_: &str, error: &dyn std::fmt::Display) -> JobEnd {
     tracing::error!(%error, "the {where_} failed");
     let message = format!(
         "the {where_} failed, which is a defect of the service and not of the job: {error}"
     );
     let faults = vec![Fault::new("", "internal", message)];
-    Ending::without_result(EventBody::Failed { faults })
+    JobEnd::without_result(EventBody::Failed { faults })
 }
 
 /// Writes the end of a job. A result that cannot be kept fails the job rather than being computed
 /// again and again.
-async fn end(store: &Store, claim: &Claim, ending: Ending) -> Result<(), StoreError> {
-    let Ending {
+async fn end(store: &Store, claim: &Claim, ending: JobEnd) -> Result<(), StoreError> {
+    let JobEnd {
         told: Told { before, events },
         event,
         result,

@@ -11,7 +11,7 @@ use super::maker::this_program;
 use super::stop::Stop;
 use crate::estimate::Outcome;
 use crate::flight::Maneuver;
-use crate::job::{self, EventBody, Fault, JobKind, JobSpec, Progress};
+use crate::job::{self, EventBody, Fault, JobKind, JobSpec, StudyProgress};
 use crate::model::ModelDocument;
 use crate::store::{ResultParts, StoreError};
 
@@ -74,9 +74,9 @@ pub(super) fn solve(
         JobKind::Estimate => job::run(&plan, &mut |progress| tell(Some(progress.into()))),
         JobKind::DerivativeStudy => job::run_study(&plan, &ThreadClock::start(), &mut |progress| {
             tell(match progress {
-                Progress::Estimation(progress) => Some(progress.into()),
-                Progress::Finding(step) => Some(EventBody::Finding(step.clone())),
-                Progress::Underway => None,
+                StudyProgress::Estimation(progress) => Some(progress.into()),
+                StudyProgress::Finding(step) => Some(EventBody::Finding(step.clone())),
+                StudyProgress::Underway => None,
             })
         }),
         JobKind::Diagnose => job::run_diagnosis(&plan, &mut |step| {

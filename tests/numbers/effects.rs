@@ -4,7 +4,7 @@
 use indexmap::IndexMap;
 use trimtab_core::flight::Maneuver;
 use trimtab_core::flight::Unit;
-use trimtab_core::model::{Added, Edit, EditKind, Model, ModelDocument, Start, catalog};
+use trimtab_core::model::{Edit, EditKind, Model, ModelDocument, Start, catalog};
 use trimtab_core::simulate::{
     InputInterpolation, Integrator, Scenario, ScenarioEffect, Segment, Steps, simulate,
 };
@@ -180,14 +180,18 @@ fn without_effect_an_edited_model_is_the_model_before_and_with_it_is_not() {
         let what = format!("{} {:?}", case.model, case.edit);
         kinds.push(case.edit.kind);
         let before = catalog::find(case.model).expect("a catalog model");
-        let after = (case.edit.apply(&before)).unwrap_or_else(|error| panic!("{what}: {error}"));
+        let added = (case.edit.apply(&before)).unwrap_or_else(|error| panic!("{what}: {error}"));
+        let after = added.document.clone();
         let json = serde_json::to_string(&after).expect("JSON");
         assert_eq!(serde_json::from_str::<ModelDocument>(&json).unwrap(), after);
         let text = toml::to_string(&after).expect("TOML");
         assert_eq!(toml::from_str::<ModelDocument>(&text).unwrap(), after);
-        let added = Added::between(&before, &after);
         assert_eq!(added.inputs, case.inputs, "{what}");
-        for name in &added.parameters {
+        let is_new = |name: &&String| !before.parameters.contains_key(*name);
+        let new: Vec<&String> = after.parameters.keys().filter(is_new).collect();
+        let named: Vec<&String> = added.added.iter().map(|added| &added.name).collect();
+        assert_eq!(named, new, "{what}");
+        for name in named {
             let parameter = &after.parameters[name];
             assert!(
                 !parameter.description.is_empty() && !parameter.unit.is_empty(),
@@ -195,7 +199,7 @@ fn without_effect_an_edited_model_is_the_model_before_and_with_it_is_not() {
             );
             Unit::parse(&parameter.unit).expect("a unit");
         }
-        assert_eq!(added.parameters[0], case.some[0].0, "{what}");
+        assert_eq!(added.added[0].name, case.some[0].0, "{what}");
         let declared = outputs(&before, &[]);
         let none = outputs(&after, case.none);
         for (name, y) in &declared {
@@ -234,7 +238,7 @@ fn means(series: &[f64], from: usize, to: usize) -> f64 {
 fn effects_go_the_right_way() {
     let before = catalog::find("short-period").expect("a model");
     let run = |edit: &Edit, values: &[(&str, f64)]| {
-        outputs(&edit.apply(&before).expect("edited"), values)
+        outputs(&edit.apply(&before).expect("edited").document, values)
     };
     let declared = outputs(&before, &[]);
     // a sensor that lags, an actuator that lags and a delay: what they see is behind
@@ -289,7 +293,8 @@ fn effects_go_the_right_way() {
     let before = catalog::find("flight-path-reconstruction").expect("a model");
     let ramp = edit(EditKind::Wind, "Wx", "ramp")
         .apply(&before)
-        .expect("edited");
+        .expect("edited")
+        .document;
     let (still, ramped) = (outputs(&before, &[]), outputs(&ramp, &[("W_x_ramp", 0.5)]));
     // the air speeds up, the aircraft in it keeps its way over ground
     assert!(ramped["V"][COUNT - 1] < still["V"][COUNT - 1] - 3.0);
@@ -509,7 +514,7 @@ fn a_scenario_names_what_is_wrong_with_an_effect() {
     };
     assert!(
         refused("sensor_noise:q=1")
-            .contains("there is no effect 'sensor_noise'; known are sensor_bias")
+            .contains("there is no effect 'sensor_noise'; choose one of sensor_bias")
     );
     assert!(refused("sensor_bias:beta=1").contains("it has alpha, q"));
     assert!(refused("sensor_outliers:beta=0.1").contains("recorded are de, alpha, q, V"));

@@ -122,7 +122,7 @@ fn agrees_with_the_stages_on_catalog_models() {
     let mut affine = 0;
     for document in catalog::all() {
         let model = Model::compile(&document).expect("a catalog model");
-        affine += usize::from(model.affine_dynamics.is_some());
+        affine += usize::from(model.is_affine());
         let error = compare(&model, &near_start(&model), 201);
         println!("{:24} relative difference {error:.1e}", document.name);
         assert!(error < AGREEMENT, "{}: {error:e}", document.name);
@@ -195,7 +195,7 @@ fn agrees_with_the_stages_on_random_models() {
         let document: ModelDocument = toml::from_str(&text).expect("a document");
         let model =
             Model::compile(&document).unwrap_or_else(|faults| panic!("{text}\n{faults:#?}"));
-        assert!(model.affine_dynamics.is_some(), "{text}");
+        assert!(model.is_affine(), "{text}");
         let values: Vec<f64> = (0..parameters)
             .map(|_| random.random_range(0.3..0.9))
             .collect();
@@ -228,6 +228,6 @@ fn what_is_not_affine_is_left_to_the_stages() {
         let document: ModelDocument = toml::from_str(&text).expect("a document");
         let model =
             Model::compile(&document).unwrap_or_else(|faults| panic!("{equation}: {faults:#?}"));
-        assert_eq!(model.affine_dynamics.is_some(), affine, "{equation}");
+        assert_eq!(model.is_affine(), affine, "{equation}");
     }
 }

@@ -111,6 +111,20 @@ fn a_prior_tells_apart_what_the_data_cannot() {
     assert!(c.prior_share.unwrap() < 1e-6, "{:?}", c.prior_share);
 }
 
+/// The process noises follow the parameters among the unknowns, and have no prior.
+#[test]
+fn filter_error_has_shares_of_its_priors_too() {
+    let changes = json!({
+        "parameters": {"Ma": {"prior": {"mean": -3.4, "sd": 0.05}}},
+        "options": {"estimator": "filter_error"},
+    });
+    let elevator = common::recordings::maneuver(common::recordings::elevator().as_bytes());
+    let result = solve(json!("short-period"), changes, &[elevator]);
+    let share = |name: &str| parameter(&result, name).prior_share.expect("a share");
+    assert!(share("Ma") > 0.1 && share("Ma") < 1.0, "{}", share("Ma"));
+    assert!(share("q_bias") < share("Ma"), "{}", share("q_bias"));
+}
+
 #[test]
 fn a_prior_that_is_none_is_refused() {
     for (prior, pointer) in [

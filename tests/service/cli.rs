@@ -66,7 +66,7 @@ fn fit_works_without_a_server() {
 fn what_cannot_be_done_is_said_with_the_remedy() {
     let words = fails(&["fit", "data/elevator.csv", "--model", "short-periot"]);
     assert!(
-        words.contains("no catalog model 'short-periot'; known are short-period"),
+        words.contains("no catalog model 'short-periot'; the catalog has short-period"),
         "{words}"
     );
     let words = fails(&[
@@ -299,7 +299,7 @@ fn with_a_key_it_is_and_who_has_the_key_comes_in() {
         "--database",
         database,
     ]);
-    assert!(words.contains("is no name of a project"), "{words}");
+    assert!(words.contains("is not a project name"), "{words}");
 }
 
 #[test]

@@ -15,9 +15,9 @@ use trimtab::estimate::Outcome;
 use trimtab::job::{EventBody, Fault, JobSpec, ModelSource, Status};
 use trimtab::model::ModelDocument;
 use trimtab::store::{
-    Attempt, CancelReply, Claim, Clock, DEFAULT_PROJECT, JobFilter, Key, LEASE, MOST_LOST_WORKERS,
-    NewJob, NewKey, Once, Project, Rule, Scope, Shown, Signal, Store, StoreError, Uploaded,
-    Waiting,
+    Attempt, CancelReply, Claim, Clock, DEFAULT_PROJECT, JobFilter, Key, KeyCheck, LEASE,
+    MOST_LOST_WORKERS, NewJob, NewKey, Once, Project, Rule, Scope, Signal, Store, StoreError,
+    Uploaded, Waiting,
 };
 
 struct Bench {
@@ -615,14 +615,14 @@ async fn a_key_opens_until_it_is_revoked_or_expires(bench: Bench) {
     let (long, of_long) = store.add_key(&new_key("p")).await.unwrap();
     let shown = async |key: &Key| store.look_up_key(key.reveal()).await.unwrap();
     assert_eq!(long.lifetime, None);
-    let good = |shown: Shown| match shown {
-        Shown::Good(key) => key.id,
+    let good = |shown: KeyCheck| match shown {
+        KeyCheck::Good(key) => key.id,
         bad => panic!("{bad:?}"),
     };
     assert_eq!(good(shown(&of_short).await), short.id);
     assert_eq!(good(shown(&of_long).await), long.id);
     let nobody = format!("{}0", of_long.reveal());
-    assert_eq!(store.look_up_key(&nobody).await.unwrap(), Shown::Unknown);
+    assert_eq!(store.look_up_key(&nobody).await.unwrap(), KeyCheck::Unknown);
     // what is listed is not what opens
     let listed = store.keys(Some("p")).await.unwrap();
     assert_eq!(listed.len(), 2);
@@ -631,7 +631,7 @@ async fn a_key_opens_until_it_is_revoked_or_expires(bench: Bench) {
     assert_eq!(store.keys(Some("other")).await.unwrap(), []);
 
     bench.clock.advance(Duration::from_secs(61));
-    assert_eq!(shown(&of_short).await, Shown::Expired);
+    assert_eq!(shown(&of_short).await, KeyCheck::Expired);
     let none = store.rotate_key(None, short.id, Duration::ZERO).await;
     assert!(none.unwrap().is_none(), "what is expired is not prolonged");
     let foreign = store.rotate_key(Some("other"), long.id, Duration::ZERO);
@@ -647,7 +647,7 @@ async fn a_key_opens_until_it_is_revoked_or_expires(bench: Bench) {
         (long.id, next.id)
     );
     bench.clock.advance(hour);
-    assert_eq!(shown(&of_long).await, Shown::Expired);
+    assert_eq!(shown(&of_long).await, KeyCheck::Expired);
 
     assert_eq!(
         store.revoke_key(Some("other"), next.id).await.unwrap(),
@@ -655,7 +655,7 @@ async fn a_key_opens_until_it_is_revoked_or_expires(bench: Bench) {
     );
     assert_eq!(good(shown(&of_next).await), next.id);
     let revoked = store.revoke_key(Some("p"), next.id).await.unwrap().unwrap();
-    assert_eq!(shown(&of_next).await, Shown::Revoked);
+    assert_eq!(shown(&of_next).await, KeyCheck::Revoked);
     let again = store.revoke_key(Some("p"), next.id).await.unwrap().unwrap();
     assert_eq!(again.revoked, revoked.revoked);
     assert!(

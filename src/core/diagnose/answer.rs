@@ -2,6 +2,8 @@
 
 use std::ops::ControlFlow;
 
+use nalgebra::DMatrix;
+
 use super::candidates::taken_for;
 use super::case::{Case, Unfit};
 use super::colour::Colour;
@@ -14,13 +16,14 @@ use super::report::{
 use super::residual::analyse;
 use super::screen::Screen;
 use super::sentence;
+use super::size::sizes;
 use super::stack::Layout;
 use crate::estimate::{
     Estimate, OutputFit, ParameterEstimate, Problem, Role, Solution, TimeHistory, estimate,
     five_digits, predict,
 };
 use crate::flight::{Shown, Unit, shown_in};
-use crate::model::{Model, ModelDocument, Start};
+use crate::model::{ModelDocument, Start};
 
 /// Everything that a diagnosis comes to.
 pub struct Conclusion {
@@ -63,8 +66,20 @@ pub(super) fn answer(
         });
     }
     for role in [Role::Validation, Role::Final] {
-        let before = predictions(case, role, &declared.problem, &declared.estimate)?;
-        let now = predictions(case, role, &after.problem, &estimated)?;
+        let before = predictions(
+            case,
+            role,
+            &declared.problem,
+            &declared.theta,
+            &declared.covariance,
+        )?;
+        let now = predictions(
+            case,
+            role,
+            &after.problem,
+            &after.solution.theta,
+            &after.solution.covariance,
+        )?;
         for ((label, b, then), (_, a, history)) in before.into_iter().zip(now) {
             let of = |(before, after): (OutputFit, OutputFit)| FitChange {
                 role,
@@ -96,7 +111,7 @@ pub(super) fn answer(
     let effects: Vec<NamedEffect> = found
         .accepted
         .iter()
-        .map(|accepted| named(accepted, &estimated))
+        .map(|accepted| named(accepted, &after))
         .collect();
     let diagnosis = Diagnosis {
         verdict,
@@ -106,7 +121,7 @@ pub(super) fn answer(
         quantities: taken_for(case),
         parameters: changes(&declared.estimate, &estimated),
         before: declared.estimate.clone(),
-        model: estimated_document(&after.problem.model, &estimated),
+        model: estimated_document(&after.problem, &after.solution.theta),
         diff: difference(&case.document, &last.document),
         fits,
         residuals,
@@ -133,15 +148,18 @@ struct Full {
 
 /// The last model, fitted to the job's own tolerance and with its error bounds.
 fn full(case: &Case, declared: &Fitted, last: &Fitted) -> Result<Full, Unfit> {
-    let mut problem = case.problem(&last.document, &last.values)?;
+    let mut problem = case.problem(&last.document, &last.values())?;
     problem.options = last.problem.options.clone();
     let asked = &declared.problem.options;
     problem.options.tolerance = asked.tolerance;
     problem.options.max_iterations = asked.max_iterations;
     problem.options.error_bounds = asked.error_bounds;
     problem.options.start = crate::estimate::StartMethod::Document {};
-    let solution = estimate(&problem, &mut |_| ControlFlow::Continue(()))
-        .map_err(|_| Unfit("the model with its effects cannot be fitted again".into()))?;
+    let solution = estimate(&problem, &mut |_| ControlFlow::Continue(())).map_err(|why| {
+        Unfit(format!(
+            "the model with its effects cannot be fitted again: {why}"
+        ))
+    })?;
     Ok(Full { problem, solution })
 }
 
@@ -151,11 +169,12 @@ fn predictions(
     case: &Case,
     role: Role,
     problem: &Problem,
-    estimate: &Estimate,
+    theta: &[f64],
+    covariance: &DMatrix<f64>,
 ) -> Result<Vec<Predicted>, Unfit> {
     let flights = case.held_out(role, problem)?;
     let of = |validation| {
-        let (prediction, history) = predict(problem, estimate, validation);
+        let (prediction, history) = predict(problem, theta, covariance, validation);
         (prediction.segment, prediction.outputs, history)
     };
     Ok(flights.iter().map(of).collect())
@@ -254,24 +273,27 @@ fn remarks(case: &Case, fits: &[FitChange]) -> Vec<String> {
     remarks
 }
 
-fn named(accepted: &Accepted, estimated: &Estimate) -> NamedEffect {
-    let is_added = |row: &&ParameterEstimate| !row.fixed && accepted.added.contains(&row.name);
-    let parameters = estimated.parameters.iter().filter(is_added).map(|row| {
-        let unit = Unit::parse(&row.unit).unwrap_or(Unit::NONE);
-        EffectParameter {
-            name: row.name.clone(),
-            unit: Unit::si_name(&row.unit),
-            segment: row.segment.clone(),
-            estimate: unit.to_si(row.estimate),
-            standard_error: row.standard_error.map(|error| error * unit.scale),
-        }
+fn named(accepted: &Accepted, after: &Full) -> NamedEffect {
+    let Full { problem, solution } = after;
+    let sizes = sizes(
+        problem,
+        &solution.theta,
+        &solution.estimate,
+        &accepted.added,
+    );
+    let parameters = sizes.iter().map(|size| EffectParameter {
+        name: size.name.clone(),
+        unit: Unit::si_name(&size.unit),
+        segment: size.segment.clone(),
+        estimate: size.value,
+        standard_error: size.standard_error_si(),
     });
     NamedEffect {
         effect: accepted.effect.clone(),
         parameters: parameters.collect(),
         group: accepted.group.clone(),
         evidence: accepted.evidence.clone(),
-        sentence: sentence::of(&accepted.effect, &accepted.added, estimated),
+        sentence: sentence::of(&accepted.effect, &sizes),
     }
 }
 
@@ -302,15 +324,13 @@ fn changes(before: &Estimate, after: &Estimate) -> Vec<ParameterChange> {
 }
 
 /// The document with the estimates as start values, to be saved and fitted again.
-fn estimated_document(model: &Model, estimate: &Estimate) -> ModelDocument {
-    let mut document = model.document.clone();
-    for row in estimate
-        .parameters
-        .iter()
-        .filter(|row| !row.fixed && row.segment.is_none())
-    {
-        if let Some(parameter) = document.parameters.get_mut(&row.name) {
-            parameter.start = Start::Value(row.estimate);
+fn estimated_document(problem: &Problem, theta: &[f64]) -> ModelDocument {
+    let mut document = problem.model.document.clone();
+    for (place, &value) in theta.iter().enumerate() {
+        let info = problem.parameter(place);
+        let is_shared = problem.unknowns.at(place).segment.is_none();
+        if is_shared && let Some(parameter) = document.parameters.get_mut(&info.name) {
+            parameter.start = Start::Value(info.unit.from_si(value));
         }
     }
     document

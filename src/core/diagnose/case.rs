@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 use super::effect::Effect;
 use super::flight::Flight;
 use super::knowledge::Knowledge;
-use crate::estimate::{Estimate, Options, Problem, Role, Unknowns, Validation};
+use crate::estimate::{Options, Problem, Role, Unknown, Unknowns, Validation};
 use crate::flight::Dimension;
 use crate::model::{ChannelFormula, Model, ModelDocument, Start};
 
@@ -28,7 +28,7 @@ pub struct Case {
 /// Values of parameters, SI: by name, and by segment where each has its own.
 pub(super) type Values = IndexMap<(String, Option<String>), f64>;
 
-/// What is faster than this many samples an explicit integrator cannot follow.
+/// An explicit integrator cannot follow a lag of fewer samples than this.
 const SHORTEST_LAG: f64 = 0.45;
 
 /// Why a model cannot be fitted to the case.
@@ -58,14 +58,12 @@ impl Case {
             .iter()
             .map(|flight| flight.step())
             .fold(0.0, f64::max);
-        for unknown in &mut unknowns.all {
+        let is_lag = |unknown: &Unknown| {
             let info = &model.parameters[unknown.parameter];
-            let is_lag = info.unit.dimension == Dimension::SECOND && unknown.lower > 0.0;
-            if is_lag && !self.document.parameters.contains_key(&info.name) {
-                unknown.lower = unknown.lower.max(SHORTEST_LAG * step);
-                unknown.start = unknown.start.max(unknown.lower);
-            }
-        }
+            let is_added = !self.document.parameters.contains_key(&info.name);
+            is_added && info.unit.dimension == Dimension::SECOND && unknown.lower > 0.0
+        };
+        unknowns.raise_lower(SHORTEST_LAG * step, is_lag);
         Ok(Problem::new(
             model,
             segments,
@@ -113,16 +111,15 @@ fn unknowns(model: &Model, flights: &[&Flight], values: &Values) -> Result<Unkno
     })
 }
 
-/// The values of an estimate, for another fit to start from.
-pub(super) fn values(problem: &Problem, estimate: &Estimate) -> Values {
-    let of = |row: &crate::estimate::ParameterEstimate| {
-        let info = problem
-            .model
-            .parameters
-            .iter()
-            .find(|p| p.name == row.name)?;
-        let key = (row.name.clone(), row.segment.clone());
-        Some((key, info.unit.to_si(row.estimate)))
+/// The values of all parameters at a θ, for another fit to start from.
+pub(super) fn values(problem: &Problem, theta: &[f64]) -> Values {
+    let mut places = theta.iter();
+    let of = |unknown: &Unknown| {
+        let name = problem.model.parameters[unknown.parameter].name.clone();
+        let label = |segment: usize| problem.segments[segment].label.clone();
+        let free = if unknown.fixed { None } else { places.next() };
+        let value = free.copied().unwrap_or(unknown.start);
+        ((name, unknown.segment.map(label)), value)
     };
-    estimate.parameters.iter().filter_map(of).collect()
+    problem.unknowns.all.iter().map(of).collect()
 }

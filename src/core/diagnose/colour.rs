@@ -114,10 +114,10 @@ impl Autoregression {
                 continue;
             }
             let order = known.min(self.order());
-            let foreseen: f64 = (self.predictors[order].iter().enumerate())
+            let predicted: f64 = (self.predictors[order].iter().enumerate())
                 .map(|(m, a)| a * x[k - 1 - m])
                 .sum();
-            to[k] = (x[k] - foreseen) / self.variances[order].sqrt();
+            to[k] = (x[k] - predicted) / self.variances[order].sqrt();
             ln_variance += self.variances[order].ln();
             known += 1;
         }

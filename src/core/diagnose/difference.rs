@@ -1,4 +1,4 @@
-//! What one model document has that another has not.
+//! The difference of two model documents.
 
 use serde_json::Value;
 
@@ -57,7 +57,7 @@ mod tests {
     fn an_edit_shows_where_it_changed_the_document() {
         let before = catalog::find("short-period").unwrap();
         let edit = Edit::new(EditKind::SensorScale, "q");
-        let changes = difference(&before, &edit.apply(&before).unwrap());
+        let changes = difference(&before, &edit.apply(&before).unwrap().document);
         let places: Vec<&str> = changes
             .iter()
             .map(|change| change.pointer.as_str())

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::plausible::Plausible;
-use crate::model::{Added, Edit, EditError, EditKind, ModelDocument, Start};
+use crate::model::{Edit, EditError, EditKind, Edited, ModelDocument, Start};
 
 /// What kind of effect. Most are edits of the model document; the others change how it is fitted.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
@@ -81,28 +81,33 @@ impl Effect {
         }
     }
 
-    /// The document with the effect in it.
+    /// The document with the effect in it, and what all its edits added.
     ///
     /// # Errors
     /// An edit does not fit the document.
-    pub fn apply(&self, document: &ModelDocument) -> Result<ModelDocument, EditError> {
-        let apply = |document: ModelDocument, edit: &Edit| edit.apply(&document);
-        let mut edited = self.edits.iter().try_fold(document.clone(), apply)?;
-        if let Some(plausible) = &self.plausible {
-            let added = Added::between(document, &edited).parameters;
-            let size = added
-                .first()
-                .and_then(|name| edited.parameters.get_mut(name));
-            if let Some(size) = size {
-                let held = self.kind == EffectKind::Edit(EditKind::FixedParameter);
-                let none = match size.start {
-                    Start::Value(value) if held => value,
-                    _ => 0.0,
-                };
-                plausible.bound(size, none);
-            }
+    pub fn apply(&self, document: &ModelDocument) -> Result<Edited, EditError> {
+        let mut whole = Edited {
+            document: document.clone(),
+            added: Vec::new(),
+            inputs: Vec::new(),
+        };
+        for edit in &self.edits {
+            let edited = edit.apply(&whole.document)?;
+            whole.document = edited.document;
+            whole.added.extend(edited.added);
+            whole.inputs.extend(edited.inputs);
         }
-        Ok(edited)
+        let size = whole.added.first();
+        let size = size.and_then(|added| whole.document.parameters.get_mut(&added.name));
+        if let (Some(plausible), Some(size)) = (&self.plausible, size) {
+            let is_held = self.kind == EffectKind::Edit(EditKind::FixedParameter);
+            let none = match size.start {
+                Start::Value(value) if is_held => value,
+                _ => 0.0,
+            };
+            plausible.bound(size, none);
+        }
+        Ok(whole)
     }
 
     /// Process noise: what no model document expresses, and what ends a diagnosis.

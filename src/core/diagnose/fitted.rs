@@ -2,22 +2,30 @@
 
 use std::ops::ControlFlow;
 
+use nalgebra::DMatrix;
+
 use super::case::{Case, Unfit, Values, values};
 use super::colour::Colour;
 use super::stack::Layout;
 use crate::estimate::{
-    Bound, ErrorBoundsKind, Estimate, Outcome, Problem, Role, TimeHistory, output_error, predict,
+    Bound, ErrorBoundsKind, Estimate, Outcome, Problem, Role, Solution, output_error, predict,
 };
-use crate::model::ModelDocument;
+use crate::model::{Added, ModelDocument};
 
 /// A model and its fit to the estimation flights.
 #[derive(Clone, Debug)]
 pub(super) struct Fitted {
     pub document: ModelDocument,
     pub problem: Problem,
+    /// SI.
+    pub theta: Vec<f64>,
+    /// By place of θ: the bound at which it stands.
+    pub bounds: Vec<Option<Bound>>,
+    /// R.
+    pub covariance: DMatrix<f64>,
+    /// The report of the estimation; θ may have moved since, see [`Self::polished`].
     pub estimate: Estimate,
-    pub values: Values,
-    /// Over [`Layout::of`] the problem.
+    /// Over [`Layout::of`] the problem, at θ.
     pub residual: Vec<f64>,
 }
 
@@ -57,68 +65,46 @@ impl Fitted {
         problem.options.tolerance = problem.options.tolerance.max(TRIAL_TOLERANCE);
         problem.options.max_iterations = iterations;
         let solution = output_error(&problem, &mut |_| ControlFlow::Continue(()))
-            .map_err(|_| Unfit("the simulation leaves the range of numbers".into()))?;
+            .map_err(|why| Unfit(why.to_string()))?;
         if solution.estimate.outcome == Outcome::Diverged {
             return Err(Unfit(solution.estimate.reason));
         }
-        Ok(Self::of(
-            document,
-            problem,
-            solution.estimate,
-            &solution.histories,
-        ))
+        Ok(Self::of(document, problem, &solution))
     }
 
-    pub(super) fn of(
-        document: ModelDocument,
-        problem: Problem,
-        estimate: Estimate,
-        histories: &[TimeHistory],
-    ) -> Self {
+    pub(super) fn of(document: ModelDocument, problem: Problem, solution: &Solution) -> Self {
+        let unknowns = &problem.unknowns;
+        let at_bound = |place: usize| solution.row(unknowns, place).at_bound;
         Self {
-            residual: Layout::of(&problem).residual(histories),
-            values: values(&problem, &estimate),
+            bounds: (0..unknowns.len()).map(at_bound).collect(),
+            residual: Layout::of(&problem).residual(&solution.histories),
+            theta: solution.theta.clone(),
+            covariance: solution.covariance.clone(),
+            estimate: solution.estimate.clone(),
             document,
             problem,
-            estimate,
         }
+    }
+
+    /// The values of its parameters, for another fit to start from.
+    pub(super) fn values(&self) -> Values {
+        values(&self.problem, &self.theta)
     }
 
     /// Its values, others put beside or in place of them.
     pub(super) fn values_with(&self, others: &Values) -> Values {
-        let mut values = self.values.clone();
+        let mut values = self.values();
         values.extend(others.iter().map(|(key, value)| (key.clone(), *value)));
         values
     }
 
-    /// Names of the parameters added that stand at a bound of their range.
-    pub(super) fn at_bound(&self, base: &Self) -> Vec<(String, Bound)> {
-        let declared = &base.problem.model.parameters;
-        let rows = self.estimate.parameters.iter();
-        let was_free = |name: &str| {
-            declared
-                .iter()
-                .any(|info| info.name == name && !info.document.fixed)
+    /// Those of the parameters added that stand at a bound of their range.
+    pub(super) fn at_bound<'a>(&self, added: &'a [Added]) -> Vec<&'a Added> {
+        let is_at_bound = |added: &&Added| {
+            let names = (0..self.theta.len()).map(|place| &self.problem.parameter(place).name);
+            (names.zip(&self.bounds)).any(|(name, bound)| *name == added.name && bound.is_some())
         };
-        rows.filter(|row| !was_free(&row.name))
-            .filter_map(|row| Some((row.name.clone(), row.at_bound?)))
-            .collect()
-    }
-
-    pub(super) fn theta(&self) -> Vec<f64> {
-        let problem = &self.problem;
-        let of = |place: usize| {
-            let unknown = problem.unknowns.at(place);
-            let name = problem.model.parameters[unknown.parameter].name.clone();
-            let segment = unknown
-                .segment
-                .map(|segment| problem.segments[segment].label.clone());
-            self.values
-                .get(&(name, segment))
-                .copied()
-                .unwrap_or(unknown.start)
-        };
-        (0..problem.unknowns.len()).map(of).collect()
+        added.iter().filter(is_at_bound).collect()
     }
 
     /// ln L of its residuals by output, with noise of given orders.
@@ -141,7 +127,8 @@ impl Fitted {
         problem.options.error_bounds = ErrorBoundsKind::Conventional;
         let mut histories = Vec::new();
         for validation in case.held_out(role, &self.problem)? {
-            let (prediction, history) = predict(&problem, &self.estimate, &validation);
+            let (prediction, history) =
+                predict(&problem, &self.theta, &self.covariance, &validation);
             histories.push(history.ok_or(Unfit(prediction.reason))?);
         }
         let lengths: Vec<usize> = histories.iter().map(|history| history.time.len()).collect();

@@ -1,4 +1,4 @@
-//! What was flown, as a diagnosis needs it: every recorded channel, since an effect may bring in one that the
+//! A flight, as a diagnosis needs it: every recorded channel, since an effect may bring in one that the
 //! declared model does not use.
 
 use indexmap::IndexMap;

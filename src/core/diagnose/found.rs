@@ -1,14 +1,15 @@
-//! What the rounds found, and what they refused.
+//! Effects that the rounds found, and those that they refused.
 
 use super::effect::Effect;
 use super::fitted::Fitted;
 use super::report::{Evidence, Member, Refusal, RefusedEffect};
+use crate::model::Added;
 
 /// An effect that was accepted, and the fit with it.
 pub(super) struct Accepted {
     pub effect: Effect,
-    /// Names of the parameters that it added.
-    pub added: Vec<String>,
+    /// The parameters that it added, as they are called in the model with all effects that stand.
+    pub added: Vec<Added>,
     pub fitted: Fitted,
     pub group: Vec<Member>,
     pub evidence: Evidence,

@@ -7,7 +7,7 @@ use super::trial::Trial;
 /// Twice the difference of two log-likelihoods below which neither of two models is preferred.
 pub(super) const ALIKE: f64 = 6.0;
 
-/// What is explained in directions of a larger cosine is one and the same, but for how it is modelled.
+/// Two effects whose directions have a larger cosine are one and the same, but for how they are modelled.
 const PARALLEL: f64 = 0.95;
 
 /// Beyond this the likelihood is clear even so.

@@ -39,6 +39,7 @@ pub struct Knowledge {
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct KnownSize {
+    /// The kind of effect.
     pub kind: EditKind,
     /// Absent: of all targets.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -55,6 +56,7 @@ pub struct KnownSize {
     /// Where its estimate may not go beyond.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower: Option<f64>,
+    /// As `lower`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub upper: Option<f64>,
     /// Of these numbers; absent: SI.
@@ -94,6 +96,7 @@ impl Knowledge {
 }
 
 impl KnownSize {
+    /// Whether it is said of an effect.
     pub fn means(&self, effect: &Effect) -> bool {
         effect.kind == EffectKind::Edit(self.kind)
             && self

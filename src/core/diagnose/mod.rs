@@ -18,16 +18,18 @@ mod flight;
 mod found;
 mod group;
 mod knowledge;
+mod needless;
+mod null_model;
 mod outliers;
 mod plausible;
 mod polish;
 mod projection;
 mod report;
 mod residual;
-mod rival;
 mod round;
 mod screen;
 mod sentence;
+mod size;
 mod stack;
 mod trial;
 
@@ -48,27 +50,26 @@ pub use round::Watcher;
 
 use answer::answer;
 use fitted::Fitted;
-use found::{Accepted, Found};
-use round::{cost_of_removal, round};
+use found::Found;
+use round::round;
 
-use crate::estimate::{TimeHistory, estimate};
+use crate::estimate::{TimeHistory, Unusable, estimate};
 
 /// Rounds, and so effects, at most: who lacks more than these has another model.
 const MOST_ROUNDS: usize = 4;
 
 /// Why there is no conclusion.
-#[derive(Debug)]
+#[derive(Clone, PartialEq, Debug, thiserror::Error)]
 pub enum Inconclusive {
-    /// The declared model cannot be fitted.
-    Unfit(Unfit),
+    /// A model does not meet the recordings, or comes to nothing.
+    #[error(transparent)]
+    Unfit(#[from] Unfit),
+    /// The start values of the declared model lead nowhere.
+    #[error("the declared model cannot be fitted from its start values: {0}")]
+    NoStart(#[from] Unusable),
     /// It was asked to stop.
+    #[error("stopped on request")]
     Stopped,
-}
-
-impl From<Unfit> for Inconclusive {
-    fn from(why: Unfit) -> Self {
-        Self::Unfit(why)
-    }
 }
 
 /// Finds what the declared model of a case lacks.
@@ -115,7 +116,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
             round: number,
             name: accepted.effect.name(),
             likelihood_ratio: accepted.evidence.likelihood_ratio,
-            sentence: sentence::of(&accepted.effect, &accepted.added, &accepted.fitted.estimate),
+            sentence: sentence::of(&accepted.effect, &accepted.fitted.sizes(&accepted.added)),
         };
         let last = accepted.effect.is_noise();
         let calm = std::mem::replace(&mut base, accepted.fitted.clone());
@@ -128,7 +129,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
             break;
         }
     }
-    remove_needless(case, &declared, &mut base, &mut found);
+    needless::remove(case, &declared, &mut base, &mut found);
     Ok(answer(case, &declared, &fitted, &base, found)?)
 }
 
@@ -144,9 +145,7 @@ fn declared(
         stopped |= asked.is_break();
         asked
     });
-    let solution = solution.map_err(|_| {
-        Unfit("with the start values the simulation of the declared model leaves the range of numbers".into())
-    })?;
+    let solution = solution?;
     let step = Step::Fitted {
         round: 0,
         cost: solution.estimate.cost,
@@ -156,49 +155,6 @@ fn declared(
     if stopped {
         return Err(Inconclusive::Stopped);
     }
-    let fitted = Fitted::of(
-        case.document.clone(),
-        problem,
-        solution.estimate,
-        &solution.histories,
-    );
+    let fitted = Fitted::of(case.document.clone(), problem, &solution);
     Ok((fitted, solution.histories))
-}
-
-/// Takes out again what later effects made needless.
-fn remove_needless(case: &Case, declared: &Fitted, base: &mut Fitted, found: &mut Found) {
-    let mut at = 0;
-    while found.accepted.len() > 1 && at < found.accepted.len() {
-        let without = (found.accepted.iter().enumerate())
-            .filter(|(other, _)| *other != at)
-            .try_fold(declared.document.clone(), |document, (_, a)| {
-                a.effect.apply(&document)
-            });
-        let removal = without.ok().and_then(|without| {
-            Some((
-                cost_of_removal(case, base, without.clone(), &base.values)?,
-                without,
-            ))
-        });
-        let Accepted {
-            evidence, effect, ..
-        } = &found.accepted[at];
-        if effect.edits.is_empty() {
-            at += 1;
-            continue;
-        }
-        match removal {
-            Some((cost, without)) if cost < evidence.threshold => {
-                let Ok(fitted) = Fitted::trial(case, without, &base.values) else {
-                    at += 1;
-                    continue;
-                };
-                *base = fitted;
-                let removed = found.accepted.remove(at);
-                found.needless(removed, cost);
-                at = 0;
-            }
-            _ => at += 1,
-        }
-    }
 }

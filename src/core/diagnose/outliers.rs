@@ -79,7 +79,7 @@ pub(super) fn clean(case: &Case, declared: &Fitted) -> Option<(Case, Vec<Accepte
             }
         }
     }
-    let fitted = Fitted::trial(&cleaned, declared.document.clone(), &declared.values).ok()?;
+    let fitted = Fitted::trial(&cleaned, declared.document.clone(), &declared.values()).ok()?;
     let accepted = found.into_iter().map(|(effect, count, evidence)| Accepted {
         group: vec![super::report::Member {
             effect: effect.clone(),

@@ -9,8 +9,10 @@ use crate::model::{Parameter, Prior};
 /// The range in which the size of an effect is looked for, SI.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Plausible {
+    /// Smallest, relative to no effect.
     #[schema(example = -0.3)]
     pub lower: f64,
+    /// Largest.
     #[schema(example = 0.3)]
     pub upper: f64,
     /// Standard deviation of sizes that are usual; of what is known, it counts in the estimate.

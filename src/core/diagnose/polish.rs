@@ -13,7 +13,7 @@ use crate::estimate::Bound;
 /// The colour is that of the residual, so that each step has another: some are needed.
 const STEPS: usize = 8;
 
-/// What is left of ln L to be gained is not worth a step.
+/// A gain of ln L that is not worth a step.
 const SETTLED: f64 = 0.01;
 
 /// Shares of a step that are tried.
@@ -37,14 +37,14 @@ impl Fitted {
         free.dedup();
         let at = |theta: &[f64]| {
             // columns stand as the unknowns do: parameter by parameter, each followed by its segments
-            let model = linearised(&self.problem, &layout, theta, &free);
+            let model = linearised(&self.problem, &layout, theta, &free).ok();
             model.filter(|model| model.sensitivities.len() == theta.len())
         };
         let ln_likelihood = |model: &Linearised| {
             Colour::of_orders(&layout, &model.residual, orders)
                 .ln_likelihood(&layout, &model.residual)
         };
-        let mut theta = self.theta();
+        let mut theta = self.theta.clone();
         let Some(mut here) = at(&theta) else {
             return self;
         };
@@ -72,7 +72,7 @@ impl Fitted {
         }
         if best > before {
             self.residual = here.residual;
-            self.put(&theta);
+            self.put(theta);
         }
         self
     }
@@ -131,25 +131,18 @@ impl Fitted {
     }
 
     /// Makes `theta` the estimate.
-    fn put(&mut self, theta: &[f64]) {
-        for (place, &value) in theta.iter().enumerate() {
+    fn put(&mut self, theta: Vec<f64>) {
+        let bound = |(place, &value): (usize, &f64)| {
             let unknown = self.problem.unknowns.at(place);
-            let info = &self.problem.model.parameters[unknown.parameter];
-            let segment = unknown
-                .segment
-                .map(|s| self.problem.segments[s].label.clone());
-            let rows = self.estimate.parameters.iter_mut();
-            for row in rows.filter(|row| row.name == info.name && row.segment == segment) {
-                row.estimate = info.unit.from_si(value);
-                row.at_bound = if value <= unknown.lower {
-                    Some(Bound::Lower)
-                } else if value >= unknown.upper {
-                    Some(Bound::Upper)
-                } else {
-                    None
-                };
+            if value <= unknown.lower {
+                Some(Bound::Lower)
+            } else if value >= unknown.upper {
+                Some(Bound::Upper)
+            } else {
+                None
             }
-            self.values.insert((info.name.clone(), segment), value);
-        }
+        };
+        self.bounds = theta.iter().enumerate().map(bound).collect();
+        self.theta = theta;
     }
 }

@@ -49,7 +49,7 @@ impl Basis {
 }
 
 /// x of least length with G x = m, G symmetric and not negative; directions weaker than `weakest` of the strongest are
-/// left out. `None` where G is no matrix of numbers, which an unbounded decomposition would turn over for ever.
+/// left out. `None` where G is not finite: an unbounded decomposition would never end.
 pub(super) fn least_squares(
     gram: DMatrix<f64>,
     moment: &DVector<f64>,

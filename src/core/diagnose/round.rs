@@ -4,14 +4,14 @@ use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
-use super::case::{Case, Values};
+use super::case::Case;
 use super::colour::Colour;
 use super::effect::{Effect, EffectKind, Treatment};
 use super::fitted::Fitted;
 use super::found::Accepted;
 use super::group::group;
+use super::null_model::{NullModel, POWER, Threshold};
 use super::report::{Refusal, RefusedEffect, Step};
-use super::rival::{POWER, Rival, Threshold};
 use super::screen::{Screen, Screened, independent_questions};
 use super::stack::Layout;
 use super::trial::{Trial, is_tried_outright, starts};
@@ -34,7 +34,7 @@ const MOST_TRIALS: usize = 16;
 /// Candidates between two occasions to stop.
 const TOGETHER: usize = 8;
 
-/// What came of a round.
+/// The outcome of a round.
 pub(super) struct Round {
     pub accepted: Option<Accepted>,
     pub refused: Vec<RefusedEffect>,
@@ -128,7 +128,7 @@ pub(super) fn round(
     );
 
     let orders = colour.orders();
-    let rival = Rival::new(case, base, &orders);
+    let null_model = NullModel::new(case, base, &orders);
     let mut trials: Vec<Trial> = Vec::new();
     for some in to_try.chunks(TOGETHER) {
         if watcher(None).is_break() {
@@ -136,7 +136,7 @@ pub(super) fn round(
             return result;
         }
         let tried: Vec<(Effect, Result<Trial, String>)> = (some.to_vec().into_par_iter())
-            .map(|(effect, screened)| (effect.clone(), rival.trial(effect, screened)))
+            .map(|(effect, screened)| (effect.clone(), null_model.trial(effect, screened)))
             .collect();
         for (effect, trial) in tried {
             match trial {
@@ -163,7 +163,7 @@ pub(super) fn round(
 
     let mut passing: Vec<Trial> = Vec::new();
     for trial in trials {
-        match rival.objection(&trial, &threshold) {
+        match null_model.objection(&trial, &threshold) {
             None => passing.push(trial),
             Some((reason, why)) => {
                 if reason != Refusal::NotSignificant {
@@ -208,7 +208,7 @@ pub(super) fn round(
                 .refused
                 .push(of_trial(other, Refusal::Outdone, why, &threshold));
         }
-        result.accepted = Some(rival.accepted(best, group, &threshold));
+        result.accepted = Some(null_model.accepted(best, group, &threshold));
     }
     result.refused.extend(untried);
     result
@@ -231,15 +231,15 @@ fn screened(
     screen: &Screen<'_>,
     effect: &Effect,
 ) -> Result<Screened, String> {
-    let document = effect
+    let edited = effect
         .apply(&base.document)
         .map_err(|error| error.to_string())?;
     let mut best: Option<Screened> = None;
     let mut failure = String::new();
-    let starts = starts(case, effect, &document, &base.document);
+    let starts = starts(case, effect, &edited);
     let count = starts.len();
     for start in starts {
-        match screen.of(&document, &start) {
+        match screen.of(&edited, &start) {
             Ok(seen) if best.as_ref().is_none_or(|best| seen.promise > best.promise) => {
                 best = Some(seen)
             }
@@ -322,17 +322,4 @@ fn of_screen(
         Some(seen.promise),
         Some((seen, root)),
     )
-}
-
-/// The likelihood ratio that removing an effect costs, and what it would have to be to keep it.
-pub(super) fn cost_of_removal(
-    case: &Case,
-    with: &Fitted,
-    without: crate::model::ModelDocument,
-    start: &Values,
-) -> Option<f64> {
-    let layout = Layout::of(&with.problem);
-    let fitted = Fitted::trial(case, without, start).ok()?;
-    let orders = Colour::of_best_order(&layout, &fitted.residual).orders();
-    Some(2.0 * (with.ln_likelihood(&orders) - fitted.ln_likelihood(&orders)))
 }

@@ -18,7 +18,7 @@ use super::colour::Colour;
 use super::fitted::Fitted;
 use super::projection::{Basis, dot, least_squares, norm};
 use super::stack::{Layout, sensitivities};
-use crate::model::{ModelDocument, Per};
+use crate::model::{Edited, Per};
 
 /// One way to weigh the residual, with the declared model projected out.
 struct Metric {
@@ -39,7 +39,7 @@ pub(super) struct Screen<'c> {
     metrics: Vec<Metric>,
 }
 
-/// What the screen says of a candidate.
+/// A candidate, as the screen sees it.
 #[derive(Clone, Debug)]
 pub(super) struct Screened {
     /// Where a fit of it begins: the one step.
@@ -48,8 +48,6 @@ pub(super) struct Screened {
     before: Values,
     /// From how many starts it was screened.
     pub starts: usize,
-    /// Names of the parameters that the effect adds, free ones.
-    pub added: Vec<String>,
     /// ‖S⊥‖/‖S‖: what the declared parameters cannot imitate.
     pub visible: f64,
     pub score: f64,
@@ -102,7 +100,7 @@ impl<'c> Screen<'c> {
         free.dedup();
         free.sort_unstable();
         free.dedup();
-        let declared = sensitivities(&base.problem, &layout, &base.theta(), &free)?;
+        let declared = sensitivities(&base.problem, &layout, &base.theta, &free).ok()?;
         let metric = |colour: Colour, orders: Vec<usize>| {
             let whiten = |column: &Vec<f64>| colour.whiten(&layout, &base.residual, column);
             let declared = Basis::of(declared.iter().map(whiten));
@@ -137,29 +135,21 @@ impl<'c> Screen<'c> {
     ///
     /// # Errors
     /// Why it cannot be screened.
-    pub(super) fn of(&self, document: &ModelDocument, start: &Values) -> Result<Screened, String> {
+    pub(super) fn of(&self, edited: &Edited, start: &Values) -> Result<Screened, String> {
         let values = self.base.values_with(start);
         let problem = self
             .case
-            .problem(document, &values)
+            .problem(&edited.document, &values)
             .map_err(|e| e.to_string())?;
-        let declared = &self.base.problem.model.parameters;
         let model = &problem.model;
         let is_added = |index: &usize| {
             let info = &model.parameters[*index];
-            let was_free = declared
-                .iter()
-                .any(|p| p.name == info.name && !p.document.fixed);
-            !info.document.fixed && !was_free
+            !info.document.fixed && edited.added.iter().any(|added| added.name == info.name)
         };
         let added: Vec<usize> = (0..model.parameters.len()).filter(is_added).collect();
-        let names: Vec<String> = added
-            .iter()
-            .map(|&index| model.parameters[index].name.clone())
-            .collect();
         let theta = problem.unknowns.start();
-        let columns = sensitivities(&problem, &self.layout, &theta, &added)
-            .ok_or("the simulation leaves the range of numbers")?;
+        let columns =
+            sensitivities(&problem, &self.layout, &theta, &added).map_err(|why| why.to_string())?;
         // a parameter without influence at no effect (a time constant) waits for the trial
         let counts = |index: &usize| match model.parameters[*index].document.per {
             Per::Job => 1,
@@ -183,7 +173,6 @@ impl<'c> Screen<'c> {
         let mut best: Option<Screened> = None;
         for metric in &self.metrics {
             let mut seen = self.in_metric(metric, &columns);
-            seen.added = names.clone();
             seen.start = start.clone();
             for (key, size) in keys.iter().zip(std::mem::take(&mut seen.sizes)) {
                 let before = values.get(key).copied().unwrap_or(0.0);
@@ -254,7 +243,6 @@ impl<'c> Screen<'c> {
             start: Values::new(),
             before: Values::new(),
             starts: 1,
-            added: Vec::new(),
             visible,
             score,
             promise,
@@ -315,16 +303,16 @@ impl<'c> Screen<'c> {
             .collect();
         free.sort_unstable();
         free.dedup();
-        let theta = self.base.theta();
+        let theta = &self.base.theta;
         let metric = self.metrics.first()?;
         let whiten = |column: &Vec<f64>| {
             metric
                 .colour
                 .whiten(&self.layout, &self.base.residual, column)
         };
-        let others = sensitivities(problem, &self.layout, &theta, &free)?;
+        let others = sensitivities(problem, &self.layout, theta, &free).ok()?;
         let others = Basis::of(others.iter().map(whiten));
-        let own = sensitivities(problem, &self.layout, &theta, &[index])?;
+        let own = sensitivities(problem, &self.layout, theta, &[index]).ok()?;
         let [own] = own.as_slice() else { return None };
         let mut clear = whiten(own);
         others.remove_from(&mut clear);

@@ -1,32 +1,29 @@
 //! Effects in sentences that an engineer can read.
 
 use super::effect::{Effect, EffectKind, Treatment};
-use crate::estimate::{Estimate, ParameterEstimate, five_digits};
-use crate::flight::{Shown, shown_in};
+use super::size::Size;
+use crate::flight::{Shown, five_digits, shown_in};
 use crate::model::EditKind;
 
-/// What an effect is, with its size; angles in degrees.
-pub(super) fn of(effect: &Effect, added: &[String], with: &Estimate) -> String {
-    let added: Vec<&ParameterEstimate> = (with.parameters.iter())
-        .filter(|row| !row.fixed && added.contains(&row.name))
-        .collect();
-    let size = |row: &ParameterEstimate| {
-        let Shown { scale, unit } = shown_in(&row.unit);
+/// An effect in words, with its size; angles in degrees.
+pub(super) fn of(effect: &Effect, sizes: &[Size]) -> String {
+    let size = |size: &Size| {
+        let Shown { scale, unit } = shown_in(&size.unit);
         let unit = if unit == "-" { "" } else { &unit };
-        let error = row
+        let error = size
             .standard_error
             .map_or(String::new(), |e| format!(" ± {}", five_digits(e * scale)));
-        let segment = row
+        let segment = size
             .segment
             .as_ref()
             .map_or(String::new(), |s| format!(" in {s}"));
-        let estimate = five_digits(row.estimate * scale);
-        format!("{} = {estimate}{error} {unit}", row.name)
+        let estimate = five_digits(size.own_units() * scale);
+        format!("{} = {estimate}{error} {unit}", size.name)
             .trim_end()
             .to_string()
             + &segment
     };
-    let sizes: Vec<String> = added.iter().map(|row| size(row)).collect();
+    let sizes: Vec<String> = sizes.iter().map(size).collect();
     let sizes = if sizes.is_empty() {
         String::new()
     } else {
@@ -35,7 +32,7 @@ pub(super) fn of(effect: &Effect, added: &[String], with: &Estimate) -> String {
     format!("{}{sizes}", words(effect))
 }
 
-/// What an effect is, without its size.
+/// An effect in words, without its size.
 pub(super) fn words(effect: &Effect) -> String {
     let target = effect.target.as_str();
     let term = effect.term.as_deref().unwrap_or_default();

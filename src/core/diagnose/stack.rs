@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::estimate::{Problem, TimeHistory};
+use crate::estimate::{Problem, TimeHistory, Unusable};
 use crate::simulate::{Columns, Sensitivities};
 
 /// One output along one segment.
@@ -80,25 +80,29 @@ pub(super) struct Linearised {
     pub sensitivities: Vec<Vec<f64>>,
 }
 
-/// ∂y/∂ψ at θ for the parameters of the model whose indices are `parameters`. `None` where the simulation leaves the
-/// range of numbers.
+/// ∂y/∂ψ at θ for the parameters of the model whose indices are `parameters`.
+///
+/// # Errors
+/// The simulation leaves the range of numbers, or a derivative is not finite.
 pub(super) fn sensitivities(
     problem: &Problem,
     layout: &Layout,
     theta: &[f64],
     parameters: &[usize],
-) -> Option<Vec<Vec<f64>>> {
+) -> Result<Vec<Vec<f64>>, Unusable> {
     linearised(problem, layout, theta, parameters).map(|model| model.sensitivities)
 }
 
-/// Residual and sensitivities at θ for the parameters of the model whose indices are `parameters`. `None` where the
-/// simulation leaves the range of numbers.
+/// Residual and sensitivities at θ for the parameters of the model whose indices are `parameters`.
+///
+/// # Errors
+/// As [`sensitivities`].
 pub(super) fn linearised(
     problem: &Problem,
     layout: &Layout,
     theta: &[f64],
     parameters: &[usize],
-) -> Option<Linearised> {
+) -> Result<Linearised, Unusable> {
     let model = &problem.model;
     let options = &problem.options;
     let columns = Columns::new(model, parameters);
@@ -147,10 +151,15 @@ pub(super) fn linearised(
                 }
             }
         });
-        run.ok()?;
+        run.map_err(|diverged| Unusable::LeftRange {
+            segment: index,
+            sample: diverged.sample,
+        })?;
     }
-    let finite = stacked.iter().flatten().all(|value| value.is_finite());
-    finite.then_some(Linearised {
+    if !stacked.iter().flatten().all(|value| value.is_finite()) {
+        return Err(Unusable::NotFinite);
+    }
+    Ok(Linearised {
         residual,
         sensitivities: stacked,
     })

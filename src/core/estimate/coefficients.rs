@@ -10,11 +10,13 @@ use crate::flight::{self, Aircraft, Fault, Unit, WeightedSum};
 /// A nondimensional stability or control derivative.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Coefficient {
+    /// Its name, in the field's symbols.
     #[schema(example = "Cma")]
     pub name: String,
     /// The parameters of the model that it comes from.
     #[schema(example = json!(["Ma"]))]
     pub from: Vec<String>,
+    /// A pure number.
     #[schema(example = -0.683)]
     pub value: f64,
     /// From the error bounds of the parameters, correlations included; the aircraft's constants count as known.

@@ -9,10 +9,9 @@
 //! Morelli, Aircraft System Identification, ch. 5), and what only enters outputs that measure a state, such as its
 //! bias, is not found. So it is a start for output error, or a quick look.
 
-use crate::estimate::answer::{Solution, answer};
+use crate::estimate::answer::{Asked, Solution, answer_to};
 use crate::estimate::descent::gauss_newton::descend;
 use crate::estimate::problem::Problem;
-use crate::estimate::problem::unknowns::Unknown;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::regression::Regression;
 use crate::estimate::report::estimate::Estimate;
@@ -20,7 +19,7 @@ use crate::estimate::report::iteration::Outcome;
 use crate::estimate::report::progress::Observer;
 
 /// Whether an equation-error estimation of the problem can be made.
-pub fn has_equation_error(problem: &Problem) -> bool {
+pub(crate) fn has_equation_error(problem: &Problem) -> bool {
     Regression::new(problem).is_some()
 }
 
@@ -36,64 +35,21 @@ pub fn equation_error(
     let regression = Regression::new(problem).ok_or(Unusable::NoMeasuredState)?;
     let own = &regression.problem;
     let descent = descend(own, own.unknowns.start(), observer)?;
-    let theta = regression.theta(&descent.last.theta);
-    let Solution {
-        estimate,
-        histories,
-    } = answer(own, descent);
-    Ok(Solution {
-        estimate: in_the_problem(problem, &regression, &theta, estimate),
-        histories,
-    })
-}
-
-/// The regression's answer in the parameters of the problem that it was made of.
-fn in_the_problem(
-    problem: &Problem,
-    regression: &Regression,
-    theta: &[f64],
-    found: Estimate,
-) -> Estimate {
-    let unknowns = &problem.unknowns;
-    let own = &regression.problem.unknowns;
-    let by_number = |(index, unknown): (usize, &Unknown)| {
-        let mut row = found.parameters[index].clone();
-        let place = unknowns.free.iter().position(|&free| free == index);
-        if let Some(place) = place {
-            let unit = problem.unit(place);
-            row.estimate = unit.from_si(theta[place]);
-            row.fixed = unknown.fixed;
-        }
-        row
+    let asked = Asked {
+        problem,
+        theta: regression.theta(&descent.last.theta),
+        solved: &|place| regression.place(place),
     };
-    // both lay out the same parameters over the same segments
-    let parameters = unknowns.all.iter().enumerate().map(by_number).collect();
-    let correlation = |a: usize, b: usize| match (regression.place(a), regression.place(b)) {
-        (Some(a), Some(b)) => found.correlation[a][b],
-        _ => f64::from(u8::from(a == b)),
-    };
-    let places = 0..unknowns.len();
-    let correlation = if found.correlation.is_empty() && !own.is_empty() {
-        Vec::new()
-    } else {
-        places
-            .clone()
-            .map(|a| places.clone().map(|b| correlation(a, b)).collect())
-            .collect()
-    };
-    let left: Vec<String> = places
+    let mut solution = answer_to(asked, own, descent);
+    let left: Vec<String> = (0..problem.unknowns.len())
         .filter(|&place| regression.place(place).is_none())
         .map(|place| problem.name(place))
         .collect();
-    Estimate {
-        reason: reason(&found, &left, &regression.integrated),
-        parameters,
-        correlation,
-        ..found
-    }
+    solution.estimate.reason = reason(&solution.estimate, &left, &regression.integrated);
+    Ok(solution)
 }
 
-/// What the regression's reason leaves unsaid.
+/// The regression's reason, with a reader of the original problem in mind.
 fn reason(found: &Estimate, left: &[String], integrated: &[String]) -> String {
     let mut reason = format!("equation error: {}", found.reason);
     if found.outcome == Outcome::Converged {

@@ -2,6 +2,8 @@
 
 use std::ops::ControlFlow;
 
+use nalgebra::DMatrix;
+
 use crate::estimate::options::Noise;
 use crate::estimate::options::role::Role;
 use crate::estimate::output_error::output_error;
@@ -12,24 +14,26 @@ use crate::estimate::report::estimate::Estimate;
 use crate::estimate::report::history::TimeHistory;
 use crate::estimate::report::iteration::Outcome;
 use crate::estimate::report::prediction::Prediction;
-use crate::model::{Model, Per};
+use crate::model::Per;
 use crate::simulate::Segment;
 
 /// A segment to be predicted.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Validation {
+    /// Its inputs and measured outputs.
     pub segment: Segment,
     /// Of this segment alone.
     pub unknowns: Unknowns,
 }
 
-/// Predicts a segment with the result of the estimation of `problem`.
+/// Predicts a segment with the estimate of `problem`: θ and R, SI.
 pub fn predict(
     problem: &Problem,
-    estimate: &Estimate,
+    theta: &[f64],
+    covariance: &DMatrix<f64>,
     validation: &Validation,
 ) -> (Prediction, Option<TimeHistory>) {
-    let held = held(problem, estimate, validation);
+    let held = held(problem, theta, covariance, validation);
     let segment = validation.segment.label.clone();
     let samples = validation.segment.len();
     match output_error(&held, &mut |_| ControlFlow::Continue(())) {
@@ -94,23 +98,23 @@ pub fn predict(
 }
 
 /// The problem of the segment alone, with shared parameters and the noise held at the estimate.
-fn held(problem: &Problem, estimate: &Estimate, validation: &Validation) -> Problem {
+fn held(
+    problem: &Problem,
+    theta: &[f64],
+    covariance: &DMatrix<f64>,
+    validation: &Validation,
+) -> Problem {
     let model = &problem.model;
-    let unknowns =
-        (validation.unknowns).with_shared_held(|parameter| shared(model, estimate, parameter));
+    let is_shared = |parameter: usize| model.parameters[parameter].document.per != Per::Maneuver;
+    let mut parameters = Vec::new();
+    problem.unknowns.parameters(0, theta, &mut parameters);
+    let unknowns = (validation.unknowns)
+        .with_shared_held(|parameter| is_shared(parameter).then(|| parameters[parameter]));
     let mut options = problem.options.clone();
-    let variance = |i: usize| estimate.noise_covariance[i][i];
     options.noise = Noise::Given {
-        variance: (0..model.outputs.len()).map(variance).collect(),
+        variance: covariance.diagonal().iter().copied().collect(),
     };
     options.max_iterations = options.max_iterations.max(1);
     let segments = vec![validation.segment.clone()];
     Problem::new(model.clone(), segments, unknowns, options)
-}
-
-/// The estimate of a parameter that all segments share, SI; `None` where each has its own.
-fn shared(model: &Model, estimate: &Estimate, parameter: usize) -> Option<f64> {
-    let info = &model.parameters[parameter];
-    let row = (estimate.parameters.iter()).find(|row| row.name == info.name)?;
-    (info.document.per != Per::Maneuver).then(|| info.unit.to_si(row.estimate))
 }

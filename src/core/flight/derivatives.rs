@@ -56,13 +56,16 @@ enum Form {
 /// One number as a weighted sum of others.
 #[derive(Clone, PartialEq, Debug)]
 pub struct WeightedSum {
+    /// What the sum is called: `Cma`, `Lb`, ...
     pub name: String,
+    /// What is added to the terms, in the unit of the sum.
     pub constant: f64,
     /// (index into what was given, weight)
     pub terms: Vec<(usize, f64)>,
 }
 
 impl WeightedSum {
+    /// The sum, for the values that the terms' indices point into.
     pub fn value(&self, of: &[f64]) -> f64 {
         self.constant
             + self

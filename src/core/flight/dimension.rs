@@ -11,13 +11,20 @@ const BASE: [&str; 5] = ["m", "kg", "s", "K", "A"];
 const SIXTHS: i16 = 6;
 
 impl Dimension {
+    /// A pure number, and so an angle.
     pub const NONE: Self = Self([0; 5]);
+    /// Length.
     pub const METRE: Self = Self([SIXTHS, 0, 0, 0, 0]);
+    /// Mass.
     pub const KILOGRAM: Self = Self([0, SIXTHS, 0, 0, 0]);
+    /// Time.
     pub const SECOND: Self = Self([0, 0, SIXTHS, 0, 0]);
+    /// Temperature.
     pub const KELVIN: Self = Self([0, 0, 0, SIXTHS, 0]);
+    /// Electric current.
     pub const AMPERE: Self = Self([0, 0, 0, 0, SIXTHS]);
 
+    /// Whether it is that of a pure number.
     pub fn is_none(self) -> bool {
         self == Self::NONE
     }
@@ -27,6 +34,7 @@ impl Dimension {
         (self.0[2] % SIXTHS == 0).then(|| i32::from(self.0[2] / SIXTHS))
     }
 
+    /// The dimension of a product.
     #[must_use]
     pub fn times(self, other: Self) -> Self {
         Self(std::array::from_fn(|i| {
@@ -34,6 +42,7 @@ impl Dimension {
         }))
     }
 
+    /// The dimension of a quotient.
     #[must_use]
     pub fn over(self, other: Self) -> Self {
         Self(std::array::from_fn(|i| {

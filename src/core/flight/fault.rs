@@ -12,14 +12,17 @@ pub struct Fault {
     /// `/rows/<data row from 1>/<column name>` or `/rows/<data row from 1>`. Empty: the whole.
     #[schema(example = "/model/states/q/derivative")]
     pub pointer: String,
+    /// A stable word for programs; it never changes its meaning.
     #[schema(example = "unit_mismatch")]
     #[schema(value_type = String)]
     pub code: Cow<'static, str>,
+    /// A sentence for people: what is wrong, and what would put it right.
     #[schema(example = "column 9: cannot add rad/s and rad")]
     pub message: String,
 }
 
 impl Fault {
+    /// A fault at `pointer`, in the words of [`Self::code`] and [`Self::message`].
     pub fn new(pointer: impl Into<String>, code: &'static str, message: impl Into<String>) -> Self {
         Self {
             pointer: pointer.into(),

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+/// How much a finding matters.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Severity {
@@ -12,12 +13,14 @@ pub enum Severity {
     Warning,
 }
 
+/// Something odd about recorded data, which does not prevent their use.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Finding {
     /// A stable word: `gap`, `uneven_sampling`, `missing_values`, `repeated_values`, `repeated_rows`, `spikes`, `wrap`,
     /// `constant`, `implausible`.
     #[schema(example = "gap")]
     pub code: String,
+    /// Whether it changes results.
     pub severity: Severity,
     /// The channel concerned; absent where it is the time axis.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -40,5 +43,6 @@ pub struct Finding {
 }
 
 impl Finding {
+    /// The most rows that [`Self::rows`] lists.
     pub const ROWS_LISTED: usize = 20;
 }

@@ -10,6 +10,7 @@ use super::{Sampling, Unit};
 pub struct Channel {
     /// The unit as the recording states it; `values` are already converted from it.
     pub recorded_unit: String,
+    /// How recorded values become those of `values`, and their dimension.
     pub unit: Unit,
     /// One value a sample, SI; NaN where the recording has none.
     pub values: Vec<f64>,
@@ -37,23 +38,44 @@ pub struct Maneuver {
     sampling: Sampling,
 }
 
+/// Why samples are no recording. Rows are counted from 1.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 pub enum ManeuverError {
+    /// Fewer than two.
     #[error("{count} sample(s): a maneuver needs at least 2")]
-    TooFewSamples { count: usize },
+    TooFewSamples {
+        /// Samples there are.
+        count: usize,
+    },
+    /// A channel that is not as long as the time axis.
     #[error("channel '{channel}' has {found} values where the time axis has {expected}")]
     LengthMismatch {
+        /// Its name.
         channel: String,
+        /// Samples of the time axis.
         expected: usize,
+        /// Values of the channel.
         found: usize,
     },
+    /// A sample without a time.
     #[error("time is missing or not a number in row {row}; every row needs a time")]
-    TimeMissing { row: usize },
+    TimeMissing {
+        /// The first row without a time.
+        row: usize,
+    },
+    /// Time that stands still or runs back.
     #[error(
         "time does not increase: {time} s in row {row} follows {before} s in row {}; sort the rows, or upload the parts as separate maneuvers",
         row - 1
     )]
-    TimeNotIncreasing { row: usize, before: f64, time: f64 },
+    TimeNotIncreasing {
+        /// The first row that is not later than the one before it.
+        row: usize,
+        /// Time of the row before it, s.
+        before: f64,
+        /// Its own time, s.
+        time: f64,
+    },
 }
 
 impl Maneuver {
@@ -92,6 +114,7 @@ impl Maneuver {
         })
     }
 
+    /// Samples, on every channel the same number.
     pub fn len(&self) -> usize {
         self.time.len()
     }
@@ -106,14 +129,17 @@ impl Maneuver {
         &self.time
     }
 
+    /// From the first sample to the last, gaps included, s.
     pub fn duration(&self) -> f64 {
         self.time[self.len() - 1] - self.time[0]
     }
 
+    /// The recorded channels by name, in the order of the recording.
     pub fn channels(&self) -> &IndexMap<String, Channel> {
         &self.channels
     }
 
+    /// The step, whether it is even, and the gaps.
     pub fn sampling(&self) -> &Sampling {
         &self.sampling
     }

@@ -12,50 +12,95 @@ use super::Dimension;
 )]
 #[serde(rename_all = "snake_case")]
 pub enum PhysicalQuantity {
+    /// α, positive with the flow from below.
     AngleOfAttack,
+    /// β, positive with the flow from the right.
     AngleOfSideslip,
+    /// dα/dt
+    AngleOfAttackRate,
+    /// dβ/dt
+    AngleOfSideslipRate,
+    /// True airspeed.
     Airspeed,
+    /// Mach number.
     Mach,
+    /// q̄
     DynamicPressure,
+    /// ρ
     AirDensity,
+    /// Through the air, forward.
     VelocityX,
+    /// Through the air, to the right.
     VelocityY,
+    /// Through the air, down.
     VelocityZ,
+    /// p
     RollRate,
+    /// q
     PitchRate,
+    /// r
     YawRate,
+    /// dp/dt
     RollAcceleration,
+    /// dq/dt
     PitchAcceleration,
+    /// dr/dt
     YawAcceleration,
     /// A specific force, or a load factor.
     AccelerationX,
+    /// As that along x.
     AccelerationY,
+    /// As that along x.
     AccelerationZ,
+    /// φ
     RollAngle,
+    /// θ
     PitchAngle,
+    /// ψ
     HeadingAngle,
+    /// North.
     PositionX,
+    /// East.
     PositionY,
+    /// Down.
     PositionZ,
+    /// Up.
     Altitude,
+    /// Velocity of the air over ground, towards north.
     WindX,
+    /// Towards east.
     WindY,
+    /// Downwards.
     WindZ,
+    /// A deflection, or the command of one.
     Elevator,
+    /// A deflection, or the command of one.
     Aileron,
+    /// A deflection, or the command of one.
     Rudder,
+    /// A deflection, or the command of one.
     Canard,
+    /// A deflection, or the command of one.
     Flap,
+    /// A force, or a lever.
     Thrust,
     /// Any other control.
     Control,
+    /// C_L
     LiftCoefficient,
+    /// C_D
     DragCoefficient,
+    /// C_Y
     SideForceCoefficient,
+    /// C_X, forward.
     ForceCoefficientX,
+    /// C_Z, down.
     ForceCoefficientZ,
+    /// C_l
     RollingMomentCoefficient,
+    /// C_m
     PitchingMomentCoefficient,
+    /// C_n
     YawingMomentCoefficient,
     /// Any other aerodynamic coefficient.
     Coefficient,
@@ -68,24 +113,38 @@ pub enum PhysicalQuantity {
 /// The instruments that record a quantity, or the part of the model that it belongs to.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub enum Family {
+    /// Flow angles, speed, pressures, altitude.
     AirData,
+    /// Velocities in body axes.
     Velocity,
+    /// Rates.
     Gyro,
+    /// Their derivatives.
     AngularAcceleration,
+    /// Specific forces.
     Accelerometer,
+    /// Attitude angles.
     Attitude,
+    /// Positions over ground.
     Position,
+    /// Winds.
     Wind,
+    /// Controls.
     Control,
+    /// Aerodynamic coefficients.
     Coefficient,
+    /// Elastic states.
     Structural,
+    /// All else.
     Other,
 }
 
 /// Which of the two motions of a symmetric aircraft a quantity belongs to.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Motion {
+    /// In the plane of symmetry.
     Longitudinal,
+    /// Out of it.
     Lateral,
 }
 
@@ -97,11 +156,12 @@ impl PhysicalQuantity {
             .unwrap_or_default()
     }
 
+    /// Who records it.
     pub fn family(self) -> Family {
         use PhysicalQuantity::*;
         match self {
-            AngleOfAttack | AngleOfSideslip | Airspeed | Mach | DynamicPressure | AirDensity
-            | Altitude => Family::AirData,
+            AngleOfAttack | AngleOfSideslip | AngleOfAttackRate | AngleOfSideslipRate | Airspeed
+            | Mach | DynamicPressure | AirDensity | Altitude => Family::AirData,
             VelocityX | VelocityY | VelocityZ => Family::Velocity,
             RollRate | PitchRate | YawRate => Family::Gyro,
             RollAcceleration | PitchAcceleration | YawAcceleration => Family::AngularAcceleration,
@@ -124,10 +184,12 @@ impl PhysicalQuantity {
         }
     }
 
+    /// Angle of attack or of sideslip.
     pub fn is_flow_angle(self) -> bool {
         matches!(self, Self::AngleOfAttack | Self::AngleOfSideslip)
     }
 
+    /// What the pilot or an engine moves.
     pub fn is_control(self) -> bool {
         self.family() == Family::Control
     }
@@ -143,11 +205,12 @@ impl PhysicalQuantity {
         )
     }
 
-    /// `None` of what may belong to either.
+    /// The motion that it belongs to; `None` of what may belong to either.
     pub fn motion(self) -> Option<Motion> {
         use PhysicalQuantity::*;
         match self {
             AngleOfSideslip
+            | AngleOfSideslipRate
             | VelocityY
             | RollRate
             | YawRate
@@ -162,6 +225,7 @@ impl PhysicalQuantity {
             | RollingMomentCoefficient
             | YawingMomentCoefficient => Some(Motion::Lateral),
             AngleOfAttack
+            | AngleOfAttackRate
             | Airspeed
             | Mach
             | DynamicPressure
@@ -195,6 +259,7 @@ impl PhysicalQuantity {
         match self.family() {
             Family::AirData => match self {
                 Self::Airspeed => dimension == speed,
+                Self::AngleOfAttackRate | Self::AngleOfSideslipRate => dimension == per_second,
                 Self::DynamicPressure => {
                     let area = Dimension::METRE.times(Dimension::METRE);
                     let newton = Dimension::KILOGRAM.times(speed).over(Dimension::SECOND);

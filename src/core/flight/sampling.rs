@@ -8,16 +8,19 @@ pub const GAP_FACTOR: f64 = 5.0;
 /// Steps that differ from the usual one by less than this share are rounding of the time column.
 const EVEN_WITHIN: f64 = 0.02;
 
+/// The time axis of a recording, described.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Sampling {
     /// The usual (median) step, s.
     pub step: f64,
     /// Whether all steps but the gaps equal the usual one, up to rounding of the time column.
     pub even: bool,
+    /// Where the recording stopped and started again: steps above [`GAP_FACTOR`] usual ones.
     pub gaps: Vec<Gap>,
     samples: usize,
 }
 
+/// A place where the recording stopped and started again.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Gap {
     /// Index (from 0) of the first sample behind the gap.

@@ -3,7 +3,9 @@
 /// What a value in SI is multiplied by, and the unit it then has.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Shown {
+    /// The factor from SI to what is shown.
     pub scale: f64,
+    /// The unit of what is shown.
     pub unit: String,
 }
 

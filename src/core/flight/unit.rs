@@ -7,20 +7,33 @@ use super::Dimension;
 /// A unit: how to get to SI (`si = scale * value + offset`) and what it measures.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Unit {
+    /// The factor to SI.
     pub scale: f64,
     /// Zero but for temperatures in degrees Celsius and Fahrenheit.
     pub offset: f64,
+    /// What is measured, in SI base units.
     pub dimension: Dimension,
 }
 
+/// Why a text is no unit.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 pub enum UnitError {
+    /// A symbol of the unit is not known.
     #[error(
-        "unknown unit '{symbol}'; known are for instance m, ft, s, rad, deg, m/s, kt, m/s^2, g, N, Pa, hPa, K, kg, %, and '-' for a pure number"
+        "unknown unit '{symbol}'; known units include m, ft, s, rad, deg, m/s, kt, m/s^2, g, N, Pa, hPa, K, kg, %, and '-' for a pure number"
     )]
-    Unknown { symbol: String },
+    Unknown {
+        /// The symbol as written.
+        symbol: String,
+    },
+    /// The text does not read as factors and powers of symbols.
     #[error("unit '{text}' cannot be read: {why}; write it like m/s^2, 1/s or kg/(m*s)")]
-    Malformed { text: String, why: &'static str },
+    Malformed {
+        /// The unit as written, at most its first 64 characters.
+        text: String,
+        /// What is wrong with it.
+        why: &'static str,
+    },
 }
 
 const LONGEST_UNIT: usize = 64;
@@ -29,12 +42,14 @@ const LONGEST_UNIT: usize = 64;
 const SCALES: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
 impl Unit {
+    /// Of a pure number.
     pub const NONE: Self = Self {
         scale: 1.0,
         offset: 0.0,
         dimension: Dimension::NONE,
     };
 
+    /// A value in this unit, in SI.
     pub fn to_si(self, value: f64) -> f64 {
         value * self.scale + self.offset
     }
@@ -65,14 +80,14 @@ impl Unit {
             depth: 0,
         };
         let unit = parser.product().map_err(|fault| match fault {
-            Fault::Unknown(symbol) => UnitError::Unknown { symbol },
-            Fault::Malformed(why) => malformed(why),
+            Misread::Unknown(symbol) => UnitError::Unknown { symbol },
+            Misread::Malformed(why) => malformed(why),
         })?;
         if !parser.rest.is_empty() {
-            return Err(malformed("there is something behind its end"));
+            return Err(malformed("something follows its end"));
         }
         if !SCALES.contains(&unit.scale) {
-            return Err(malformed("it is too far from SI to convert from"));
+            return Err(malformed("it is too far from SI to be converted"));
         }
         Ok(unit)
     }
@@ -86,7 +101,7 @@ impl Unit {
     }
 }
 
-enum Fault {
+enum Misread {
     Unknown(String),
     Malformed(&'static str),
 }
@@ -97,7 +112,7 @@ struct Parser<'a> {
 }
 
 impl Parser<'_> {
-    fn product(&mut self) -> Result<Unit, Fault> {
+    fn product(&mut self) -> Result<Unit, Misread> {
         let mut unit = self.power()?;
         loop {
             let had_space = self.skip_spaces();
@@ -109,11 +124,11 @@ impl Parser<'_> {
                 '*' | '.' | '·' | '/' => self.advance(next),
                 ')' => return Ok(unit),
                 _ if had_space => {}
-                _ => return Err(Fault::Malformed("factors need '*' or '/' between them")),
+                _ => return Err(Misread::Malformed("factors need '*' or '/' between them")),
             }
             let factor = self.power()?;
             if unit.offset != 0.0 || factor.offset != 0.0 {
-                return Err(Fault::Malformed(
+                return Err(Misread::Malformed(
                     "a temperature with an offset (degC, degF) must stand alone",
                 ));
             }
@@ -131,7 +146,7 @@ impl Parser<'_> {
         }
     }
 
-    fn power(&mut self) -> Result<Unit, Fault> {
+    fn power(&mut self) -> Result<Unit, Misread> {
         let base = self.factor()?;
         if !self.rest.starts_with('^') {
             return Ok(base);
@@ -140,28 +155,28 @@ impl Parser<'_> {
         let digits = self.take_while(|c| c.is_ascii_digit() || matches!(c, '-' | '.'));
         let exponent: f64 = digits
             .parse()
-            .map_err(|_| Fault::Malformed("'^' needs a number behind it"))?;
+            .map_err(|_| Misread::Malformed("'^' needs a number after it"))?;
         if exponent.abs() > 9.0 {
-            return Err(Fault::Malformed("a power is larger than 9"));
+            return Err(Misread::Malformed("a power is larger than 9"));
         }
         let dimension = base
             .dimension
             .to_power(exponent)
-            .ok_or(Fault::Malformed("a power must be a multiple of a sixth"))?;
+            .ok_or(Misread::Malformed("a power must be a multiple of a sixth"))?;
         Ok(Unit::scaled(base.scale.powf(exponent), dimension))
     }
 
-    fn factor(&mut self) -> Result<Unit, Fault> {
+    fn factor(&mut self) -> Result<Unit, Misread> {
         self.skip_spaces();
         if self.rest.starts_with('(') {
             self.depth += 1;
             if self.depth > 8 {
-                return Err(Fault::Malformed("its brackets are nested too deep"));
+                return Err(Misread::Malformed("its brackets are nested too deep"));
             }
             self.advance('(');
             let inner = self.product()?;
             if !self.rest.starts_with(')') {
-                return Err(Fault::Malformed("a ')' is missing"));
+                return Err(Misread::Malformed("a ')' is missing"));
             }
             self.advance(')');
             self.depth -= 1;
@@ -173,9 +188,9 @@ impl Parser<'_> {
         }
         let symbol = self.take_while(|c| c.is_alphabetic() || matches!(c, '%' | '°' | '_'));
         if symbol.is_empty() {
-            return Err(Fault::Malformed("a unit symbol is missing"));
+            return Err(Misread::Malformed("a unit symbol is missing"));
         }
-        named(&symbol).ok_or(Fault::Unknown(symbol))
+        named(&symbol).ok_or(Misread::Unknown(symbol))
     }
 
     fn advance(&mut self, c: char) {

@@ -44,7 +44,7 @@ impl Recording {
             faults.push(Fault::new(
                 "/channels",
                 code::NO_CHANNELS,
-                "there is no channel beside time; add every recorded quantity",
+                "there is no channel besides time; add every recorded quantity",
             ));
         } else if samples < 2 {
             let error = ManeuverError::TooFewSamples { count: samples };

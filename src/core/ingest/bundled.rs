@@ -2,22 +2,27 @@
 
 /// A maneuver, and the scenario that made it.
 pub struct Bundled {
+    /// The file's name without its ending.
     pub name: &'static str,
+    /// The recording, as [`Format::Csv`](super::Format::Csv) reads it.
     pub csv: &'static str,
     /// A document of `trimtab simulate`, TOML.
     pub scenario: &'static str,
 }
 
+/// An elevator 3-2-1-1, for the model `short-period`.
 pub const ELEVATOR: Bundled = Bundled {
     name: "elevator",
     csv: include_str!("../../../data/elevator.csv"),
     scenario: include_str!("../../../data/elevator.toml"),
 };
+/// Aileron, bank to bank, for the model `lateral-directional-4`.
 pub const AILERON: Bundled = Bundled {
     name: "aileron",
     csv: include_str!("../../../data/aileron.csv"),
     scenario: include_str!("../../../data/aileron.toml"),
 };
+/// Rudder doublets, which excite the Dutch roll, for the model `lateral-directional-4`.
 pub const RUDDER: Bundled = Bundled {
     name: "rudder",
     csv: include_str!("../../../data/rudder.csv"),

@@ -2,26 +2,27 @@
 //!
 //! What is written reads back to the same numbers, bit for bit.
 
-use std::fmt::Write;
+use std::iter::once;
 
 use indexmap::IndexMap;
 use serde::Serialize;
 
+use super::csv_writer::CsvWriter;
 use crate::flight::{Channel, Maneuver, Unit};
 
 #[derive(Serialize)]
 struct Document<'a> {
-    time: Series<'a>,
-    channels: IndexMap<&'a str, Series<'a>>,
+    time: Samples<'a>,
+    channels: IndexMap<&'a str, Samples<'a>>,
 }
 
 #[derive(Serialize)]
-struct Series<'a> {
+struct Samples<'a> {
     unit: String,
     values: &'a [f64],
 }
 
-impl<'a> Series<'a> {
+impl<'a> Samples<'a> {
     fn of(channel: &'a Channel) -> Self {
         Self {
             unit: Unit::si_name(&channel.recorded_unit),
@@ -37,12 +38,12 @@ impl<'a> Series<'a> {
 pub fn to_json(maneuver: &Maneuver) -> serde_json::Result<String> {
     let channels = maneuver.channels().iter();
     serde_json::to_string(&Document {
-        time: Series {
+        time: Samples {
             unit: "s".to_string(),
             values: maneuver.time(),
         },
         channels: channels
-            .map(|(name, channel)| (name.as_str(), Series::of(channel)))
+            .map(|(name, channel)| (name.as_str(), Samples::of(channel)))
             .collect(),
     })
 }
@@ -50,63 +51,50 @@ pub fn to_json(maneuver: &Maneuver) -> serde_json::Result<String> {
 /// The maneuver, or those channels of it that `keep` says, as a CSV recording; missing values are
 /// empty cells.
 pub fn to_csv(maneuver: &Maneuver, keep: impl Fn(&str) -> bool) -> String {
-    let kept: Vec<(&String, &Channel)> = maneuver
-        .channels()
+    let channels = maneuver.channels().iter();
+    let kept: Vec<(&String, &Channel)> = channels.filter(|(name, _)| keep(name)).collect();
+    let titles = kept
         .iter()
-        .filter(|(name, _)| keep(name))
-        .collect();
-    let mut csv = String::from("t[s]");
-    for (name, channel) in &kept {
-        csv.push_str(&format!(
-            ",{name}[{}]",
-            Unit::si_name(&channel.recorded_unit)
-        ));
-    }
-    csv.push('\n');
+        .map(|(name, channel)| title(name, &Unit::si_name(&channel.recorded_unit)));
+    let mut csv = CsvWriter::with_header(once(TIME.to_string()).chain(titles));
     for (k, time) in maneuver.time().iter().enumerate() {
-        push_number(&mut csv, *time);
+        csv.number(*time);
         for (_, channel) in &kept {
-            csv.push(',');
-            push_number(&mut csv, channel.values[k]);
+            csv.number(channel.values[k]);
         }
-        csv.push('\n');
+        csv.end_row();
     }
-    csv
+    csv.finish()
 }
 
 /// The maneuver as a recorder writes it: in the recorded units, with as many digits as sensors have.
 pub fn to_csv_as_recorded(maneuver: &Maneuver) -> String {
-    let mut csv = String::from("t[s]");
-    for (name, channel) in maneuver.channels() {
-        let _ = write!(csv, ",{name}[{}]", channel.recorded_unit);
-    }
-    csv.push('\n');
+    let channels = maneuver.channels().iter();
+    let titles = channels.map(|(name, channel)| title(name, &channel.recorded_unit));
+    let mut csv = CsvWriter::with_header(once(TIME.to_string()).chain(titles));
     for (k, time) in maneuver.time().iter().enumerate() {
-        let _ = write!(csv, "{}", round(*time));
+        csv.text(&rounded(*time));
         for channel in maneuver.channels().values() {
-            let value = (channel.values[k] - channel.unit.offset) / channel.unit.scale;
-            csv.push(',');
-            if value.is_finite() {
-                let _ = write!(csv, "{}", round(value));
-            }
+            csv.text(&rounded(channel.unit.from_si(channel.values[k])));
         }
-        csv.push('\n');
+        csv.end_row();
     }
-    csv
+    csv.finish()
 }
 
-/// To six decimals, without the minus of a zero.
-fn round(value: f64) -> f64 {
-    (value * 1e6).round() / 1e6 + 0.0
+const TIME: &str = "t[s]";
+
+fn title(name: &str, unit: &str) -> String {
+    format!("{name}[{unit}]")
 }
 
-/// The shortest text that reads back to the same double.
-fn push_number(csv: &mut String, value: f64) {
-    if value.is_nan() {
-        return;
+/// To six decimals, without the minus of a zero; nothing, if it is not finite.
+fn rounded(value: f64) -> String {
+    if value.is_finite() {
+        ((value * 1e6).round() / 1e6 + 0.0).to_string()
+    } else {
+        String::new()
     }
-    // Debug writes 1e-300 with an exponent, where Display writes 300 zeros. A String takes all.
-    let _ = write!(csv, "{value:?}");
 }
 
 #[cfg(test)]

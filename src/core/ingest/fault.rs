@@ -24,6 +24,7 @@ impl IngestError {
         &self.faults
     }
 
+    /// The faults themselves; never none.
     pub fn into_faults(self) -> Vec<Fault> {
         self.faults
     }
@@ -67,116 +68,52 @@ pub(super) fn pointer<S: AsRef<str>>(segments: impl IntoIterator<Item = S>) -> S
     })
 }
 
+/// Constants for the words, each documented by its meaning, and the list of both.
+macro_rules! codes {
+    ($($name:ident = $word:literal, $meaning:literal;)*) => {
+        $(#[doc = $meaning] pub const $name: &str = $word;)*
+
+        /// Every code with its meaning, for the documentation.
+        pub const ALL: &[(&str, &str)] = &[$(($name, $meaning)),*];
+    };
+}
+
 /// The words that [`Fault::code`] can be. They never change their meaning.
 pub mod code {
-    pub const EMPTY_BODY: &str = "empty_body";
-    pub const NOT_UTF8: &str = "not_utf8";
-    pub const WRONG_DELIMITER: &str = "wrong_delimiter";
-    pub const AMBIGUOUS_NUMBER: &str = "ambiguous_number";
-    pub const INVALID_JSON: &str = "invalid_json";
-    pub const WRONG_SHAPE: &str = "wrong_shape";
-    pub const TOO_MANY_COLUMNS: &str = "too_many_columns";
-    pub const TOO_MANY_SAMPLES: &str = "too_many_samples";
-    pub const TOO_MANY_VALUES: &str = "too_many_values";
-    pub const TOO_FEW_SAMPLES: &str = "too_few_samples";
-    pub const NO_CHANNELS: &str = "no_channels";
-    pub const EMPTY_NAME: &str = "empty_name";
-    pub const INVALID_NAME: &str = "invalid_name";
-    pub const NAME_TOO_LONG: &str = "name_too_long";
-    pub const DUPLICATE_CHANNEL: &str = "duplicate_channel";
-    pub const UNKNOWN_UNIT: &str = "unknown_unit";
-    pub const UNIT_CONFLICT: &str = "unit_conflict";
-    pub const NO_TIME_COLUMN: &str = "no_time_column";
-    pub const TIME_UNIT: &str = "time_unit";
-    pub const TIME_MISSING: &str = "time_missing";
-    pub const TIME_NOT_INCREASING: &str = "time_not_increasing";
-    pub const NOT_A_NUMBER: &str = "not_a_number";
-    pub const ROW_LENGTH: &str = "row_length";
-    pub const LENGTH_MISMATCH: &str = "length_mismatch";
-
-    pub const MAPPING_NEEDED: &str = "mapping_needed";
-    pub const MAPPING_NOT_USED: &str = "mapping_not_used";
-    pub const INVALID_MAPPING: &str = "invalid_mapping";
-    pub const UNKNOWN_SOURCE: &str = "unknown_source";
-    pub const UNREADABLE_SOURCE: &str = "unreadable_source";
-    pub const NOT_A_MAT_FILE: &str = "not_a_mat_file";
-    pub const MAT_VERSION: &str = "mat_version";
-    pub const DAMAGED_FILE: &str = "damaged_file";
-
-    /// Every code with its meaning, for the documentation.
-    pub const ALL: &[(&str, &str)] = &[
-        (EMPTY_BODY, "There are no bytes, or only blanks."),
-        (NOT_UTF8, "The file is not UTF-8 text."),
-        (
-            WRONG_DELIMITER,
-            "It is not clear what separates the cells: commas, semicolons or tabs.",
-        ),
-        (
-            AMBIGUOUS_NUMBER,
-            "A comma or a point in a number can be read in two ways.",
-        ),
-        (INVALID_JSON, "The body is not JSON."),
-        (
-            WRONG_SHAPE,
-            "The body is JSON of another shape than a recording's.",
-        ),
-        (TOO_MANY_COLUMNS, "The limit of columns is exceeded."),
-        (TOO_MANY_SAMPLES, "The limit of samples is exceeded."),
-        (TOO_MANY_VALUES, "The limit of values is exceeded."),
-        (TOO_FEW_SAMPLES, "A maneuver needs at least two samples."),
-        (NO_CHANNELS, "There is no channel beside time."),
-        (EMPTY_NAME, "A channel has no name."),
-        (
-            INVALID_NAME,
-            "A channel's name is not an identifier, or is reserved.",
-        ),
-        (NAME_TOO_LONG, "A channel's name is too long."),
-        (DUPLICATE_CHANNEL, "Two channels have one name."),
-        (UNKNOWN_UNIT, "A unit is unknown or cannot be read."),
-        (
-            UNIT_CONFLICT,
-            "The header and the row of units below it disagree.",
-        ),
-        (NO_TIME_COLUMN, "No column is named t or time."),
-        (TIME_UNIT, "The unit of time is not a time."),
-        (TIME_MISSING, "A sample has no time."),
-        (TIME_NOT_INCREASING, "Time does not increase."),
-        (
-            NOT_A_NUMBER,
-            "A cell holds neither a number nor a sign for a missing value.",
-        ),
-        (
-            ROW_LENGTH,
-            "A row has another number of cells than the header.",
-        ),
-        (
-            LENGTH_MISMATCH,
-            "A channel has another number of values than the time axis.",
-        ),
-        (
-            MAPPING_NEEDED,
-            "The file has no names and units; a mapping must say them.",
-        ),
-        (
-            MAPPING_NOT_USED,
-            "The file says names and units itself, in a format for which there is no mapping.",
-        ),
-        (INVALID_MAPPING, "The mapping is unknown, or no mapping."),
-        (
-            UNKNOWN_SOURCE,
-            "The file does not have what the mapping names.",
-        ),
-        (
-            UNREADABLE_SOURCE,
-            "What the mapping names is no matrix of real numbers.",
-        ),
-        (NOT_A_MAT_FILE, "The body is not a MAT file."),
-        (
-            MAT_VERSION,
-            "The MAT file is of a version that is not read.",
-        ),
-        (DAMAGED_FILE, "The file contradicts itself or is cut off."),
-    ];
+    codes! {
+        EMPTY_BODY = "empty_body", "There are no bytes, or only blanks.";
+        NOT_UTF8 = "not_utf8", "The file is not UTF-8 text.";
+        WRONG_DELIMITER = "wrong_delimiter", "It is not clear what separates the cells: commas, semicolons or tabs.";
+        AMBIGUOUS_NUMBER = "ambiguous_number", "A comma or a point in a number can be read in two ways.";
+        INVALID_JSON = "invalid_json", "The body is not JSON.";
+        WRONG_SHAPE = "wrong_shape", "The body is JSON, but not in the shape of a recording.";
+        TOO_MANY_COLUMNS = "too_many_columns", "The limit of columns is exceeded.";
+        TOO_MANY_SAMPLES = "too_many_samples", "The limit of samples is exceeded.";
+        TOO_MANY_VALUES = "too_many_values", "The limit of values is exceeded.";
+        TOO_FEW_SAMPLES = "too_few_samples", "A maneuver needs at least two samples.";
+        NO_CHANNELS = "no_channels", "There is no channel besides time.";
+        EMPTY_NAME = "empty_name", "A channel has no name.";
+        INVALID_NAME = "invalid_name", "A channel's name is not an identifier, or is reserved.";
+        NAME_TOO_LONG = "name_too_long", "A channel's name is too long.";
+        DUPLICATE_CHANNEL = "duplicate_channel", "Two channels have the same name.";
+        UNKNOWN_UNIT = "unknown_unit", "A unit is unknown or cannot be read.";
+        UNIT_CONFLICT = "unit_conflict", "The header and the row of units below it disagree.";
+        NO_TIME_COLUMN = "no_time_column", "No column is named t or time.";
+        TIME_UNIT = "time_unit", "The unit of time is not a time.";
+        TIME_MISSING = "time_missing", "A sample has no time.";
+        TIME_NOT_INCREASING = "time_not_increasing", "Time does not increase.";
+        NOT_A_NUMBER = "not_a_number", "A cell holds neither a number nor a sign for a missing value.";
+        ROW_LENGTH = "row_length", "A row does not have as many cells as the header.";
+        LENGTH_MISMATCH = "length_mismatch", "A channel does not have as many values as the time axis.";
+        MAPPING_NEEDED = "mapping_needed", "The file has no names and units; a mapping must say them.";
+        MAPPING_NOT_USED = "mapping_not_used", "The file says names and units itself, in a format for which there is no mapping.";
+        INVALID_MAPPING = "invalid_mapping", "The mapping is unknown, or is not a mapping.";
+        UNKNOWN_SOURCE = "unknown_source", "The file does not have what the mapping names.";
+        UNREADABLE_SOURCE = "unreadable_source", "What the mapping names is not a matrix of real numbers.";
+        NOT_A_MAT_FILE = "not_a_mat_file", "The body is not a MAT file.";
+        MAT_VERSION = "mat_version", "The MAT file is of a version that is not read.";
+        DAMAGED_FILE = "damaged_file", "The file contradicts itself or is cut off.";
+    }
 }
 
 /// `code pointer` of each fault of a recording that must be refused.

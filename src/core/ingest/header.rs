@@ -144,7 +144,7 @@ fn missing_columns(time: Option<usize>, count: usize) -> impl Iterator<Item = Fa
     let no_channels = (time.is_some() && count == 1).then(|| {
         of_file(
             code::NO_CHANNELS,
-            "there is no channel beside time; add a column for every recorded quantity",
+            "there is no channel besides time; add a column for every recorded quantity",
         )
     });
     no_time.into_iter().chain(no_channels)

@@ -17,6 +17,7 @@ mod axis;
 pub mod bundled;
 mod cell;
 mod csv;
+mod csv_writer;
 mod export;
 mod fault;
 mod header;
@@ -35,6 +36,7 @@ mod summary;
 mod text;
 mod units;
 
+pub use csv_writer::CsvWriter;
 pub use export::{to_csv, to_csv_as_recorded, to_json};
 pub use fault::{IngestError, code};
 pub use limits::Limits;
@@ -48,7 +50,9 @@ use crate::flight::Maneuver;
 /// What a recording is written in.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Format {
+    /// Text with a header of `name[unit]`, a row for each sample.
     Csv,
+    /// One time axis and a list of values for each channel.
     Json,
     /// A MAT file of version 5.
     Mat,

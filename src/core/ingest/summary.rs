@@ -7,8 +7,10 @@ use crate::flight::{Channel, Finding, Maneuver, Unit};
 
 use super::quality;
 
+/// A maneuver in numbers: its length, its sampling, its channels, and what is odd about it.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Summary {
+    /// Samples, on every channel the same number.
     #[schema(example = 1502)]
     pub samples: usize,
     /// From the first sample to the last, gaps included, s.
@@ -23,6 +25,7 @@ pub struct Summary {
     /// Stretches without a gap.
     #[schema(example = 2)]
     pub segments: usize,
+    /// Every channel but time, in the order of the recording.
     pub channels: Vec<ChannelSummary>,
     /// What is odd about the data.
     pub findings: Vec<Finding>,
@@ -31,6 +34,7 @@ pub struct Summary {
 /// One channel; its numbers are SI.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct ChannelSummary {
+    /// The channel's name.
     #[schema(example = "alpha")]
     pub name: String,
     /// As recorded.
@@ -39,11 +43,13 @@ pub struct ChannelSummary {
     /// The unit of `min`, `max` and `mean`.
     #[schema(example = "rad")]
     pub si_unit: String,
-    /// `null` where every value is missing.
+    /// The smallest value; `null` where every value is missing.
     #[schema(example = 0.021)]
     pub min: Option<f64>,
+    /// The largest value; `null` where every value is missing.
     #[schema(example = 0.094)]
     pub max: Option<f64>,
+    /// Mean of the values there are; `null` where every value is missing.
     #[schema(example = 0.047)]
     pub mean: Option<f64>,
     /// Samples without a value.

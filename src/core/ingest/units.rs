@@ -22,7 +22,7 @@ impl RecordedUnit {
             .map_err(|fault| (code::UNKNOWN_UNIT, short_message(&fault.to_string())))?;
         // A scale beyond the range of a double would turn every value into 0 or nothing.
         if !unit.scale.is_normal() {
-            let message = format!("unit '{text}' is too far from SI to convert from");
+            let message = format!("unit '{text}' is too far from SI to be converted");
             return Err((code::UNKNOWN_UNIT, message));
         }
         // `name`, `name[]`, `name[1]` and `name[-]` are the same content and must have one digest.
@@ -47,7 +47,7 @@ impl RecordedUnit {
             "time has no unit; say which, as in t[s] or t[ms]".to_string()
         } else {
             format!(
-                "'{}' is not a unit of time; known are s, ms, us, min and h",
+                "'{}' is not a unit of time; those are s, ms, us, min and h",
                 recorded.text
             )
         };

@@ -12,24 +12,35 @@ use crate::flight::Finding;
 /// One entry of a job's log. `seq` starts at 1 and has no holes.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Event {
+    /// Its number in the job's log, from 1.
     #[schema(example = 7)]
     pub seq: u64,
     /// When it was recorded, RFC 3339.
     #[schema(example = "2026-11-21T12:00:00.123Z")]
     pub at: String,
+    /// What happened.
     #[serde(flatten)]
     pub body: EventBody,
 }
 
+/// What can happen to a job, each with what there is to say of it.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum EventBody {
     /// Accepted and stored; from here on the job is never lost.
     Queued,
     /// A worker has it; attempt 2 and later follow a lost or interrupted worker.
-    Claimed { worker: String, attempt: u32 },
+    Claimed {
+        /// Which worker.
+        worker: String,
+        /// How often the job has been claimed, this time included.
+        attempt: u32,
+    },
     /// The worker gave it back unfinished (shutdown); it is queued again.
-    Released { reason: String },
+    Released {
+        /// Why it was given back.
+        reason: String,
+    },
     /// Model compiled, channels resolved, units checked.
     Prepared(Prepared),
     /// The search for start values got on, or ended.
@@ -43,16 +54,28 @@ pub enum EventBody {
     /// Somebody asked to cancel.
     CancelRequested,
     /// The solver ended and its result is stored; `outcome` says how good it is.
-    Succeeded { outcome: Outcome, reason: String },
+    Succeeded {
+        /// How the solver ended.
+        outcome: Outcome,
+        /// Why it ended, in a sentence.
+        reason: String,
+    },
     /// No result: the faults say why.
-    Failed { faults: Vec<Fault> },
+    Failed {
+        /// All of them; never none.
+        faults: Vec<Fault>,
+    },
     /// Ended on request; the best iterate is kept if there was one.
-    Cancelled { has_result: bool },
+    Cancelled {
+        /// Whether there is an iterate to look at.
+        has_result: bool,
+    },
 }
 
 /// What the job amounts to, said before the first iteration.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Prepared {
+    /// Labels of the segments that are fitted.
     #[schema(example = json!(["elevator"]))]
     pub segments: Vec<String>,
     /// Segments that take no part in the estimation and are predicted with its result.
@@ -61,6 +84,7 @@ pub struct Prepared {
     pub validation: Vec<String>,
     /// Samples over all segments of the estimation.
     pub samples: usize,
+    /// Outputs of the model, in the document's order.
     pub outputs: Vec<String>,
     /// Free parameters, and with filter error the free process noises, in the order of the iterations' `parameters`.
     pub parameters: Vec<String>,

@@ -17,7 +17,7 @@ pub use plan::Plan;
 pub use prepare::{MOST_MANEUVERS, prepare};
 pub use provenance::Maker;
 pub use result::JobResult;
-pub use run::{Progress, run, run_diagnosis, run_study};
+pub use run::{StudyProgress, run, run_diagnosis, run_study};
 pub use spec::{
     Candidate, Gaps, HIGHEST_PRIORITY, JobKind, JobSpec, ManeuverUse, ModelSource,
     ParameterOverride,

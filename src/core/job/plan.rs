@@ -7,9 +7,11 @@ use crate::model::ModelDocument;
 
 /// A job whose model is compiled and whose data are resolved: nothing left that bad input could break.
 pub struct Plan {
+    /// The job in names and numbers, to be told before it runs.
     pub prepared: Prepared,
     /// The model as estimated: the declared one with the job's edits and parameter overrides in it.
     pub model: ModelDocument,
+    /// Model, data and unknowns of the estimation.
     pub problem: Problem,
     /// What is predicted with the estimate.
     pub validation: Vec<Validation>,

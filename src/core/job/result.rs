@@ -11,8 +11,11 @@ use crate::model::ModelDocument;
 /// Everything a finished job answers.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct JobResult {
+    /// Parameters, error bounds, fit; of a diagnosis, those of the model with its effects.
     pub estimate: Estimate,
+    /// The model that was estimated: the declared one with the job's edits, overrides, and of a diagnosis its effects.
     pub model: ModelDocument,
+    /// Measured and estimated outputs of each segment.
     pub histories: Vec<TimeHistory>,
     /// Of a derivative study.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -16,12 +16,14 @@ use crate::model::{Edit, ModelDocument, Prior, Start};
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JobSpec {
+    /// What is wanted of the model and the data.
     #[serde(default)]
     pub kind: JobKind,
     /// For people; not unique.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     #[schema(example = "ATTAS elevator 3-2-1-1, run 1")]
     pub name: String,
+    /// For people, to find jobs by.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(example = json!(["flight 12"]))]
     pub tags: Vec<String>,
@@ -30,6 +32,7 @@ pub struct JobSpec {
     #[serde(default, skip_serializing_if = "is_zero")]
     #[schema(minimum = -10, maximum = 10)]
     pub priority: i32,
+    /// The declared model.
     pub model: ModelSource,
     /// Edits of the model, applied in order: an effect is an edit.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -67,6 +70,7 @@ pub struct JobSpec {
     /// Of a diagnosis: what is known before the data.
     #[serde(default, skip_serializing_if = "is_nothing")]
     pub knowledge: Knowledge,
+    /// How to estimate; each option has a default.
     #[serde(default)]
     pub options: Options,
 }
@@ -87,11 +91,14 @@ fn is_zero(priority: &i32) -> bool {
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Candidate {
+    /// What the effect is called in the diagnosis.
     #[schema(example = "spoiler on the yawing moment")]
     pub name: String,
+    /// Applied in order; the parameters that they add are the size of the effect.
     pub edits: Vec<Edit>,
 }
 
+/// What a job does.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum JobKind {
@@ -107,6 +114,7 @@ pub enum JobKind {
 }
 
 impl JobKind {
+    /// All kinds, in the order of the help.
     pub const ALL: [Self; 3] = [Self::Estimate, Self::Diagnose, Self::DerivativeStudy];
 
     /// As it is written in a job.
@@ -125,6 +133,7 @@ impl JobKind {
 pub enum ModelSource {
     /// A catalog name such as `short-period`, or the id of a stored model.
     Reference(String),
+    /// A model document.
     Document(Box<ModelDocument>),
 }
 
@@ -196,6 +205,7 @@ pub struct ManeuverUse {
     pub gaps: Gaps,
 }
 
+/// What becomes of a gap, a place where the recording stopped and started again.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Gaps {
@@ -206,15 +216,20 @@ pub enum Gaps {
     Join,
 }
 
+/// What a job says of a parameter instead of the document; absent: as the document has it.
 #[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ParameterOverride {
+    /// The start value, in the parameter's unit, or how it is read off the data.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<Start>,
+    /// The lower bound, in the parameter's unit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower: Option<f64>,
+    /// The upper bound, in the parameter's unit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub upper: Option<f64>,
+    /// Whether it is held at its start value.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fixed: Option<bool>,
     /// What is known of it before the data.

@@ -5,19 +5,26 @@ use utoipa::ToSchema;
 
 use super::event::EventBody;
 
+/// Where a job stands.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
+    /// Waiting for a worker.
     Queued,
+    /// A worker has it.
     Running,
     /// Running, and asked to stop.
     Cancelling,
+    /// The solver ended and there is a result.
     Succeeded,
+    /// There is no result, and faults that say why.
     Failed,
+    /// Ended on request; the best iterate is kept if there was one.
     Cancelled,
 }
 
 impl Status {
+    /// All of them, in the order of a job's life.
     pub const ALL: [Self; 6] = [
         Self::Queued,
         Self::Running,
@@ -51,10 +58,12 @@ impl Status {
         }
     }
 
+    /// Whether it never changes again.
     pub fn is_over(self) -> bool {
         matches!(self, Self::Succeeded | Self::Failed | Self::Cancelled)
     }
 
+    /// As it is written in answers.
     pub fn name(self) -> &'static str {
         match self {
             Self::Queued => "queued",

@@ -9,26 +9,30 @@ use super::program::{Program, Slots};
 /// The coefficients of affine equations and their derivatives by the parameters; those that are zero for any
 /// θ are left out.
 #[derive(Clone, Debug)]
-pub struct Affine {
+pub(crate) struct Affine {
     /// Depends on θ alone: result i is the coefficient `entries[i]`.
-    pub program: Program,
-    pub entries: Vec<Coefficient>,
+    pub(crate) program: Program,
+    pub(crate) entries: Vec<Coefficient>,
 }
 
 /// Where a coefficient stands.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct Coefficient {
-    pub row: usize,
-    pub factor: Factor,
+pub(crate) struct Coefficient {
+    /// Index of the state whose equation it stands in.
+    pub(crate) row: usize,
+    pub(crate) factor: Factor,
     /// The parameter that the coefficient is differentiated by; none for the coefficient itself.
-    pub parameter: Option<usize>,
+    pub(crate) parameter: Option<usize>,
 }
 
 /// What a coefficient is multiplied with.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Factor {
+pub(crate) enum Factor {
+    /// A state, by index.
     State(usize),
+    /// An input, by index.
     Input(usize),
+    /// Nothing: the coefficient is a term of c.
     One,
 }
 

@@ -189,16 +189,16 @@ struct Builder<'a> {
     names: &'a Names<'a>,
     slots: Slots,
     graph: &'a mut Graph,
-    definitions: Vec<Progress>,
+    definitions: Vec<Visit>,
     /// What equations see of each input.
     inputs: Vec<NodeId>,
 }
 
-/// How far a definition is.
+/// Whether a definition was visited already, on the way through those that need others.
 #[derive(Clone, Copy)]
-enum Progress {
-    Untouched,
-    Started,
+enum Visit {
+    No,
+    Underway,
     Done(NodeId),
 }
 
@@ -225,7 +225,7 @@ impl Builder<'_> {
             let change = self.graph.multiply(rate, delay);
             self.inputs[i] = self.graph.add(self.inputs[i], change);
         }
-        self.definitions = vec![Progress::Untouched; equations.definitions.len()];
+        self.definitions = vec![Visit::No; equations.definitions.len()];
         for i in 0..equations.definitions.len() {
             let mut path = Vec::new();
             self.definition(i, equations, &mut path).map_err(|cycle| {
@@ -237,7 +237,7 @@ impl Builder<'_> {
                 };
                 let first = cycle.first().map_or("?", name);
                 let message = format!(
-                    "the definition needs itself: {}; break the circle",
+                    "the definition depends on itself: {}; break the cycle",
                     cycle.iter().map(name).collect::<Vec<_>>().join(" -> ")
                 );
                 vec![Fault::new(
@@ -271,14 +271,14 @@ impl Builder<'_> {
         path: &mut Vec<usize>,
     ) -> Result<(), Vec<usize>> {
         match self.definitions[i] {
-            Progress::Done(_) => return Ok(()),
-            Progress::Started => {
+            Visit::Done(_) => return Ok(()),
+            Visit::Underway => {
                 let start = path.iter().position(|&at| at == i).unwrap_or(0);
                 return Err(path[start..].iter().copied().chain([i]).collect());
             }
-            Progress::Untouched => {}
+            Visit::No => {}
         }
-        self.definitions[i] = Progress::Started;
+        self.definitions[i] = Visit::Underway;
         path.push(i);
         for (name, _) in equations.definitions[i].names() {
             if let Some(Meaning::Definition(needed)) = self.names.meaning(name) {
@@ -287,7 +287,7 @@ impl Builder<'_> {
         }
         path.pop();
         let node = self.node(&equations.definitions[i]);
-        self.definitions[i] = Progress::Done(node);
+        self.definitions[i] = Visit::Done(node);
         Ok(())
     }
 
@@ -368,9 +368,9 @@ impl Builder<'_> {
             Some(Meaning::State(i)) => self.graph.symbol(slots.state(i)),
             Some(Meaning::Time) => self.graph.symbol(slots.time()),
             Some(Meaning::Definition(i)) => match self.definitions[i] {
-                Progress::Done(node) => node,
+                Visit::Done(node) => node,
                 // definitions are built before what uses them
-                Progress::Untouched | Progress::Started => self.graph.constant(f64::NAN),
+                Visit::No | Visit::Underway => self.graph.constant(f64::NAN),
             },
             // refused by `read_equation`
             None => self.graph.constant(f64::NAN),

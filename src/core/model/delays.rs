@@ -42,6 +42,7 @@ impl Delays {
         }
     }
 
+    /// Whether nothing is delayed.
     pub fn is_empty(&self) -> bool {
         self.inputs.is_empty() && self.outputs.is_empty()
     }

@@ -73,11 +73,14 @@ pub struct ModelDocument {
     pub outputs: IndexMap<String, Output>,
 }
 
+/// A known number and its unit.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Constant {
+    /// In `unit`.
     #[schema(example = 9.80665)]
     pub value: f64,
+    /// As `kg/m^3`; absent or `-`: a pure number.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     #[schema(example = "m/s^2")]
     pub unit: String,
@@ -85,13 +88,16 @@ pub struct Constant {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "wind_x")]
     pub quantity: Option<PhysicalQuantity>,
+    /// What it is, in words.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
 }
 
+/// A recorded quantity that drives the model.
 #[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Input {
+    /// A unit of the dimension that its channel must have; absent or `-`: a pure number. Equations see SI.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     #[schema(example = "rad")]
     pub unit: String,
@@ -104,13 +110,16 @@ pub struct Input {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "elevator")]
     pub quantity: Option<PhysicalQuantity>,
+    /// What it is, in words.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
 }
 
+/// A state x and its differential equation.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct State {
+    /// A unit of its dimension; its equation must give this dimension per second.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     #[schema(example = "rad")]
     pub unit: String,
@@ -124,32 +133,40 @@ pub struct State {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "angle_of_attack")]
     pub quantity: Option<PhysicalQuantity>,
+    /// What it is, in words.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
 }
 
+/// A named intermediate quantity, a function of time, states, inputs and parameters.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Definition {
+    /// A unit of the dimension that its equation must give.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     #[schema(example = "-")]
     pub unit: String,
+    /// An expression in everything that has a name.
     #[schema(example = "CL0 + CLalpha*alpha")]
     pub equation: String,
     /// What it is, where its name does not say so.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "lift_coefficient")]
     pub quantity: Option<PhysicalQuantity>,
+    /// What it is, in words.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
 }
 
+/// An output y, which is compared with the recorded channel of its name.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Output {
+    /// A unit of the dimension that its equation must give and its channel must have.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     #[schema(example = "rad/s")]
     pub unit: String,
+    /// An expression in everything that has a name.
     #[schema(example = "q + q_bias")]
     pub equation: String,
     /// By how much it is recorded later than it happens, s: an expression in parameters and constants. Negative:
@@ -161,6 +178,7 @@ pub struct Output {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "pitch_rate")]
     pub quantity: Option<PhysicalQuantity>,
+    /// What it is, in words.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
 }
@@ -169,12 +187,16 @@ pub struct Output {
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Parameter {
+    /// The unit of `start`, `lower`, `upper`, `prior` and of the estimate; absent or `-`: a pure number.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     #[schema(example = "1/s")]
     pub unit: String,
+    /// Where the estimation starts from; of a fixed parameter its value.
     pub start: Start,
+    /// The smallest value it may take.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower: Option<f64>,
+    /// The largest value it may take.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub upper: Option<f64>,
     /// A fixed parameter stays at its start value.
@@ -191,6 +213,7 @@ pub struct Parameter {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "airspeed")]
     pub quantity: Option<PhysicalQuantity>,
+    /// What it is, in words.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
 }
@@ -199,6 +222,7 @@ pub struct Parameter {
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Prior {
+    /// The value that is expected.
     #[schema(example = -0.5)]
     pub mean: f64,
     /// Standard deviation, above 0.
@@ -221,15 +245,20 @@ impl Prior {
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(untagged)]
 pub enum Start {
+    /// A number, in the parameter's unit.
     Value(f64),
+    /// An expression in recorded channels; each segment has its own value.
     FromData(String),
 }
 
+/// Whether a parameter has one value or many.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Per {
+    /// One for all maneuvers: a property of the aircraft.
     #[default]
     Job,
+    /// One for each segment: its initial state, its biases, its wind.
     Maneuver,
 }
 

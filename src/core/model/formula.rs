@@ -22,24 +22,45 @@ pub struct ChannelFormula {
     expression: Expression,
 }
 
+/// Why a formula gives no numbers on a recording.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 pub enum FormulaError {
+    /// The text is no expression.
     #[error("'{text}': {source}")]
-    Syntax { text: String, source: SyntaxError },
+    Syntax {
+        /// The formula, shortened where it is long.
+        text: String,
+        /// What is wrong, and where.
+        source: SyntaxError,
+    },
+    /// A name that the recording does not have.
     #[error("'{text}': there is no channel '{channel}'; recorded are {}", known.join(", "))]
     UnknownChannel {
+        /// The formula, shortened where it is long.
         text: String,
+        /// The name.
         channel: String,
+        /// All channels of the recording.
         known: Vec<String>,
     },
+    /// Units that do not agree, as in a sum of an angle and a speed.
     #[error("'{text}': column {column}: {message}")]
     UnitMismatch {
+        /// The formula, shortened where it is long.
         text: String,
+        /// The place in it, from 1.
         column: usize,
+        /// Which units they are.
         message: String,
     },
+    /// A single finite number was asked for, and it gives none.
     #[error("'{text}' gives no number: {why}")]
-    NoNumber { text: String, why: String },
+    NoNumber {
+        /// The formula, shortened where it is long.
+        text: String,
+        /// What is in the way.
+        why: String,
+    },
 }
 
 impl FormulaError {
@@ -123,7 +144,7 @@ impl ChannelFormula {
         match evaluate(&self.expression, on) {
             Value::One(value) if value.is_finite() => Ok(value),
             Value::One(_) => Err(no_number(
-                "a value is missing there, or the arithmetic has none",
+                "a value is missing there, or the arithmetic has no result",
             )),
             Value::Each(_) => Err(no_number(
                 "it varies with the sample; use first(channel) or mean(channel, seconds)",

@@ -3,12 +3,12 @@
 use super::ModelDocument;
 use crate::flight::Fault;
 
-pub const MOST_STATES: usize = 64;
-pub const MOST_INPUTS: usize = 64;
-pub const MOST_OUTPUTS: usize = 64;
-pub const MOST_PARAMETERS: usize = 512;
-pub const MOST_DEFINITIONS: usize = 256;
-pub const MOST_CONSTANTS: usize = 256;
+const MOST_STATES: usize = 64;
+const MOST_INPUTS: usize = 64;
+const MOST_OUTPUTS: usize = 64;
+const MOST_PARAMETERS: usize = 512;
+const MOST_DEFINITIONS: usize = 256;
+const MOST_CONSTANTS: usize = 256;
 
 pub(super) fn check(document: &ModelDocument) -> Vec<Fault> {
     let counts = [

@@ -17,7 +17,7 @@ mod formula;
 mod graph;
 mod instruction;
 mod jacobian;
-pub mod limits;
+mod limits;
 mod names;
 mod native;
 mod operation;
@@ -27,19 +27,21 @@ mod scalar;
 mod trigonometry;
 mod unique;
 
-pub use affine::{Affine, Coefficient, Factor};
+pub(crate) use affine::{Affine, Coefficient, Factor};
 pub use delays::Delays;
 pub use document::{
     Constant, Definition, Input, ModelDocument, Output, Parameter, Per, Prior, Start, State,
 };
-pub use edit::{Added, Edit, EditError, EditKind, Reference};
+pub use edit::{Added, AddedRole, Edit, EditError, EditKind, Edited, Reference};
 pub use formula::{ChannelFormula, FormulaError, Recorded};
 pub use jacobian::Jacobian;
-pub use native::{Native, NativeSteps, Stretch};
+use native::Native;
+pub(crate) use native::{NativeSteps, StepBlock};
 pub use program::{Program, Workspace};
 pub use quantities::{Quantities, Source, Taken};
-pub use scalar::{BLOCK, LANES, Lanes, Scalar};
-pub use unique::unique;
+pub use scalar::Scalar;
+pub(crate) use scalar::{BLOCK, LANES, Lanes};
+pub(crate) use unique::unique;
 
 use std::sync::Arc;
 
@@ -48,35 +50,49 @@ use crate::flight::Unit;
 /// A compiled model: everything in SI, everything that could be wrong checked.
 #[derive(Clone, Debug)]
 pub struct Model {
+    /// What it was compiled from.
     pub document: ModelDocument,
+    /// The inputs u of the document, in its order.
     pub inputs: Vec<Quantity>,
+    /// The states x, in the document's order.
     pub states: Vec<Quantity>,
+    /// The outputs y, in the document's order.
     pub outputs: Vec<Quantity>,
+    /// The parameters, free and fixed, in the document's order.
     pub parameters: Vec<ParameterInfo>,
     /// x0(θ)
     pub initial: Program,
     /// f(x, u, t, θ)
     pub dynamics: Program,
     /// f as A x + B u + c, where it is of this form.
-    pub affine_dynamics: Option<Affine>,
+    pub(crate) affine_dynamics: Option<Affine>,
     /// g(x, u, t, θ)
     pub observation: Program,
+    /// ∂x0/∂θ
     pub initial_jacobian: Jacobian,
+    /// ∂f/∂x and ∂f/∂θ
     pub dynamics_jacobian: Jacobian,
+    /// ∂g/∂x and ∂g/∂θ
     pub observation_jacobian: Jacobian,
+    /// Which inputs and outputs are delayed, and by which functions of θ.
     pub delays: Delays,
     /// The steps of `dynamics` as machine code, for all who share the model.
     native: Arc<Native>,
 }
 
 impl Model {
+    /// Whether f is A x + B u + c with A, B and c functions of θ alone, so that a step is a product with a matrix.
+    pub fn is_affine(&self) -> bool {
+        self.affine_dynamics.is_some()
+    }
+
     /// What its equations see as inputs: those of the document, then the rates of those that are delayed.
-    pub fn driven_inputs(&self) -> usize {
+    pub(crate) fn driven_inputs(&self) -> usize {
         self.inputs.len() + self.delays.inputs.len()
     }
 
     /// Machine code for `steps` that are about to be taken with so many stages each, where there is some.
-    pub fn native(&self, steps: usize, stages: usize) -> Option<&NativeSteps> {
+    pub(crate) fn native(&self, steps: usize, stages: usize) -> Option<&NativeSteps> {
         self.native.steps(&self.dynamics, steps, stages)
     }
 
@@ -89,7 +105,9 @@ impl Model {
 /// A named quantity of a model and the unit its document gives it.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Quantity {
+    /// As equations write it.
     pub name: String,
+    /// The document's unit, and how to get from it to SI.
     pub unit: Unit,
     /// The SI unit in which its values are, as the field writes it: `rad/s`.
     pub si: String,
@@ -98,7 +116,10 @@ pub struct Quantity {
 /// A parameter as the document has it; its numbers are in `unit`.
 #[derive(Clone, PartialEq, Debug)]
 pub struct ParameterInfo {
+    /// As equations write it.
     pub name: String,
+    /// The document's unit, and how to get from it to SI.
     pub unit: Unit,
+    /// Start value, bounds, prior and the rest.
     pub document: Parameter,
 }

@@ -152,6 +152,7 @@ impl Program {
         self.results.len()
     }
 
+    /// Whether there are no results.
     pub fn is_empty(&self) -> bool {
         self.results.is_empty()
     }

@@ -15,33 +15,48 @@ pub trait Scalar:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
+    /// A real number.
     fn from_f64(value: f64) -> Self;
     /// The number without what is infinitely small about it: the real part of a complex one. Of lanes, the first.
     fn real(self) -> f64;
+    /// Sine of an angle in radians.
     fn sin(self) -> Self;
+    /// Cosine of an angle in radians.
     fn cos(self) -> Self;
+    /// Tangent of an angle in radians.
     fn tan(self) -> Self;
+    /// Inverse sine, in radians.
     fn asin(self) -> Self;
+    /// Inverse cosine, in radians.
     fn acos(self) -> Self;
+    /// Inverse tangent, in radians.
     fn atan(self) -> Self;
+    /// Hyperbolic tangent.
     fn tanh(self) -> Self;
+    /// Exponential.
     fn exp(self) -> Self;
+    /// Natural logarithm.
     fn ln(self) -> Self;
+    /// Square root.
     fn sqrt(self) -> Self;
+    /// Absolute value.
     fn abs(self) -> Self;
     /// -1, 0 or 1.
     fn sign(self) -> Self;
+    /// The number raised to `exponent`.
     fn power(self, exponent: Self) -> Self;
+    /// The angle of the direction (`x`, self), in radians.
     fn atan2(self, x: Self) -> Self;
     /// 1 where self < other, else 0.
     fn less(self, other: Self) -> Self;
+    /// 1 where self ≤ other, else 0.
     fn less_or_equal(self, other: Self) -> Self;
     /// `yes` where self is not 0, else `no`.
     fn select(self, yes: Self, no: Self) -> Self;
     /// self * factor + addend, rounded once where the number is real: the same on every machine, and one
     /// instruction on those made since 2013. Where there is none it is slow, but the numbers are the same.
     fn multiply_add(self, factor: Self, addend: Self) -> Self;
-    /// For those who are faster with some of them.
+    /// The numbers by their kind: some work is faster on one kind than on others.
     #[inline(always)]
     fn told_apart(numbers: &mut [Self]) -> Numbers<'_, Self> {
         Numbers::Other(numbers)
@@ -204,10 +219,10 @@ pub(super) fn sines_and_cosines<const COUNT: usize>(angles: [f64; COUNT]) -> [[f
 }
 
 /// How many samples are evaluated side by side.
-pub const LANES: usize = 16;
+pub(crate) const LANES: usize = 16;
 
 /// How many samples are simulated at a time.
-pub const BLOCK: usize = 4 * LANES;
+pub(crate) const BLOCK: usize = 4 * LANES;
 
 /// Samples side by side: one instruction of a program serves all of them.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,7 +8,7 @@ use indexmap::IndexMap;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 
 /// For `#[serde(deserialize_with)]`: refuses a key that stands twice.
-pub fn unique<'de, T, D>(deserializer: D) -> Result<IndexMap<String, T>, D::Error>
+pub(crate) fn unique<'de, T, D>(deserializer: D) -> Result<IndexMap<String, T>, D::Error>
 where
     T: Deserialize<'de>,
     D: Deserializer<'de>,

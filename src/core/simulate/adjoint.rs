@@ -18,13 +18,13 @@
 use super::method::{InputInterpolation, Integrator, Stage};
 use super::segment::Segment;
 use super::side_by_side::{SPAN, SideBySide};
+use super::simulation::{Diverged, initial_state};
 use super::stepper::{Stepper, between};
-use super::trajectory::{Diverged, initial_state};
 use crate::model::{LANES, Lanes, Model, Program, Workspace};
 
 /// States on the way forward, one for each block, from which the way back starts anew.
 #[derive(Clone, Debug, Default)]
-pub struct Checkpoints {
+pub(crate) struct Checkpoints {
     elapsed: Vec<f64>,
     /// By block, then state.
     states: Vec<f64>,
@@ -32,13 +32,13 @@ pub struct Checkpoints {
 
 impl Checkpoints {
     /// Bytes held.
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         size_of_val(self.elapsed.as_slice()) + size_of_val(self.states.as_slice())
     }
 }
 
 /// The machinery for one model, reusable for any segment, θ and ȳ.
-pub struct Adjoint<'m> {
+pub(crate) struct Adjoint<'m> {
     model: &'m Model,
     interpolation: InputInterpolation,
     stages: &'static [Stage],
@@ -65,7 +65,8 @@ pub struct Adjoint<'m> {
 }
 
 impl<'m> Adjoint<'m> {
-    pub fn new(
+    /// Machinery with room for one block.
+    pub(crate) fn new(
         model: &'m Model,
         integrator: Integrator,
         interpolation: InputInterpolation,
@@ -96,7 +97,7 @@ impl<'m> Adjoint<'m> {
     ///
     /// # Errors
     /// The state left the range of numbers; samples up to the end of a block before that were handed over.
-    pub fn forward(
+    pub(crate) fn forward(
         &mut self,
         segment: &Segment,
         parameters: &[f64],
@@ -129,7 +130,7 @@ impl<'m> Adjoint<'m> {
 
     /// The way back. `seed` is given each sample with its outputs and answers with ȳ; `gradient`, of all
     /// parameters of the model, is added to. `checkpoints` are those of the way forward with the same θ.
-    pub fn reverse(
+    pub(crate) fn reverse(
         &mut self,
         segment: &Segment,
         parameters: &[f64],
@@ -320,7 +321,7 @@ impl<'m> Adjoint<'m> {
     }
 
     /// Bytes of the block, without the checkpoints.
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         let own = [&self.stage_states, &self.slopes, &self.seeds];
         let own: usize = own.iter().map(|all| size_of_val(all.as_slice())).sum();
         own + self.dynamics.bytes() + self.observation.bytes() + self.outputs.bytes()

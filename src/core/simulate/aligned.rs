@@ -12,14 +12,14 @@ struct Line([u8; 64]);
 
 /// A slice of arrays of numbers, each of whole cache lines, that begins with one.
 #[derive(Clone)]
-pub struct Aligned<T> {
+pub(crate) struct Aligned<T> {
     lines: Vec<Line>,
     arrays: PhantomData<T>,
 }
 
 impl<T: Pod> Aligned<T> {
     /// So many arrays of zeros.
-    pub fn zeros(count: usize) -> Self {
+    pub(crate) fn zeros(count: usize) -> Self {
         const { assert!(size_of::<T>().is_multiple_of(size_of::<Line>())) };
         let lines = count * (size_of::<T>() / size_of::<Line>());
         Self {

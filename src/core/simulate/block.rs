@@ -8,6 +8,7 @@ use crate::model::BLOCK;
 pub struct Block<'a> {
     /// Index of the first sample.
     pub first: usize,
+    /// Number of samples.
     pub len: usize,
     /// By output.
     pub(super) outputs: &'a [[f64; BLOCK]],

@@ -7,11 +7,11 @@ use super::segment::Segment;
 use crate::model::Model;
 
 /// Most samples that an input or output may be delayed by, either way.
-pub const MOST_DELAY: f64 = 1000.0;
+pub(crate) const MOST_DELAY: f64 = 1000.0;
 
 /// The segment with its delayed inputs u replaced by v = u(t - D0) - ρ D0, and the ρ = -du/dt at t - D0 behind all
 /// inputs, where D0 = D(θ); see [`crate::model::Delays`]. A model without delayed inputs sees what is recorded.
-pub fn driven<'s>(model: &Model, segment: &'s Segment, delays: &[f64]) -> Cow<'s, Segment> {
+pub(crate) fn driven<'s>(model: &Model, segment: &'s Segment, delays: &[f64]) -> Cow<'s, Segment> {
     if model.delays.inputs.is_empty() || segment.is_empty() {
         return Cow::Borrowed(segment);
     }
@@ -39,7 +39,11 @@ pub fn driven<'s>(model: &Model, segment: &'s Segment, delays: &[f64]) -> Cow<'s
 
 /// The first delay of `model` that is out of bounds in a segment: none may be longer than [`MOST_DELAY`] samples,
 /// or no number. By its place in [`crate::model::Delays::at`].
-pub fn delay_out_of_bounds(model: &Model, segment: &Segment, parameters: &[f64]) -> Option<usize> {
+pub(crate) fn delay_out_of_bounds(
+    model: &Model,
+    segment: &Segment,
+    parameters: &[f64],
+) -> Option<usize> {
     if model.delays.is_empty() {
         return None;
     }

@@ -1,7 +1,7 @@
 //! The results of a program over a block of samples, evaluated side by side.
 
 use super::aligned::Aligned;
-use super::course::Course;
+use super::trajectory::Trajectory;
 use crate::model::{BLOCK, LANES, Lanes, Program, Workspace};
 
 /// Results of one program, by stage of the integration scheme and sample of the block.
@@ -44,12 +44,12 @@ impl<'m> Linearised<'m> {
     }
 
     /// Evaluates the `len` samples of a block at one stage.
-    pub(super) fn evaluate(&mut self, stage: usize, len: usize, course: &Course<'_>) {
+    pub(super) fn evaluate(&mut self, stage: usize, len: usize, trajectory: &Trajectory<'_>) {
         if self.varying.is_empty() {
             return;
         }
         for group in (0..len).step_by(LANES) {
-            course.place(stage, group, self.program, &mut self.workspace);
+            trajectory.place(stage, group, self.program, &mut self.workspace);
             self.program.run(&mut self.workspace);
             for &i in &self.varying {
                 let result = self.program.result(&self.workspace, i);

@@ -2,12 +2,12 @@
 
 use super::method::{InputInterpolation, Integrator};
 use super::segment::Segment;
+use super::simulation::initial_state;
 use super::stepper::Stepper;
-use super::trajectory::initial_state;
 use crate::model::{Model, Scalar, Workspace};
 
 /// The machinery, shared by any number of simulations that go along side by side.
-pub struct March<'m, T> {
+pub(crate) struct March<'m, T> {
     model: &'m Model,
     stepper: Stepper<'m, T>,
     observation: Workspace<T>,
@@ -16,20 +16,20 @@ pub struct March<'m, T> {
 
 /// How far one simulation has come: the sample that is next, and the state there.
 #[derive(Clone, Debug)]
-pub struct Standing<T> {
+pub(crate) struct Standing<T> {
     next: usize,
     elapsed: f64,
     state: Vec<T>,
 }
 
 impl Standing<f64> {
-    pub fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         self.state.iter().all(|x| x.is_finite())
     }
 }
 
 impl<'m, T: Scalar> March<'m, T> {
-    pub fn new(
+    pub(crate) fn new(
         model: &'m Model,
         integrator: Integrator,
         interpolation: InputInterpolation,
@@ -43,7 +43,7 @@ impl<'m, T: Scalar> March<'m, T> {
     }
 
     /// The start of a simulation with `parameters`, all of the model's, SI.
-    pub fn start(&self, parameters: &[T]) -> Standing<T> {
+    pub(crate) fn start(&self, parameters: &[T]) -> Standing<T> {
         Standing {
             next: 0,
             elapsed: 0.0,
@@ -53,7 +53,7 @@ impl<'m, T: Scalar> March<'m, T> {
 
     /// Goes on to sample `until` (not included) and hands the outputs of each sample to `sink`.
     /// `parameters` are those that the simulation was started with.
-    pub fn advance(
+    pub(crate) fn advance(
         &mut self,
         standing: &mut Standing<T>,
         segment: &Segment,

@@ -30,7 +30,7 @@ pub enum InputInterpolation {
 /// The stages of an explicit Runge-Kutta method in which each stage builds on the one before it:
 /// X_s = x + h advance_s K_(s-1), K_s = f(X_s, u(t + h node_s)), x' = x + h Σ weight_s K_s.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Stage {
+pub(crate) struct Stage {
     pub advance: f64,
     pub node: f64,
     pub weight: f64,

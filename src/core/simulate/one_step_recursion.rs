@@ -4,10 +4,10 @@ use multiversion::multiversion;
 
 use super::aligned::Aligned;
 use super::columns::Columns;
-use super::course::Course;
 use super::one_step::OneStep;
 use super::pack::{PACK, Pack, multiply_add};
 use super::segment::Segment;
+use super::trajectory::Trajectory;
 use crate::model::BLOCK;
 
 #[derive(Default)]
@@ -27,7 +27,7 @@ impl OneStepRecursion {
         &mut self,
         one_step: &OneStep<'_>,
         h: f64,
-        course: &Course<'_>,
+        trajectory: &Trajectory<'_>,
         columns: &Columns,
         width: usize,
     ) {
@@ -38,7 +38,7 @@ impl OneStepRecursion {
         self.change = Aligned::zeros(width * size);
         for (column, &parameter) in columns.dynamic.iter().enumerate() {
             let derivative =
-                one_step.derivative(parameter, h, course.stages, course.interpolation());
+                one_step.derivative(parameter, h, trajectory.stages, trajectory.interpolation());
             let to = &mut self.change[column / PACK * size..];
             for (to, value) in to.iter_mut().zip(derivative) {
                 to[column % PACK] = value;
@@ -54,7 +54,7 @@ impl OneStepRecursion {
         segment: &Segment,
         first: usize,
         steps: usize,
-        course: &Course<'_>,
+        trajectory: &Trajectory<'_>,
         rows: &mut [Pack],
     ) {
         let inputs = segment.inputs.len();
@@ -64,7 +64,7 @@ impl OneStepRecursion {
                 .zip(values)
                 .for_each(|(to, &value)| *to = value);
         };
-        for (i, values) in course.stage_states[..self.states].iter().enumerate() {
+        for (i, values) in trajectory.stage_states[..self.states].iter().enumerate() {
             put(i, values);
         }
         for (j, samples) in segment.inputs.iter().enumerate() {

@@ -1,10 +1,10 @@
-//! Outputs alone, along the same course as [`super::Sensitivities`]: the same numbers, for less work.
+//! Outputs alone, along the same trajectory as [`super::Sensitivities`]: the same numbers, for less work.
 
-use super::course::Course;
 use super::linearised::Linearised;
 use super::method::{InputInterpolation, Integrator};
 use super::segment::Segment;
-use super::trajectory::{Diverged, simulate};
+use super::simulation::{Diverged, simulate};
+use super::trajectory::Trajectory;
 use crate::model::{BLOCK, Model};
 
 /// The machinery for one model, reusable for any segment and θ.
@@ -12,11 +12,12 @@ pub struct Outputs<'m> {
     model: &'m Model,
     integrator: Integrator,
     interpolation: InputInterpolation,
-    course: Course<'m>,
+    trajectory: Trajectory<'m>,
     outputs: Linearised<'m>,
 }
 
 impl<'m> Outputs<'m> {
+    /// Machinery with room for one block of samples.
     pub fn new(
         model: &'m Model,
         integrator: Integrator,
@@ -26,7 +27,7 @@ impl<'m> Outputs<'m> {
             model,
             integrator,
             interpolation,
-            course: Course::new(model, integrator, interpolation),
+            trajectory: Trajectory::new(model, integrator, interpolation),
             outputs: Linearised::new(&model.observation, 1),
         }
     }
@@ -46,12 +47,12 @@ impl<'m> Outputs<'m> {
             self.run_delayed(segment, parameters, sink);
             return Ok(());
         }
-        self.course.start(segment, parameters);
+        self.trajectory.start(segment, parameters);
         self.outputs.set_parameters(parameters);
         for first in (0..segment.len()).step_by(BLOCK) {
             let len = BLOCK.min(segment.len() - first);
-            self.course.advance(segment, first, len)?;
-            self.outputs.evaluate(0, len, &self.course);
+            self.trajectory.advance(segment, first, len)?;
+            self.outputs.evaluate(0, len, &self.trajectory);
             let outputs: Vec<&[f64]> = (0..self.outputs.results())
                 .map(|output| &self.outputs.over_block(0, output)[..len])
                 .collect();

@@ -3,9 +3,11 @@
 /// Inputs and measured outputs of one model over one continuous time history, SI.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Segment {
+    /// What tables call it: the maneuver's label, with a number where gaps cut the maneuver.
     pub label: String,
     /// Recorded time of each sample, s.
     pub time: Vec<f64>,
+    /// From each sample to the next.
     pub steps: Steps,
     /// By input, then by sample.
     pub inputs: Vec<Vec<f64>>,
@@ -16,6 +18,7 @@ pub struct Segment {
 /// The lengths of the integration steps, s.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Steps {
+    /// The same length everywhere.
     Even(f64),
     /// One step for each pair of neighbouring samples.
     Uneven(Vec<f64>),
@@ -38,6 +41,7 @@ impl Segment {
         self.time.len()
     }
 
+    /// Whether it has no samples.
     pub fn is_empty(&self) -> bool {
         self.time.is_empty()
     }

@@ -13,7 +13,6 @@
 
 use super::block::Block;
 use super::columns::Columns;
-use super::course::Course;
 use super::delay_line::DelayLine;
 use super::delayed_inputs::driven;
 use super::linearised::Linearised;
@@ -21,15 +20,16 @@ use super::method::{InputInterpolation, Integrator};
 use super::output_rows::OutputRows;
 use super::pack::Pack;
 use super::segment::Segment;
+use super::simulation::Diverged;
 use super::state_sensitivities::StateSensitivities;
-use super::trajectory::Diverged;
+use super::trajectory::Trajectory;
 use crate::model::{BLOCK, Model};
 
 /// The machinery for one model and one set of columns, reusable for any segment and θ.
 pub struct Sensitivities<'m> {
     model: &'m Model,
     columns: &'m Columns,
-    course: Course<'m>,
+    trajectory: Trajectory<'m>,
     dynamics: Linearised<'m>,
     observation: Linearised<'m>,
     outputs: Linearised<'m>,
@@ -40,18 +40,19 @@ pub struct Sensitivities<'m> {
 }
 
 impl<'m> Sensitivities<'m> {
+    /// Machinery with room for one block of samples; `columns` say by which parameters outputs are differentiated.
     pub fn new(
         model: &'m Model,
         columns: &'m Columns,
         integrator: Integrator,
         interpolation: InputInterpolation,
     ) -> Self {
-        let course = Course::new(model, integrator, interpolation);
-        let stages = course.stages.len();
+        let trajectory = Trajectory::new(model, integrator, interpolation);
+        let stages = trajectory.stages.len();
         Self {
             model,
             columns,
-            course,
+            trajectory,
             dynamics: Linearised::new(&model.dynamics_jacobian.program, stages),
             observation: Linearised::new(&model.observation_jacobian.program, 1),
             outputs: Linearised::new(&model.observation, 1),
@@ -77,8 +78,8 @@ impl<'m> Sensitivities<'m> {
         if let Some(line) = &mut self.delay_line {
             line.start(segment, parameters, &delays);
         }
-        self.course.start(segment, parameters);
-        if self.course.one_step().is_none() {
+        self.trajectory.start(segment, parameters);
+        if self.trajectory.one_step().is_none() {
             self.dynamics.set_parameters(parameters);
         }
         self.observation.set_parameters(parameters);
@@ -87,22 +88,22 @@ impl<'m> Sensitivities<'m> {
             self.model,
             self.columns,
             parameters,
-            &self.course,
+            &self.trajectory,
             &self.dynamics,
         );
         self.rows.place(true, &self.observation, BLOCK);
         for first in (0..segment.len()).step_by(BLOCK) {
             let len = BLOCK.min(segment.len() - first);
-            self.course.advance(segment, first, len)?;
-            if self.course.one_step().is_none() {
-                for stage in 0..self.course.stages.len() {
-                    self.dynamics.evaluate(stage, len, &self.course);
+            self.trajectory.advance(segment, first, len)?;
+            if self.trajectory.one_step().is_none() {
+                for stage in 0..self.trajectory.stages.len() {
+                    self.dynamics.evaluate(stage, len, &self.trajectory);
                 }
             }
-            self.observation.evaluate(0, len, &self.course);
-            self.outputs.evaluate(0, len, &self.course);
+            self.observation.evaluate(0, len, &self.trajectory);
+            self.outputs.evaluate(0, len, &self.trajectory);
             self.states
-                .sweep(segment, (first, len), &self.course, &self.dynamics);
+                .sweep(segment, (first, len), &self.trajectory, &self.dynamics);
             self.rows.place(false, &self.observation, len);
             self.rows.form(
                 len,

@@ -2,12 +2,12 @@
 
 use super::aligned::Aligned;
 use super::columns::Columns;
-use super::course::Course;
 use super::linearised::Linearised;
 use super::one_step_recursion::OneStepRecursion;
 use super::pack::{PACK, Pack, packs};
 use super::recursion::Recursion;
 use super::segment::Segment;
+use super::trajectory::Trajectory;
 use super::transition_recursion::TransitionRecursion;
 use crate::model::{BLOCK, Model};
 
@@ -65,7 +65,7 @@ impl StateSensitivities {
         model: &Model,
         columns: &Columns,
         parameters: &[f64],
-        course: &Course<'_>,
+        trajectory: &Trajectory<'_>,
         dynamics: &Linearised<'_>,
     ) {
         let jacobian = &model.initial_jacobian;
@@ -80,9 +80,10 @@ impl StateSensitivities {
                 row.as_flattened_mut()[column] = jacobian.program.result(&workspace, result);
             }
         }
-        match (course.one_step(), &mut self.general) {
+        match (trajectory.one_step(), &mut self.general) {
             (Some((one_step, h)), _) => {
-                self.one_step.set(one_step, h, course, columns, self.width);
+                self.one_step
+                    .set(one_step, h, trajectory, columns, self.width);
             }
             (None, General::StageByStage(stages)) => stages.place(true, dynamics, BLOCK),
             (None, General::Composed(_)) => {}
@@ -94,14 +95,14 @@ impl StateSensitivities {
         &mut self,
         segment: &Segment,
         (first, len): (usize, usize),
-        course: &Course<'_>,
+        trajectory: &Trajectory<'_>,
         dynamics: &Linearised<'_>,
     ) {
         let steps = len.min(segment.len() - 1 - first);
-        let (stages, range, rows) = (course.stages, (first, steps), &mut self.rows);
-        match (course.one_step(), &mut self.general) {
+        let (stages, range, rows) = (trajectory.stages, (first, steps), &mut self.rows);
+        match (trajectory.one_step(), &mut self.general) {
             (Some((one_step, _)), _) => {
-                (self.one_step).sweep(one_step, segment, first, steps, course, rows);
+                (self.one_step).sweep(one_step, segment, first, steps, trajectory, rows);
             }
             (None, General::StageByStage(general)) => {
                 general.place(false, dynamics, steps);
@@ -153,22 +154,22 @@ mod tests {
 
     /// ∂x/∂θ behind each sample.
     fn rows(model: &Model, columns: &Columns, parameters: &[f64], general: General) -> Vec<Pack> {
-        let mut course = Course::new(model, Integrator::Rk4, InputInterpolation::Linear);
-        let stages = course.stages.len();
+        let mut trajectory = Trajectory::new(model, Integrator::Rk4, InputInterpolation::Linear);
+        let stages = trajectory.stages.len();
         let mut dynamics = Linearised::new(&model.dynamics_jacobian.program, stages);
         let mut states = StateSensitivities::new(model, columns, stages);
         states.general = general;
         let segment = segment(model);
-        course.start(&segment, parameters);
+        trajectory.start(&segment, parameters);
         dynamics.set_parameters(parameters);
-        states.start(model, columns, parameters, &course, &dynamics);
+        states.start(model, columns, parameters, &trajectory, &dynamics);
         let sample = states.states * states.width;
         let mut all = Vec::new();
         for first in (0..SAMPLES).step_by(BLOCK) {
             let len = BLOCK.min(SAMPLES - first);
-            course.advance(&segment, first, len).expect("bounded");
-            (0..stages).for_each(|stage| dynamics.evaluate(stage, len, &course));
-            states.sweep(&segment, (first, len), &course, &dynamics);
+            trajectory.advance(&segment, first, len).expect("bounded");
+            (0..stages).for_each(|stage| dynamics.evaluate(stage, len, &trajectory));
+            states.sweep(&segment, (first, len), &trajectory, &dynamics);
             all.extend_from_slice(&states.rows[..len * sample]);
             states.carry_over();
         }

@@ -5,7 +5,7 @@ use super::segment::Segment;
 use crate::model::{Model, Program, Scalar, Workspace};
 
 /// Steps the state of a model along a segment and keeps the states at which f was evaluated.
-pub struct Stepper<'m, T> {
+pub(crate) struct Stepper<'m, T> {
     dynamics: &'m Program,
     workspace: Workspace<T>,
     pub stages: &'static [Stage],
@@ -17,7 +17,7 @@ pub struct Stepper<'m, T> {
 }
 
 impl<'m, T: Scalar> Stepper<'m, T> {
-    pub fn new(
+    pub(crate) fn new(
         model: &'m Model,
         integrator: Integrator,
         interpolation: InputInterpolation,
@@ -36,7 +36,7 @@ impl<'m, T: Scalar> Stepper<'m, T> {
         }
     }
 
-    pub fn set_parameters(&mut self, parameters: &[T]) {
+    pub(crate) fn set_parameters(&mut self, parameters: &[T]) {
         self.dynamics
             .set_parameters(&mut self.workspace, parameters);
     }
@@ -47,7 +47,7 @@ impl<'m, T: Scalar> Stepper<'m, T> {
     }
 
     /// From sample `k`, at `elapsed` seconds since the start, to the next.
-    pub fn step(&mut self, segment: &Segment, k: usize, elapsed: f64, state: &mut [T]) {
+    pub(crate) fn step(&mut self, segment: &Segment, k: usize, elapsed: f64, state: &mut [T]) {
         let n = state.len();
         let h = segment.steps.length(k);
         self.sum.fill(T::from_f64(0.0));
@@ -89,7 +89,7 @@ impl<'m, T: Scalar> Stepper<'m, T> {
 
 /// The value between two samples, `share` of the way to the later one.
 #[inline(always)]
-pub fn between(now: f64, next: f64, share: f64) -> f64 {
+pub(crate) fn between(now: f64, next: f64, share: f64) -> f64 {
     // written so that the ends and the middle are exact
     if share == 0.0 {
         now

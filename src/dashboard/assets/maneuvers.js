@@ -94,7 +94,7 @@ class Chosen {
     try {
       return JSON.stringify(JSON.parse(text));
     } catch (error) {
-      throw new Error(`The mapping is no JSON: ${error.message}`);
+      throw new Error(`The mapping is not JSON: ${error.message}`);
     }
   }
 

@@ -216,7 +216,7 @@ byId('json').addEventListener('input', () => {
     JSON.parse(byId('json').value);
     byId('json-fault').textContent = '';
   } catch (error) {
-    byId('json-fault').textContent = `This is no JSON: ${error.message}`;
+    byId('json-fault').textContent = `This is not JSON: ${error.message}`;
   }
 });
 
@@ -225,7 +225,7 @@ byId('json').addEventListener('change', async () => {
   try {
     next = JSON.parse(byId('json').value);
   } catch (error) {
-    byId('json-fault').textContent = `This is no JSON: ${error.message}`;
+    byId('json-fault').textContent = `This is not JSON: ${error.message}`;
     return;
   }
   try {

@@ -1,5 +1,4 @@
 //! Writing an answer: its form, its caching, and no more rows than are wanted.
 
-pub(super) mod csv;
 pub(super) mod decimate;
 pub(super) mod format;

@@ -131,7 +131,7 @@ async fn make_key(
     JsonBody { value: order, .. }: JsonBody<KeyOrder>,
 ) -> Result<Response, Problem> {
     if service.caller.key.is_none() {
-        let detail = "there are no keys yet; the first is made where the database is (trimtab key new --scope admin), or nobody might have one that makes others";
+        let detail = "there are no keys yet; make the first where the database is (trimtab key new --scope admin), so that somebody has one that makes others";
         return Err(Problem::new(Code::NoKeyYet, detail));
     }
     let faults = faults(&order, &service.caller);
@@ -171,7 +171,7 @@ fn faults(order: &KeyOrder, caller: &Caller) -> Vec<Fault> {
         order.scopes.contains(&Scope::Metrics) && !caller.scopes.contains(&Scope::Metrics);
     if is_beyond {
         let message =
-            "'metrics' is given by who has it, or where the database is (trimtab key new)";
+            "'metrics' can be given by who has it, or where the database is (trimtab key new)";
         wrong("/scopes", "out_of_range", message.to_string());
     }
     if order
@@ -236,7 +236,7 @@ pub const fn a_day() -> u32 {
     request_body = Rotation,
     responses(
         (status = 201, description = "The new key.", body = MadeKey),
-        (status = 404, description = "`unknown_key`: there is none, or it is good no more.", body = ProblemDocument, content_type = "application/problem+json"),
+        (status = 404, description = "`unknown_key`: there is none, or it is no longer valid.", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 422, description = "`invalid_key`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn rotate_key(
@@ -259,8 +259,7 @@ fn key_id(text: &str) -> Result<Uuid, Problem> {
 
 fn unknown_key(id: &str) -> Problem {
     let id: String = id.chars().take(80).collect();
-    let detail = format!(
-        "the project has no key '{id}' that is good; a key goes by its id, not by its secret"
-    );
+    let detail =
+        format!("the project has no valid key '{id}'; name a key by its id, not by its secret");
     Problem::new(Code::UnknownKey, detail)
 }

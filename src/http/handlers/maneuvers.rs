@@ -162,7 +162,7 @@ async fn upload_maneuver(
     );
     if stored >= limit {
         let detail = format!(
-            "the project's maneuvers take {stored} bytes, and {limit} are allowed (--max-stored-bytes); delete those that are needed no more"
+            "the project's maneuvers take {stored} bytes, and {limit} are allowed (--max-stored-bytes); delete those that are no longer needed"
         );
         return Err(Problem::new(Code::QuotaExceeded, detail));
     }

@@ -37,7 +37,7 @@ pub(crate) struct ModelResource {
     /// What a job says in `model`: a catalog name, or the id of a stored model.
     #[schema(example = "short-period")]
     id: String,
-    origin: Origin,
+    origin: ModelOrigin,
     #[schema(example = "short-period")]
     name: String,
     #[schema(example = "Longitudinal short period, two states")]
@@ -56,7 +56,8 @@ pub(crate) struct ModelResource {
 
 #[derive(Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Origin {
+#[schema(as = Origin)]
+pub(crate) enum ModelOrigin {
     /// Comes with Trimtab.
     Catalog,
     /// Was stored here.
@@ -105,8 +106,8 @@ impl From<Listed> for ModelResource {
             },
             id: model.id,
             origin: match model.created {
-                Some(_) => Origin::Stored,
-                None => Origin::Catalog,
+                Some(_) => ModelOrigin::Stored,
+                None => ModelOrigin::Catalog,
             },
             created: model.created,
             inputs: document.inputs.into_keys().collect(),
@@ -269,8 +270,9 @@ async fn get_model(
 
 pub(crate) fn unknown_model(id: &str) -> Problem {
     let id: String = id.chars().take(80).collect();
-    let detail =
-        format!("there is no model '{id}'; the catalog goes by name, stored models by their id");
+    let detail = format!(
+        "there is no model '{id}'; name a catalog model by its name, a stored one by its id"
+    );
     Problem::new(Code::UnknownModel, detail)
 }
 

@@ -41,7 +41,8 @@ const SHOWN: usize = 100;
 
 /// How a job may end.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema)]
-enum Ending {
+#[schema(as = Ending)]
+enum EndEvent {
     #[serde(rename = "job.succeeded")]
     Succeeded,
     #[serde(rename = "job.failed")]
@@ -50,7 +51,7 @@ enum Ending {
     Cancelled,
 }
 
-impl Ending {
+impl EndEvent {
     fn all() -> BTreeSet<Self> {
         [Self::Succeeded, Self::Failed, Self::Cancelled].into()
     }
@@ -71,7 +72,7 @@ struct WebhookResource {
     id: Uuid,
     #[schema(example = "https://lab.example/hooks/trimtab")]
     url: String,
-    #[schema(value_type = Vec<Ending>)]
+    #[schema(value_type = Vec<EndEvent>)]
     events: Vec<String>,
     created: String,
     /// Since when the receiver is told nothing: it answered 410.
@@ -117,9 +118,9 @@ struct WebhookOrder {
     )]
     url: String,
     /// What to tell; absent: every end.
-    #[serde(default = "Ending::all")]
+    #[serde(default = "EndEvent::all")]
     #[schema(min_items = 1)]
-    events: BTreeSet<Ending>,
+    events: BTreeSet<EndEvent>,
 }
 
 /// List the project's webhooks, newest first.

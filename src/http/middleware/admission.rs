@@ -12,7 +12,7 @@ use crate::http::caller::{Caller, needed};
 use crate::http::code::Code;
 use crate::http::problem::Problem;
 use crate::http::service::{Server, Service};
-use crate::store::Shown;
+use crate::store::KeyCheck;
 
 /// Lets a request through to its handler if it may, and tells the handler who sent it.
 pub(crate) async fn admit(
@@ -58,7 +58,7 @@ async fn identify(server: &Server, headers: &HeaderMap, is_page: bool) -> Result
         return Ok(Caller::without_key());
     };
     let refused = match server.store.look_up_key(&key).await? {
-        Shown::Good(record) => {
+        KeyCheck::Good(record) => {
             server.rates.check(record.id)?;
             return Ok(Caller {
                 project: record.project,
@@ -67,9 +67,9 @@ async fn identify(server: &Server, headers: &HeaderMap, is_page: bool) -> Result
                 max_priority: record.max_priority,
             });
         }
-        Shown::Unknown => "there is no such key; 'trimtab key new' makes one",
-        Shown::Revoked => "the key was revoked",
-        Shown::Expired => "the key has expired; 'trimtab key new' makes another",
+        KeyCheck::Unknown => "there is no such key; 'trimtab key new' makes one",
+        KeyCheck::Revoked => "the key was revoked",
+        KeyCheck::Expired => "the key has expired; 'trimtab key new' makes another",
     };
     Err(challenge(refused, is_page))
 }

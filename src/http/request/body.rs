@@ -9,7 +9,7 @@ use tokio::time::{Instant, timeout, timeout_at};
 
 use crate::http::code::Code;
 use crate::http::problem::Problem;
-use crate::http::room::{Room, Taken};
+use crate::http::room::{Occupied, Room};
 
 /// A body of which nothing comes for this long is given up.
 const IDLE: Duration = Duration::from_secs(30);
@@ -23,7 +23,7 @@ const DISCARD: Duration = Duration::from_secs(5);
 /// A body, and its room: to be kept as long as the bytes are.
 pub(crate) struct Received {
     pub bytes: Vec<u8>,
-    pub room: Taken,
+    pub room: Occupied,
 }
 
 /// The whole body, if it is no longer than `limit` bytes. No more than that is ever held.
@@ -37,7 +37,7 @@ pub(crate) async fn read(
     if let Some(encoding) = headers.get(header::CONTENT_ENCODING)
         && encoding != "identity"
     {
-        let detail = "bodies are read as they are; send it without Content-Encoding";
+        let detail = "encoded bodies are not read; send it without Content-Encoding";
         return Err(Problem::new(Code::UnsupportedMediaType, detail));
     }
     let announced = headers.get(header::CONTENT_LENGTH);
@@ -50,7 +50,7 @@ pub(crate) async fn read(
         return Err(too_large(limit, setting));
     }
     let mut bytes = Vec::new();
-    let mut taken = Taken::default();
+    let mut taken = Occupied::default();
     let deadline = Instant::now() + WHOLE;
     let too_slow = || {
         let detail = format!(

@@ -73,7 +73,7 @@ pub(crate) fn refuse_nul(text: &str) -> Result<(), Problem> {
     match found.map(|(at, _)| at).find(|at| is_escape(*at)) {
         Some(at) => {
             let message = format!(
-                "byte {}: the character U+0000 is in no text here; leave it out",
+                "byte {}: the character U+0000 is not allowed; leave it out",
                 at + 1
             );
             Err(Problem::at(Code::WrongShape, "", message))

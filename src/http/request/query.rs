@@ -18,7 +18,7 @@ impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
 
     async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Problem> {
         if parts.uri.query().is_some_and(|query| query.contains("%00")) {
-            let detail = "the query has the character U+0000 (%00), which no text here has";
+            let detail = "the query has the character U+0000 (%00), which is not allowed";
             return Err(Problem::new(Code::InvalidQuery, detail));
         }
         match Query::try_from_uri(&parts.uri) {
@@ -44,7 +44,7 @@ impl<S: Send + Sync> FromRequestParts<S> for Id {
         let invalid = |rejection| Problem::new(Code::InvalidPath, format!("{rejection}"));
         let Path(id) = path.map_err(invalid)?;
         if id.contains('\0') {
-            let detail = "the path has the character U+0000 (%00), which no id has";
+            let detail = "the path has the character U+0000 (%00), which is not allowed";
             return Err(Problem::new(Code::InvalidPath, detail));
         }
         Ok(Self(id))

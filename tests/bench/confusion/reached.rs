@@ -52,18 +52,17 @@ fn best_possible(aircraft: &Aircraft, case: &Case, effects: &[(&Effect, f64)]) -
     let mut values = IndexMap::new();
     for (effect, size) in effects {
         let edited = effect.apply(&document).ok()?;
-        let added = (edited.parameters.iter())
-            .find(|(name, p)| !p.fixed && !document.parameters.contains_key(*name));
-        if let Some((name, _)) = added {
-            values.insert((name.clone(), None), *size);
+        let is_free = |name: &str| !edited.document.parameters[name].fixed;
+        if let Some(added) = edited.added.iter().find(|added| is_free(&added.name)) {
+            values.insert((added.name.clone(), None), *size);
         }
-        document = edited;
+        document = edited.document;
     }
     let problem = case.problem(&document, &values).ok()?;
     let solution = output_error(&problem, &mut |_| ControlFlow::Continue(())).ok()?;
     let mut rms = Vec::new();
     for validation in case.held_out(Role::Validation, &problem).ok()? {
-        let (prediction, _) = predict(&problem, &solution.estimate, &validation);
+        let (prediction, _) = predict(&problem, &solution.theta, &solution.covariance, &validation);
         rms.extend(prediction.outputs.iter().map(|output| output.rms));
     }
     Some(rms)

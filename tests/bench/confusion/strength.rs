@@ -156,14 +156,11 @@ fn in_range(aircraft: &Aircraft, effect: &Effect, size: f64) -> bool {
     if effect.edits.is_empty() {
         return true;
     }
-    let Ok(document) = effect.apply(&aircraft.document) else {
+    let Ok(edited) = effect.apply(&aircraft.document) else {
         return false;
     };
-    let added = document
-        .parameters
-        .iter()
-        .find(|(name, _)| !aircraft.document.parameters.contains_key(*name));
-    added.is_some_and(|(_, parameter)| {
+    edited.added.first().is_some_and(|added| {
+        let parameter = &edited.document.parameters[&added.name];
         let lower = parameter.lower.unwrap_or(f64::NEG_INFINITY);
         let upper = parameter.upper.unwrap_or(f64::INFINITY);
         let is_lag = matches!(

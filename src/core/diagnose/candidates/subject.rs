@@ -47,8 +47,7 @@ impl<'c> Subject<'c> {
     /// The effect of an edit that the document takes, with the channels that it uses and no others.
     pub(super) fn fit(&self, mut edit: Edit) -> Option<Effect> {
         let edited = edit.apply(self.document).ok()?;
-        edit.channels
-            .retain(|name, _| edited.inputs.contains_key(name));
+        edit.channels.retain(|name, _| edited.inputs.contains(name));
         Some(Effect::of(edit))
     }
 

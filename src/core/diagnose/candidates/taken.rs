@@ -11,10 +11,14 @@ use crate::model::{Quantities, Source};
 /// What a quantity of the model, or a recorded channel, was taken for.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct TakenFor {
+    /// An input, state, definition or output, or a recorded channel.
     #[schema(example = "AoA")]
     pub name: String,
+    /// What it was taken for.
     pub quantity: PhysicalQuantity,
+    /// How that is known.
     pub from: Source,
+    /// Why, in words.
     #[schema(example = "by its name and unit")]
     pub reason: String,
 }

@@ -35,7 +35,10 @@ pub(super) fn candidates(subject: &Subject<'_>) -> Vec<Effect> {
                 .is_some_and(|monomial| present.contains(monomial))
         };
         let fits = |product: &&Product<'_>| {
-            let closes_a_circle = |v: &&Variable| subject.depends(&v.name, &law.target);
+            // a rate of the very state is no term of its equation
+            let closes_a_circle = |v: &&Variable| {
+                subject.depends(&v.name, &law.target) || v.name == format!("{}dot", law.target)
+            };
             product.belongs_to(law.motion)
                 && !holds(product)
                 && !product.variables.iter().any(closes_a_circle)
@@ -137,7 +140,10 @@ impl<'v> Product<'v> {
             return true;
         }
         match self.variables.as_slice() {
-            [one] if self.text == one.name => !one.is_speed() || motion == Motion::Longitudinal,
+            [one] if one.is_speed() || one.is_flow_rate() => {
+                one.quantity.motion() == Some(motion)
+            }
+            [one] if self.text == one.name => true,
             _ => self.is_odd == (motion == Motion::Lateral),
         }
     }

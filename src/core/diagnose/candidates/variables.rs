@@ -33,6 +33,11 @@ impl Variable {
         )
     }
 
+    pub(super) fn is_flow_rate(&self) -> bool {
+        use PhysicalQuantity::{AngleOfAttackRate, AngleOfSideslipRate};
+        matches!(self.quantity, AngleOfAttackRate | AngleOfSideslipRate)
+    }
+
     /// Whether the motion that it belongs to is symmetric: it changes sign with the side.
     pub(super) fn is_odd(&self) -> bool {
         self.quantity.motion() == Some(Motion::Lateral)
@@ -58,6 +63,7 @@ impl Subject<'_> {
             .into_iter()
             .filter_map(|quantity| self.variable(quantity))
             .collect();
+        variables.extend(self.flow_rates());
         let inputs = self.document.inputs.keys();
         let controls = inputs.filter_map(|name| {
             let quantity = self.quantities.get(name).filter(|q| q.is_control())?;
@@ -78,6 +84,31 @@ impl Subject<'_> {
             (variable.movement).is_none_or(|movement| movement.moves(variable.quantity))
         });
         variables
+    }
+
+    /// Rates of the flow angles: quantities of their own, or the derivatives of states.
+    fn flow_rates(&self) -> Vec<Variable> {
+        use PhysicalQuantity::{
+            AngleOfAttack, AngleOfAttackRate, AngleOfSideslip, AngleOfSideslipRate,
+        };
+        let rate = |(angle, rate): (PhysicalQuantity, PhysicalQuantity)| {
+            let is_state = |name: &&str| self.document.states.contains_key(*name);
+            let state = || self.quantities.all_of(angle).find(is_state);
+            let derivative = || {
+                Some(Variable {
+                    name: format!("{}dot", state()?),
+                    quantity: rate,
+                    channel: None,
+                    movement: None,
+                })
+            };
+            self.variable(rate).or_else(derivative)
+        };
+        let both = [
+            (AngleOfAttack, AngleOfAttackRate),
+            (AngleOfSideslip, AngleOfSideslipRate),
+        ];
+        both.into_iter().filter_map(rate).collect()
     }
 
     /// The model's own state, else definition, else input; else a recorded channel.

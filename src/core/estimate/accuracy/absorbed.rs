@@ -1,4 +1,4 @@
-//! What a fit takes off the autocovariances of its residuals.
+//! The part of the noise that a fit absorbs: how much it takes off the autocovariances of its residuals.
 //!
 //! Residuals are ê_k = e_k − S_k δ, with noise e and the error δ of the estimate, Cov its covariance. E e_k δᵀ is
 //! S_k Cov: exactly for white noise, nearly where sensitivities are smooth against the noise's correlation. So

@@ -40,10 +40,10 @@ impl Autoregression {
         let mut coefficients: Vec<f64> = Vec::new();
         let (mut variance, mut least) = (power, n * power.ln());
         for order in 1..autocovariance.len() {
-            let foreseen: f64 = (coefficients.iter().enumerate())
+            let predicted: f64 = (coefficients.iter().enumerate())
                 .map(|(m, a)| a * autocovariance[order - 1 - m])
                 .sum();
-            let reflection = (autocovariance[order] - foreseen) / variance;
+            let reflection = (autocovariance[order] - predicted) / variance;
             // out of this range only where samples are missing, or by rounding
             if reflection.is_nan() || reflection.abs() >= 1.0 {
                 break;

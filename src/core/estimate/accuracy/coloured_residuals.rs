@@ -85,10 +85,10 @@ fn lagged(e: &[f64], lag: usize) -> f64 {
 /// w_k = e_k − Σ_m a_m e_(k+m), backwards in time; NaN where it cannot be told.
 fn innovations<'e>(e: &'e [f64], model: &'e Autoregression) -> impl Iterator<Item = f64> + 'e {
     (0..e.len()).map(|k| {
-        let foreseen: f64 = (model.coefficients.iter().enumerate())
+        let predicted: f64 = (model.coefficients.iter().enumerate())
             .map(|(m, a)| a * e.get(k + 1 + m).copied().unwrap_or(f64::NAN))
             .sum();
-        e[k] - foreseen
+        e[k] - predicted
     })
 }
 

@@ -1,4 +1,4 @@
-//! What the data say of the estimate's accuracy: standard errors, correlations, and what they cannot tell.
+//! The accuracy of an estimate: standard errors, correlations, and sets of unknowns that the data cannot tell apart.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -22,7 +22,7 @@ const PERFECT: f64 = 1e-10;
 
 /// Accuracy at an estimate, by place of θ.
 pub(crate) struct ErrorBounds {
-    /// What the standard errors are; none where they would mean nothing.
+    /// Which kind the standard errors are of; none where they would mean nothing.
     pub kind: Option<ErrorBoundsKind>,
     /// None where held at a bound or not determined.
     pub standard_errors: Vec<Option<f64>>,

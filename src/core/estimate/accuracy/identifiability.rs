@@ -1,5 +1,5 @@
-//! What the data can tell of the parameters, from the sensitivities alone: before an estimation, at the start
-//! values, and after it.
+//! Identifiability of the parameters, from the sensitivities alone: before an estimation, at the start values, and
+//! after it.
 //!
 //! Sensitivities are weighted by R^(-1/2) and their columns scaled to length 1, so that units do not count. Singular
 //! values that are zero to rounding mean exact redundancy; small ones near collinearity, which is traced to

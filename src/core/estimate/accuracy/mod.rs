@@ -1,5 +1,5 @@
-//! What the estimate is worth: error bounds, the colour of residuals, identifiability, modes, the fit of each output.
-//! Nothing here moves θ.
+//! The worth of an estimate: error bounds, the colour of residuals, identifiability, modes, the fit of each output. θ is
+//! read, never moved.
 
 pub(super) mod absorbed;
 pub(super) mod autoregression;

@@ -22,7 +22,7 @@ const NEAR: f64 = 0.1;
 /// States that take at least this share of the largest participation are named.
 const TAKES_PART: f64 = 0.5;
 
-/// The modes at θ, SI, fastest first; none for models of kinematics and where there is no number.
+/// The modes at θ, SI, fastest first; none for models of kinematics and where an entry is not finite.
 pub(crate) fn modes(problem: &Problem, theta: &[f64], bounds: &ErrorBounds) -> Vec<Mode> {
     let model = &problem.model;
     if is_kinematic(model) {
@@ -179,7 +179,7 @@ impl<'a> Delta<'a> {
             return delta;
         }
         let (real, imaginary) = (delta.deviation(1.0, 0.0), delta.deviation(0.0, 1.0));
-        // written so that what is no number counts as near
+        // written so that NaN counts as near
         let is_apart = real.hypot(imaginary) <= NEAR * nearest;
         if !is_apart {
             delta.known = false;

@@ -9,7 +9,9 @@ use crate::estimate::report::parameter::Bound;
 
 /// By place of θ: the share of the squared error bound that stems from the priors. With F = F_data + P the
 /// covariance is F⁻¹ = F⁻¹ F_data F⁻¹ + F⁻¹ P F⁻¹; the last term over the whole is the share. None where there
-/// is no prior at all, and for what is held at a bound.
+/// is no prior at all, and for unknowns that are held at a bound.
+///
+/// Unknowns of the method's own, which have no prior, may follow those of θ in `information` and `held`.
 pub(crate) fn shares(
     unknowns: &Unknowns,
     information: &DMatrix<f64>,
@@ -25,12 +27,16 @@ pub(crate) fn shares(
         return shares;
     };
     let covariance = spectrum.inverse();
-    for (i, &place) in moving.iter().enumerate() {
-        let from_prior = |(k, &place): (usize, &usize)| {
+    let of_theta = || {
+        let places = moving.iter().copied().enumerate();
+        places.filter(|&(_, place)| place < unknowns.len())
+    };
+    for (i, place) in of_theta() {
+        let from_prior = |(k, place): (usize, usize)| {
             let prior = unknowns.at(place).prior?;
             Some((covariance[(i, k)] / prior.sd).powi(2))
         };
-        let prior: f64 = moving.iter().enumerate().filter_map(from_prior).sum();
+        let prior: f64 = of_theta().filter_map(from_prior).sum();
         shares[place] = Some(prior / covariance[(i, i)]).filter(|share| share.is_finite());
     }
     shares

@@ -12,7 +12,7 @@ use crate::simulate::Segment;
 /// Beside numbers near one this loses nothing, and its square is zero.
 const COMPLEX_STEP: f64 = 1e-40;
 
-/// Entries beyond this are as good as no numbers: their squares would leave the range.
+/// Entries beyond this count as not finite: their squares would leave the range.
 const LARGEST: f64 = 1e100;
 
 /// A over the chosen states, and dA/dθ.
@@ -55,7 +55,7 @@ pub(crate) fn feeding_back(model: &Model) -> Vec<usize> {
 }
 
 impl StateMatrix {
-    /// At the start of a segment; none where an entry is no number.
+    /// At the start of a segment; none where an entry is not finite.
     pub(crate) fn at(
         problem: &Problem,
         segment: usize,

@@ -1,4 +1,4 @@
-//! What the last steps tell about the next: Anderson's acceleration (J. ACM 12, 1965) of the Gauss-Newton iteration.
+//! Anderson's acceleration (J. ACM 12, 1965) of the Gauss-Newton iteration: the last steps tell about the next.
 //!
 //! The Hessian of a step leaves out the curvature of the model. Where residuals are not small the full step then falls
 //! short, or goes too far, by about the same share each time along a few directions, and the iteration closes in by a
@@ -40,7 +40,7 @@ struct Past {
 }
 
 impl Acceleration {
-    /// What was learnt elsewhere does not hold here.
+    /// Forgets iterates that no longer tell about this place.
     pub(crate) fn forget(&mut self) {
         self.past.clear();
     }

@@ -33,7 +33,7 @@ pub(crate) struct Nothing {
     pub in_range: bool,
 }
 
-/// What a search remembers of those before it.
+/// The memory that one search hands on to the next.
 pub(crate) struct Search<'p> {
     problem: &'p Problem,
     damping: f64,

@@ -72,7 +72,7 @@ pub(crate) fn length(step: &DVector<f64>, information: &DMatrix<f64>) -> f64 {
     step.dot(&(information * step)).max(0.0).sqrt()
 }
 
-/// What a step is solved with.
+/// The Hessian in the form in which a step is solved.
 enum Hessian {
     /// All directions are seen.
     Definite(Definite),

@@ -25,8 +25,9 @@ pub struct Evaluator<'p> {
     outputs: Outputs<'p>,
     parameters: Vec<f64>,
     full: bool,
-    /// Simulations with sensitivities, and without, so far.
+    /// Simulations with sensitivities so far.
     pub evaluations: usize,
+    /// Simulations without sensitivities so far.
     pub simulations: usize,
 }
 

@@ -16,7 +16,7 @@ pub struct NormalEquations {
     pub information: DMatrix<f64>,
     /// -∂J/∂θ
     pub descent: DVector<f64>,
-    /// What the change of R with θ takes off the information matrix, where R is estimated: U of U Uᵀ.
+    /// Where R is estimated, its change with θ takes U Uᵀ off the information matrix: U.
     pub(crate) relaxation: Option<DMatrix<f64>>,
 }
 
@@ -44,6 +44,7 @@ impl NormalEquations {
         })
     }
 
+    /// det R, SI: R of greatest likelihood for θ, or the one that was given.
     pub fn det_r(&self) -> f64 {
         self.weighting.det()
     }

@@ -15,7 +15,7 @@ use crate::simulate::{Block, Sensitivities};
 /// Fewer samples than these are not worth a thread of their own: it takes some 10 µs to wake one.
 const LEAST_SAMPLES: usize = 1000;
 
-/// What one thread needs to go along segments.
+/// One thread's own machinery to go along segments.
 pub(crate) struct Strand<'p> {
     machinery: Sensitivities<'p>,
     parameters: Vec<f64>,

@@ -10,7 +10,8 @@ use crate::estimate::accuracy::coloured_residuals::Colour;
 use crate::estimate::accuracy::error_bounds::ErrorBounds;
 use crate::estimate::accuracy::fit::{fits, histories_of};
 use crate::estimate::accuracy::modes::modes;
-use crate::estimate::answer::{Solution, rows, table};
+use crate::estimate::answer::table::{Accuracy, table};
+use crate::estimate::answer::{Solution, rows};
 use crate::estimate::descent::stopped::Stopped;
 use crate::estimate::problem::Problem;
 use crate::estimate::report::estimate::Estimate;
@@ -28,7 +29,7 @@ pub(super) fn answer(
     let mut modelled = vec![vec![Vec::new(); model.outputs.len()]; problem.segments.len()];
     let mut gains: Vec<SegmentGain> = Vec::new();
     // the last iterate was predicted before: what fails here failed there
-    let _ = evaluator.innovations(&at.z, &at.gain_noise.inverse, |index, gain, prediction| {
+    let _ = evaluator.innovations(&at.xi, &at.gain_noise.inverse, |index, gain, prediction| {
         if prediction.sample == 0 {
             gains.push(segment_gain(problem, index, gain));
         }
@@ -44,7 +45,8 @@ pub(super) fn answer(
         .collect();
     let collinear = bounds.collinear(name);
     let (outcome, reason) = stopped.say(problem.options.method, iterations, &held, &collinear);
-    let theta = &at.z[..layout.parameters];
+    let theta = &at.xi[..layout.parameters];
+    let accuracy = Accuracy::new(&problem.unknowns, &at.information, &at.held, bounds);
     let estimate = Estimate {
         outcome,
         reason,
@@ -55,7 +57,7 @@ pub(super) fn answer(
         det_r: at.weighting.det(),
         noise_covariance: rows(&at.weighting.covariance),
         outputs: fits(problem, &histories, &Colour::of(&histories)),
-        parameters: table(problem, theta, (&at.information, &at.held), bounds),
+        parameters: table(problem, theta, &accuracy),
         error_bounds: bounds.kind,
         correlation: bounds.correlation.clone(),
         collinear,
@@ -70,6 +72,8 @@ pub(super) fn answer(
         }),
     };
     Solution {
+        theta: theta.to_vec(),
+        covariance: at.weighting.covariance.clone(),
         estimate,
         histories,
     }
@@ -86,7 +90,7 @@ fn process_noise(
         .states
         .iter()
         .zip(&problem.model.document.states);
-    let intensities = layout.intensities(&at.z);
+    let intensities = layout.intensities(&at.xi);
     let row = |(index, (state, (_, document)))| {
         let place = layout.place(index);
         let unit = match (document as &crate::model::State).unit.as_str() {

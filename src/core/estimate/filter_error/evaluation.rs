@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::gain::{Gain, Setting};
 use super::layout::Layout;
-use super::predictor::{Prediction, Predictor};
+use super::predictor::{Predicted, Predictor};
 use super::start::{automatic_intensities, gain_noise};
 use crate::estimate::likelihood::priors;
 use crate::estimate::likelihood::sums::{Product, ResidualSums, Sums, mirror, pair, pairs};
@@ -17,11 +17,11 @@ use crate::estimate::problem::unusable::Unusable;
 pub struct FilterEquations {
     /// -ln L
     pub cost: f64,
-    /// -∂J/∂z
+    /// -∂J/∂ξ
     pub descent: DVector<f64>,
 }
 
-/// Evaluates a filter-error problem at any unknowns z: the free θ, then the free intensities, SI.
+/// Evaluates a filter-error problem at any unknowns ξ: the free θ, then the free intensities, SI.
 pub struct FilterEvaluator<'p> {
     pub(super) problem: &'p Problem,
     pub(super) layout: Layout,
@@ -72,17 +72,17 @@ impl<'p> FilterEvaluator<'p> {
         self.layout.start(self.problem)
     }
 
-    /// Cost and gradient at z, with the start's R in the gain.
+    /// Cost and gradient at ξ, with the start's R in the gain.
     ///
     /// # Errors
     /// There is no steady gain, or the predictions leave the range of numbers.
-    pub fn at(&mut self, z: &[f64]) -> Result<FilterEquations, Unusable> {
+    pub fn at(&mut self, xi: &[f64]) -> Result<FilterEquations, Unusable> {
         let weight = self.start_noise.inverse.clone();
-        let (sums, _) = self.sums(z, &weight)?;
+        let (sums, _) = self.sums(xi, &weight)?;
         let problem = self.problem;
-        let weighting = Weighting::at(problem, z, &sums.residuals)?;
-        let mut prior = DVector::zeros(z.len());
-        priors::add_gradient(&problem.unknowns, z, &mut prior);
+        let weighting = Weighting::at(problem, xi, &sums.residuals)?;
+        let mut prior = DVector::zeros(xi.len());
+        priors::add_gradient(&problem.unknowns, xi, &mut prior);
         Ok(FilterEquations {
             cost: weighting.cost,
             descent: weighting.descent(&sums) - prior,
@@ -92,13 +92,13 @@ impl<'p> FilterEvaluator<'p> {
     /// Calls `each` with the setting of each segment.
     fn settings<E>(
         &mut self,
-        z: &[f64],
+        xi: &[f64],
         weight: &DMatrix<f64>,
         mut each: impl FnMut(&mut Self, usize, &Setting<'_>) -> Result<(), E>,
     ) -> Result<(), E> {
         let problem = self.problem;
-        let intensities = self.layout.intensities(z);
-        let theta = &z[..self.layout.parameters];
+        let intensities = self.layout.intensities(xi);
+        let theta = &xi[..self.layout.parameters];
         for (index, segment) in problem.segments.iter().enumerate() {
             let mut parameters = std::mem::take(&mut self.parameters);
             problem.unknowns.parameters(index, theta, &mut parameters);
@@ -119,15 +119,15 @@ impl<'p> FilterEvaluator<'p> {
     /// Innovations alone; `also` sees each prediction with its segment's index and gain.
     pub(super) fn innovations(
         &mut self,
-        z: &[f64],
+        xi: &[f64],
         weight: &DMatrix<f64>,
-        mut also: impl FnMut(usize, &Gain, &Prediction<'_>),
+        mut also: impl FnMut(usize, &Gain, &Predicted<'_>),
     ) -> Result<ResidualSums, Unusable> {
         self.simulations += 1;
         let outputs = self.problem.model.outputs.len();
         let full = self.full;
         let mut sums = DMatrix::zeros(outputs, outputs);
-        self.settings(z, weight, |this, index, setting| {
+        self.settings(xi, weight, |this, index, setting| {
             let gain = gain(setting, index)?;
             let none = (&[][..], &[][..]);
             this.predictor
@@ -143,11 +143,11 @@ impl<'p> FilterEvaluator<'p> {
     /// Shows the gain of each segment to `each`.
     pub(super) fn gains(
         &mut self,
-        z: &[f64],
+        xi: &[f64],
         weight: &DMatrix<f64>,
         mut each: impl FnMut(&Gain),
     ) -> Result<(), Unusable> {
-        self.settings(z, weight, |_, index, setting| {
+        self.settings(xi, weight, |_, index, setting| {
             each(&gain(setting, index)?);
             Ok(())
         })
@@ -156,7 +156,7 @@ impl<'p> FilterEvaluator<'p> {
     /// The sums, and by state its share.
     pub(super) fn sums(
         &mut self,
-        z: &[f64],
+        xi: &[f64],
         weight: &DMatrix<f64>,
     ) -> Result<(Sums, Vec<Share>), Unusable> {
         self.evaluations += 1;
@@ -165,7 +165,7 @@ impl<'p> FilterEvaluator<'p> {
         let full = self.full;
         let mut total = Sums::zeros(outputs, unknowns, full);
         let mut shares = Shares::new(problem.model.states.len());
-        self.settings(z, weight, |this, index, setting| {
+        self.settings(xi, weight, |this, index, setting| {
             let gain = gain(setting, index)?;
             let (columns, places) = this.layout.columns(problem, index);
             let changes = gain.changes(setting, &columns);
@@ -192,13 +192,13 @@ impl<'p> FilterEvaluator<'p> {
     /// The shares and their slopes by the intensities alone: quick, without a look at the data.
     pub(super) fn shares(
         &mut self,
-        z: &[f64],
+        xi: &[f64],
         weight: &DMatrix<f64>,
     ) -> Result<Vec<Share>, Unusable> {
         let problem = self.problem;
         let unknowns = self.layout.len();
         let mut shares = Shares::new(problem.model.states.len());
-        self.settings(z, weight, |this, index, setting| {
+        self.settings(xi, weight, |this, index, setting| {
             let gain = gain(setting, index)?;
             let (columns, places) = this.layout.columns(problem, index);
             let own = columns.len() - this.layout.free.len();
@@ -277,7 +277,7 @@ impl LocalSums {
         }
     }
 
-    fn add(&mut self, at: &Prediction<'_>) {
+    fn add(&mut self, at: &Predicted<'_>) {
         let width = self.width;
         if width == 0 {
             return;

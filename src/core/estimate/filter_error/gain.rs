@@ -15,7 +15,7 @@ use crate::simulate::{Segment, initial_state};
 /// Of complex-step differences: small enough that there is no truncation error at all.
 const COMPLEX_STEP: f64 = 1e-40;
 
-/// What a gain is made for: one segment, all its parameters (SI), the intensities by state, and R⁻¹.
+/// The place at which a gain is computed: one segment, all its parameters (SI), the intensities by state, and R⁻¹.
 #[derive(Clone, Copy)]
 pub(super) struct Setting<'a> {
     pub model: &'a Model,

@@ -32,7 +32,7 @@ impl GainNoise {
 
 pub(super) struct Iterate {
     /// SI.
-    pub z: Vec<f64>,
+    pub xi: Vec<f64>,
     pub gain_noise: GainNoise,
     pub weighting: Weighting,
     /// Reduced where the gain is at its limit, as the next two are.
@@ -49,16 +49,16 @@ pub(super) struct Iterate {
 impl Iterate {
     pub(super) fn at(
         evaluator: &mut FilterEvaluator<'_>,
-        z: Vec<f64>,
+        xi: Vec<f64>,
         gain_noise: GainNoise,
     ) -> Result<Self, Unusable> {
         let problem = evaluator.problem;
-        let (sums, shares) = evaluator.sums(&z, &gain_noise.inverse)?;
+        let (sums, shares) = evaluator.sums(&xi, &gain_noise.inverse)?;
         let noise = &problem.options.noise;
-        let weighting = Weighting::at(problem, &z, &sums.residuals)?;
+        let weighting = Weighting::at(problem, &xi, &sums.residuals)?;
         let mut information = weighting.information(&sums);
         let mut descent = weighting.descent(&sums);
-        priors::add(&problem.unknowns, &z, &mut information, &mut descent);
+        priors::add(&problem.unknowns, &xi, &mut information, &mut descent);
         let limit = Limit::new(&evaluator.layout, &shares, &descent);
         let information = limit.reduction.tr_mul(&(information * &limit.reduction));
         let descent = limit.reduction.tr_mul(&descent);
@@ -69,10 +69,10 @@ impl Iterate {
             }
             Noise::Given { .. } => None,
         };
-        let held = held(evaluator, &z, &descent, &limit);
+        let held = held(evaluator, &xi, &descent, &limit);
         let newton = Newton::new(&information, relaxation.as_ref(), &descent, &held);
         Ok(Self {
-            z,
+            xi,
             gain_noise,
             weighting,
             information,
@@ -104,17 +104,17 @@ impl Iterate {
         damping: f64,
     ) -> DVector<f64> {
         let mut held = self.held.clone();
-        let mut to_bounds = DVector::zeros(self.z.len());
+        let mut to_bounds = DVector::zeros(self.xi.len());
         let mut step = newton.step(damping);
         loop {
             let whole = &self.limit.reduction * &step;
             let beyond = |place: usize| {
                 let (lower, upper) = evaluator.layout.limits(evaluator.problem, place);
-                let there = self.z[place] + whole[place];
+                let there = self.xi[place] + whole[place];
                 if there < lower {
-                    Some((place, Bound::Lower, lower - self.z[place]))
+                    Some((place, Bound::Lower, lower - self.xi[place]))
                 } else if there > upper {
-                    Some((place, Bound::Upper, upper - self.z[place]))
+                    Some((place, Bound::Upper, upper - self.xi[place]))
                 } else {
                     None
                 }
@@ -162,7 +162,7 @@ impl Iterate {
             cost: self.weighting.cost,
             det_r: self.weighting.det(),
             variance: variance.iter().copied().collect(),
-            parameters: self.z.iter().enumerate().map(in_own_units).collect(),
+            parameters: self.xi.iter().enumerate().map(in_own_units).collect(),
             gradient_norm: self.newton.as_ref().map_or(0.0, Newton::gradient_norm),
             step: taken.length,
             damping: taken.damping,
@@ -174,7 +174,7 @@ impl Iterate {
 /// Which places are at a bound that the descent direction pushes against.
 fn held(
     evaluator: &FilterEvaluator<'_>,
-    z: &[f64],
+    xi: &[f64],
     descent: &DVector<f64>,
     limit: &Limit,
 ) -> Vec<Option<Bound>> {
@@ -190,5 +190,5 @@ fn held(
             None
         }
     };
-    z.iter().enumerate().map(bound).collect()
+    xi.iter().enumerate().map(bound).collect()
 }

@@ -2,7 +2,7 @@
 
 use crate::estimate::problem::Problem;
 
-/// What an unknown is to one segment.
+/// An unknown, as one segment sees it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Column {
     /// A parameter of the model.
@@ -11,7 +11,7 @@ pub(super) enum Column {
     Intensity(usize),
 }
 
-/// The unknowns z = (θ, f), SI.
+/// The unknowns ξ = (θ, f), SI.
 pub(super) struct Layout {
     /// States whose intensity is free, in the order of their places.
     pub free: Vec<usize>,
@@ -56,15 +56,15 @@ impl Layout {
     }
 
     pub(super) fn start(&self, problem: &Problem) -> Vec<f64> {
-        let mut z = problem.unknowns.start();
-        z.extend(self.free.iter().map(|&state| self.start[state]));
-        z
+        let mut xi = problem.unknowns.start();
+        xi.extend(self.free.iter().map(|&state| self.start[state]));
+        xi
     }
 
     /// Intensities by state.
-    pub(super) fn intensities(&self, z: &[f64]) -> Vec<f64> {
+    pub(super) fn intensities(&self, xi: &[f64]) -> Vec<f64> {
         let mut all = self.start.clone();
-        for (&state, &value) in self.free.iter().zip(&z[self.parameters..]) {
+        for (&state, &value) in self.free.iter().zip(&xi[self.parameters..]) {
             all[state] = value;
         }
         all
@@ -92,7 +92,7 @@ impl Layout {
         parameters.chain(intensities).unzip()
     }
 
-    /// What an unknown is called, and the SI value of its unit.
+    /// The name of an unknown, and the SI value of its unit.
     pub(super) fn name(&self, problem: &Problem, place: usize) -> (String, f64) {
         if place < self.parameters {
             (problem.name(place), problem.unit(place).scale)
@@ -103,7 +103,7 @@ impl Layout {
     }
 }
 
-/// What the process noise of a state is called among the unknowns.
+/// The name of a state's process noise among the unknowns.
 pub(super) fn process_noise_name(state: &str) -> String {
     format!("process_noise.{state}")
 }

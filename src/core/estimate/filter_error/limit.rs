@@ -21,7 +21,7 @@ const MOST_STEPS: usize = 30;
 pub(super) struct Limit {
     /// Places of their intensities.
     pub places: Vec<usize>,
-    /// dz of all unknowns for dz of those that are free; the identity but for the rows of `places`.
+    /// dξ of all unknowns for dξ of those that are free; the identity but for the rows of `places`.
     pub reduction: DMatrix<f64>,
 }
 
@@ -78,13 +78,13 @@ fn own_slopes(active: &[(usize, usize)], shares: &[Share]) -> DMatrix<f64> {
 /// There is no steady gain on the way, or no such intensity.
 pub(super) fn restore(
     evaluator: &mut FilterEvaluator<'_>,
-    z: &mut [f64],
+    xi: &mut [f64],
     weight: &DMatrix<f64>,
     places: &[usize],
 ) -> Result<(), Unusable> {
     let mut active: Vec<(usize, usize)> = Vec::new();
     for _ in 0..MOST_STEPS {
-        let shares = evaluator.shares(z, weight)?;
+        let shares = evaluator.shares(xi, weight)?;
         for (state, share) in shares.iter().enumerate() {
             let Some(place) = evaluator.layout.place(state) else {
                 continue;
@@ -102,7 +102,7 @@ pub(super) fn restore(
         let change = change.ok_or(Unusable::NotFinite)?;
         for (&(_, place), &change) in active.iter().zip(&change) {
             // an intensity is positive: half of it is the most that a step takes, twice the most it adds
-            z[place] = (z[place] - change).clamp(0.5 * z[place], 2.0 * z[place]);
+            xi[place] = (xi[place] - change).clamp(0.5 * xi[place], 2.0 * xi[place]);
         }
     }
     Err(Unusable::NotFinite)

@@ -40,7 +40,7 @@ use search::{Nothing, Trial, search};
 pub use evaluation::{FilterEquations, FilterEvaluator};
 
 /// Names of the free intensities, in the order in which they follow the parameters.
-pub fn process_noise_names(problem: &Problem) -> Vec<String> {
+pub(crate) fn process_noise_names(problem: &Problem) -> Vec<String> {
     let states = problem.model.states.iter();
     let free = states.filter(|state| {
         let asked = problem.options.process_noise.get(&state.name);
@@ -57,9 +57,9 @@ pub fn process_noise_names(problem: &Problem) -> Vec<String> {
 pub fn filter_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<Solution, Unusable> {
     let mut evaluator = FilterEvaluator::new(problem)?;
     let gain_noise = GainNoise::of(&evaluator.start_noise);
-    let mut z = evaluator.start();
-    restore(&mut evaluator, &mut z, &gain_noise.inverse, &[])?;
-    let mut current = Iterate::at(&mut evaluator, z, gain_noise)?;
+    let mut xi = evaluator.start();
+    restore(&mut evaluator, &mut xi, &gain_noise.inverse, &[])?;
+    let mut current = Iterate::at(&mut evaluator, xi, gain_noise)?;
     let mut taken = Taken::default();
     let mut damping = match problem.options.method {
         Method::LevenbergMarquardt => DAMPING_START,
@@ -88,7 +88,7 @@ pub fn filter_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
             // nothing is left to gain with this R in the gain, but R itself still has to follow
             Err(_) if lag > problem.options.tolerance => {
                 let here = Trial {
-                    z: current.z.clone(),
+                    xi: current.xi.clone(),
                     weighting: current.weighting.clone(),
                 };
                 let how = Taken {

@@ -12,7 +12,7 @@ use crate::model::{Jacobian, Model, Program, Workspace};
 use crate::simulate::{Segment, Stepper, between, initial_state};
 
 /// One sample.
-pub(super) struct Prediction<'a> {
+pub(super) struct Predicted<'a> {
     pub sample: usize,
     /// By output.
     pub outputs: &'a [f64],
@@ -51,10 +51,35 @@ impl<'p> Predictor<'p> {
         parameters: &[f64],
         gain: &Gain,
         (columns, changes): (&[Column], &[Change]),
-        mut sink: impl FnMut(&Prediction<'_>),
+        mut sink: impl FnMut(&Predicted<'_>),
     ) {
         let model = &self.problem.model;
-        let (states, outputs, width) = (model.states.len(), model.outputs.len(), columns.len());
+        self.set_parameters(parameters, columns.len());
+        let mut sample = Sample::new(model.outputs.len(), columns.len());
+        let mut state = initial_state(model, parameters);
+        let mut tangent = Tangent::new(model, columns, parameters);
+        let mut elapsed = 0.0;
+        for k in 0..segment.len() {
+            self.observe(segment, (k, elapsed), &state, &tangent, &mut sample);
+            sink(&Predicted {
+                sample: k,
+                outputs: &sample.outputs,
+                innovations: &sample.innovations,
+                slopes: &sample.slopes,
+            });
+            if k + 1 == segment.len() {
+                break;
+            }
+            correct(&mut state, gain, &sample.innovations);
+            tangent.correct(&gain.k, changes, &sample.innovations, &sample.slopes);
+            self.stepper.step(segment, k, elapsed, &mut state);
+            self.propagate(segment, (k, elapsed), &mut tangent);
+            elapsed += segment.steps.length(k);
+        }
+    }
+
+    fn set_parameters(&mut self, parameters: &[f64], width: usize) {
+        let model = &self.problem.model;
         self.stepper.set_parameters(parameters);
         model
             .observation
@@ -66,76 +91,90 @@ impl<'p> Predictor<'p> {
             set(&model.dynamics_jacobian, &mut self.dynamics_slopes);
             set(&model.observation_jacobian, &mut self.observation_slopes);
         }
-        let mut state = initial_state(model, parameters);
-        let mut tangent = Tangent::new(model, columns, parameters);
-        let (mut y, mut innovations) = (vec![0.0; outputs], vec![0.0; outputs]);
-        let mut slopes = vec![0.0; outputs * width];
-        let mut elapsed = 0.0;
-        for k in 0..segment.len() {
-            place(
-                &model.observation,
-                &mut self.observation,
-                &state,
-                segment,
-                (k, 0.0),
-                elapsed,
-            );
-            model.observation.run(&mut self.observation);
-            model.observation.results(&self.observation, &mut y);
-            for (j, innovation) in innovations.iter_mut().enumerate() {
-                let measured = segment.measured[j][k];
-                *innovation = if measured.is_nan() {
-                    0.0
-                } else {
-                    measured - y[j]
-                };
-            }
-            if width > 0 {
-                let program = &model.observation_jacobian.program;
-                let at = &mut self.observation_slopes;
-                place(program, at, &state, segment, (k, 0.0), elapsed);
-                program.run(at);
-                tangent.observe(&model.observation_jacobian, at, &mut slopes);
-                for (j, measured) in segment.measured.iter().enumerate() {
-                    if measured[k].is_nan() {
-                        slopes[j * width..(j + 1) * width].fill(0.0);
-                    }
-                }
-            }
-            sink(&Prediction {
-                sample: k,
-                outputs: &y,
-                innovations: &innovations,
-                slopes: &slopes,
-            });
-            if k + 1 == segment.len() {
-                break;
-            }
-            for (i, x) in state.iter_mut().enumerate() {
-                *x += (0..outputs)
-                    .map(|j| gain.k[(i, j)] * innovations[j])
-                    .sum::<f64>();
-            }
-            tangent.correct(&gain.k, changes, &innovations, &slopes);
-            self.stepper.step(segment, k, elapsed, &mut state);
-            let h = segment.steps.length(k);
-            if width > 0 {
-                let program = &model.dynamics_jacobian.program;
-                tangent.begin_step();
-                for (s, stage) in self.stepper.stages.iter().enumerate() {
-                    let at = &self.stepper.stage_states[s * states..(s + 1) * states];
-                    let share = self.stepper.interpolation.share_of_next(stage.node);
-                    let workspace = &mut self.dynamics_slopes;
-                    let time = elapsed + h * stage.node;
-                    place(program, workspace, at, segment, (k, share), time);
-                    program.run(workspace);
-                    let lengths = (h * stage.advance, h * stage.weight);
-                    tangent.stage(&model.dynamics_jacobian, workspace, s, lengths);
-                }
-                tangent.end_step();
-            }
-            elapsed += h;
+    }
+
+    /// Outputs, innovations and their slopes at sample `k`.
+    fn observe(
+        &mut self,
+        segment: &Segment,
+        (k, elapsed): (usize, f64),
+        state: &[f64],
+        tangent: &Tangent,
+        to: &mut Sample,
+    ) {
+        let model = &self.problem.model;
+        let at = &mut self.observation;
+        place(&model.observation, at, state, segment, (k, 0.0), elapsed);
+        model.observation.run(at);
+        model.observation.results(at, &mut to.outputs);
+        let pairs = to.innovations.iter_mut().zip(&to.outputs);
+        for ((innovation, y), measured) in pairs.zip(&segment.measured) {
+            let z = measured[k];
+            *innovation = if z.is_nan() { 0.0 } else { z - y };
         }
+        if tangent.width == 0 {
+            return;
+        }
+        let program = &model.observation_jacobian.program;
+        let at = &mut self.observation_slopes;
+        place(program, at, state, segment, (k, 0.0), elapsed);
+        program.run(at);
+        tangent.observe(&model.observation_jacobian, at, &mut to.slopes);
+        let rows = to.slopes.chunks_exact_mut(tangent.width);
+        for (row, measured) in rows.zip(&segment.measured) {
+            if measured[k].is_nan() {
+                row.fill(0.0);
+            }
+        }
+    }
+
+    /// Takes the tangent through the stages of the step that the stepper has just made from sample `k`.
+    fn propagate(&mut self, segment: &Segment, (k, elapsed): (usize, f64), tangent: &mut Tangent) {
+        if tangent.width == 0 {
+            return;
+        }
+        let model = &self.problem.model;
+        let states = model.states.len();
+        let h = segment.steps.length(k);
+        let program = &model.dynamics_jacobian.program;
+        tangent.begin_step();
+        for (s, stage) in self.stepper.stages.iter().enumerate() {
+            let at = &self.stepper.stage_states[s * states..(s + 1) * states];
+            let share = self.stepper.interpolation.share_of_next(stage.node);
+            let workspace = &mut self.dynamics_slopes;
+            let time = elapsed + h * stage.node;
+            place(program, workspace, at, segment, (k, share), time);
+            program.run(workspace);
+            let lengths = (h * stage.advance, h * stage.weight);
+            tangent.stage(&model.dynamics_jacobian, workspace, s, lengths);
+        }
+        tangent.end_step();
+    }
+}
+
+/// What is known at one sample; see [`Predicted`].
+struct Sample {
+    outputs: Vec<f64>,
+    innovations: Vec<f64>,
+    slopes: Vec<f64>,
+}
+
+impl Sample {
+    fn new(outputs: usize, width: usize) -> Self {
+        Self {
+            outputs: vec![0.0; outputs],
+            innovations: vec![0.0; outputs],
+            slopes: vec![0.0; outputs * width],
+        }
+    }
+}
+
+/// x += K e
+fn correct(state: &mut [f64], gain: &Gain, innovations: &[f64]) {
+    for (i, x) in state.iter_mut().enumerate() {
+        *x += (innovations.iter().enumerate())
+            .map(|(j, e)| gain.k[(i, j)] * e)
+            .sum::<f64>();
     }
 }
 

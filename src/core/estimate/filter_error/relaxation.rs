@@ -22,7 +22,7 @@ pub(super) fn relaxed(
     lower: Trial,
 ) -> Result<Iterate, Unusable> {
     if let Noise::Given { .. } = evaluator.problem.options.noise {
-        return Iterate::at(evaluator, lower.z, before.gain_noise.clone());
+        return Iterate::at(evaluator, lower.xi, before.gain_noise.clone());
     }
     let mut why = Unusable::NotFinite;
     for share in SHARES {
@@ -35,9 +35,14 @@ pub(super) fn relaxed(
             covariance,
             inverse,
         };
-        let mut z = corrected(evaluator, before, &gain_noise, &lower.z)?;
-        let next = restore(evaluator, &mut z, &gain_noise.inverse, &before.limit.places)
-            .and_then(|()| Iterate::at(evaluator, z, gain_noise));
+        let mut xi = corrected(evaluator, before, &gain_noise, &lower.xi)?;
+        let next = restore(
+            evaluator,
+            &mut xi,
+            &gain_noise.inverse,
+            &before.limit.places,
+        )
+        .and_then(|()| Iterate::at(evaluator, xi, gain_noise));
         match next {
             Ok(next) => return Ok(next),
             Err(error) => why = error,
@@ -60,7 +65,7 @@ fn corrected(
     evaluator: &mut FilterEvaluator<'_>,
     before: &Iterate,
     after: &GainNoise,
-    z: &[f64],
+    xi: &[f64],
 ) -> Result<Vec<f64>, Unusable> {
     let (old, new) = (
         before.gain_noise.covariance.diagonal(),
@@ -68,7 +73,7 @@ fn corrected(
     );
     let free = evaluator.layout.free.clone();
     let mut sums = vec![(0.0, 0.0); free.len()];
-    evaluator.gains(z, &before.gain_noise.inverse, |gain| {
+    evaluator.gains(xi, &before.gain_noise.inverse, |gain| {
         for (&state, (changed, own)) in free.iter().zip(&mut sums) {
             for j in 0..old.len() {
                 let information = gain.c[(j, state)].powi(2) / old[j];
@@ -77,15 +82,15 @@ fn corrected(
             }
         }
     })?;
-    let mut z = z.to_vec();
-    for (value, (changed, own)) in z[evaluator.layout.parameters..].iter_mut().zip(sums) {
+    let mut xi = xi.to_vec();
+    for (value, (changed, own)) in xi[evaluator.layout.parameters..].iter_mut().zip(sums) {
         if own > 0.0 {
             *value *= changed / own;
         }
     }
-    for (place, value) in z.iter_mut().enumerate() {
+    for (place, value) in xi.iter_mut().enumerate() {
         let (lower, upper) = evaluator.layout.limits(evaluator.problem, place);
         *value = value.clamp(lower, upper);
     }
-    Ok(z)
+    Ok(xi)
 }

@@ -14,7 +14,7 @@ use crate::estimate::problem::unusable::Unusable;
 
 /// Unknowns of lower cost with the same R in the gain.
 pub(super) struct Trial {
-    pub z: Vec<f64>,
+    pub xi: Vec<f64>,
     pub weighting: Weighting,
 }
 
@@ -41,7 +41,7 @@ pub(super) fn search(
         if let Ok(trial) = trial(evaluator, current, &step) {
             in_range = true;
             if trial.weighting.cost <= most {
-                let moved = trial.z.iter().zip(&current.z).map(|(a, b)| a - b);
+                let moved = trial.xi.iter().zip(&current.xi).map(|(a, b)| a - b);
                 let mut moved = DVector::from_iterator(step.len(), moved);
                 // these follow from the others, and count with them
                 current.limit.places.iter().for_each(|&i| moved[i] = 0.0);
@@ -73,10 +73,10 @@ fn trial(
         let (lower, upper) = evaluator.layout.limits(problem, place);
         (value + step[place]).clamp(lower, upper)
     };
-    let mut z: Vec<f64> = current.z.iter().enumerate().map(moved).collect();
+    let mut xi: Vec<f64> = current.xi.iter().enumerate().map(moved).collect();
     let weight = &current.gain_noise.inverse;
-    restore(evaluator, &mut z, weight, &current.limit.places)?;
-    let innovations = evaluator.innovations(&z, weight, |_, _, _| {})?;
-    let weighting = Weighting::at(problem, &z, &innovations)?;
-    Ok(Trial { z, weighting })
+    restore(evaluator, &mut xi, weight, &current.limit.places)?;
+    let innovations = evaluator.innovations(&xi, weight, |_, _, _| {})?;
+    let weighting = Weighting::at(problem, &xi, &innovations)?;
+    Ok(Trial { xi, weighting })
 }

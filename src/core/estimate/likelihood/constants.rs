@@ -25,7 +25,7 @@ pub(crate) fn cost_of_constants(problem: &Problem) -> Option<f64> {
     Some(weighting.cost)
 }
 
-/// Values less their mean; those that are no numbers count nothing.
+/// Values less their mean; those that are not finite count as 0.
 fn centred(values: &[f64]) -> Vec<f64> {
     let numbers: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     let mean = numbers.iter().sum::<f64>() / numbers.len().max(1) as f64;

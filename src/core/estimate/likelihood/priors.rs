@@ -1,4 +1,4 @@
-//! What was known before the data: normal priors of some unknowns, p(θ) ∝ exp(-½ Σ ((θ - m)/s)²).
+//! Knowledge from before the data: normal priors of some unknowns, p(θ) ∝ exp(-½ Σ ((θ - m)/s)²).
 //!
 //! The estimate is then the θ of greatest posterior density. Each prior is one more measured value, of the
 //! unknown itself: it adds to the cost, the gradient and the information matrix.

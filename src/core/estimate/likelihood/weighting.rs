@@ -125,7 +125,7 @@ impl Weighting {
         descent
     }
 
-    /// What the change of R with θ takes off the information matrix, as U of U Uᵀ, unknowns by a few columns:
+    /// The change of R with θ takes U Uᵀ off the information matrix: U, unknowns by a few columns:
     /// (N/2) tr(R⁻¹ ∂R/∂θ_a R⁻¹ ∂R/∂θ_b), with ∂R/∂θ_a = -(1/N) Σ (S_a eᵀ + e S_aᵀ); output by output, with
     /// its own N, where R is diagonal. With R = L Lᵀ the trace is a scalar product of L⁻¹ ∂R/∂θ L⁻ᵀ.
     ///

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use super::elimination::{Order, order};
 use super::skyline::{Factor, Skyline};
 
-/// What the least eigenvalue of the scaled matrix must at least be: far above what counts as zero (see
+/// The least eigenvalue of the scaled matrix that is allowed: far above what counts as zero (see
 /// [`super::spectrum`]), so that no direction would be left out.
 const LEAST_EIGENVALUE: f64 = 1e-10;
 

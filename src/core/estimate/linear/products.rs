@@ -133,7 +133,7 @@ impl WithSimd for Panel<'_> {
     }
 }
 
-/// What the tiles of a panel share.
+/// The operands that the tiles of a panel share.
 struct Tile<'a, V> {
     left: Rows<'a>,
     lead: usize,

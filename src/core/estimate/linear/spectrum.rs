@@ -1,4 +1,4 @@
-//! What the information matrix says: directions the data see, error bounds, correlations, collinear sets.
+//! The spectrum of an information matrix: directions that the data see, its inverse over these, collinear sets.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 

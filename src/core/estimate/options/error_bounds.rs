@@ -1,4 +1,4 @@
-//! What error bounds are made from.
+//! The source of error bounds.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

@@ -1,4 +1,4 @@
-//! What a user may choose about an estimation. Choices alone: who carries them out is of no concern here.
+//! Choices that a user has about an estimation. They name no code that carries them out.
 
 pub(super) mod error_bounds;
 pub(super) mod estimator;
@@ -18,17 +18,25 @@ use process_noise::ProcessNoise;
 use start::StartMethod;
 use technique::Derivatives;
 
+/// How an estimation goes about it. Each option has a default.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Options {
+    /// The principle by which parameters are estimated.
     pub estimator: Estimator,
     /// Where output error starts from.
     pub start: StartMethod,
+    /// How output error and filter error step.
     pub method: Method,
+    /// How the model is stepped through time.
     pub integrator: Integrator,
+    /// What inputs do between samples.
     pub input_interpolation: InputInterpolation,
+    /// What is known of the measurement noise.
     pub noise: Noise,
+    /// How standard errors are worked out.
     pub error_bounds: ErrorBoundsKind,
+    /// How ∂y/∂θ, or the gradient, is worked out.
     pub derivatives: Derivatives,
     /// By state, for the filter-error estimator; a state that is not named has noise whose intensity is estimated from
     /// a start value of its own.
@@ -89,7 +97,10 @@ pub enum Noise {
         structure: NoiseStructure,
     },
     /// R is known: the variance of each output, in SI units squared, in the order of the model's outputs.
-    Given { variance: Vec<f64> },
+    Given {
+        /// One for each output, above 0.
+        variance: Vec<f64>,
+    },
 }
 
 impl Noise {
@@ -108,10 +119,13 @@ impl Default for Noise {
     }
 }
 
+/// Which covariances of an estimated R may differ from zero.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum NoiseStructure {
+    /// None: the noises of the outputs are independent.
     #[default]
     Diagonal,
+    /// All: the noises of the outputs are correlated.
     Full,
 }

@@ -1,4 +1,4 @@
-//! What a user may say about the process noise of a state.
+//! Choices about the process noise of a state.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

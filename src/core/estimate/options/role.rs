@@ -1,8 +1,9 @@
-//! What a maneuver is there for.
+//! The part that a maneuver plays in a job.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+/// The part that a maneuver plays in a job.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {

@@ -1,4 +1,4 @@
-//! What a user may choose about start values.
+//! Choices about start values.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -25,6 +25,7 @@ pub enum StartMethod {
     },
     /// Random starts, each run to its end by the estimator; the best is kept, and how many reached it is told.
     MultiStart {
+        /// How many are drawn.
         #[serde(default = "default_starts")]
         #[schema(example = 20, minimum = 1, maximum = 1000)]
         starts: usize,

@@ -54,6 +54,7 @@ pub enum Derivatives {
     /// are those of a quasi-Newton method (BFGS), whatever `method` says; error bounds are taken from one
     /// evaluation with forward sensitivities at the end.
     Adjoint {
+        /// What the first inverse Hessian is.
         #[serde(default)]
         scaling: Scaling,
     },
@@ -133,7 +134,7 @@ impl Derivatives {
         ]
     }
 
-    /// What is wrong with the step, if there is one.
+    /// The fault of the step, if it has one.
     pub fn fault(&self) -> Option<String> {
         let step = match *self {
             Self::ForwardDifference { step }

@@ -5,7 +5,7 @@ pub(super) mod unusable;
 
 use crate::estimate::options::Options;
 use crate::flight::Unit;
-use crate::model::Model;
+use crate::model::{Model, ParameterInfo};
 use crate::simulate::{Columns, Segment, delay_out_of_bounds};
 use unknowns::Unknowns;
 use unusable::Unusable;
@@ -13,9 +13,13 @@ use unusable::Unusable;
 /// Everything an estimation needs; built once, then only read.
 #[derive(Clone, Debug)]
 pub struct Problem {
+    /// The compiled model.
     pub model: Model,
+    /// The recordings that the model is fitted to, one simulation each.
     pub segments: Vec<Segment>,
+    /// Its parameters, shared by all segments or one for each.
     pub unknowns: Unknowns,
+    /// How to estimate.
     pub options: Options,
     pub(crate) columns: Columns,
     /// By output: samples that have a value, over all segments.
@@ -23,6 +27,7 @@ pub struct Problem {
 }
 
 impl Problem {
+    /// Lays out which parameters each output is differentiated by. Unknowns must be laid out over these segments.
     pub fn new(model: Model, segments: Vec<Segment>, unknowns: Unknowns, options: Options) -> Self {
         let is_free = |parameter: &usize| {
             unknowns
@@ -48,7 +53,7 @@ impl Problem {
         self.segments.iter().map(Segment::len).sum()
     }
 
-    /// What an unknown is called: the parameter's name, with the segment where each has its own.
+    /// The name of an unknown: the parameter's, with the segment where each has its own.
     pub fn name(&self, place: usize) -> String {
         let unknown = self.unknowns.at(place);
         let name = &self.model.parameters[unknown.parameter].name;
@@ -65,9 +70,14 @@ impl Problem {
         (self.name(place), self.unit(place).scale)
     }
 
+    /// The parameter of the model at a place of θ.
+    pub fn parameter(&self, place: usize) -> &ParameterInfo {
+        &self.model.parameters[self.unknowns.at(place).parameter]
+    }
+
     /// The unit of the unknown at a place of θ.
     pub fn unit(&self, place: usize) -> Unit {
-        self.model.parameters[self.unknowns.at(place).parameter].unit
+        self.parameter(place).unit
     }
 
     /// θ in the parameters' own units.

@@ -9,17 +9,22 @@ pub struct Unknown {
     pub parameter: usize,
     /// The segment it belongs to, where each has its own.
     pub segment: Option<usize>,
+    /// The start value; of a fixed one the value.
     pub start: f64,
+    /// The smallest value it may take; -∞ where it is free.
     pub lower: f64,
+    /// The largest value it may take; ∞ where it is free.
     pub upper: f64,
+    /// Whether it is held at its start value.
     pub fixed: bool,
-    /// What was known of it before the data, SI.
+    /// Knowledge of it from before the data, SI.
     pub prior: Option<Prior>,
 }
 
 /// All unknowns, and where each segment finds its parameters.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Unknowns {
+    /// Free and fixed ones, by parameter of the model, then segment.
     pub all: Vec<Unknown>,
     /// Indices into `all` of those that are free; θ has them in this order.
     pub free: Vec<usize>,
@@ -93,6 +98,14 @@ impl Unknowns {
         Self::of(self.all.iter().map(hold).collect(), self.places.clone())
     }
 
+    /// Unknowns that `is_meant` picks are no less than `least`, and start no lower.
+    pub fn raise_lower(&mut self, least: f64, is_meant: impl Fn(&Unknown) -> bool) {
+        for unknown in self.all.iter_mut().filter(|unknown| is_meant(unknown)) {
+            unknown.lower = unknown.lower.max(least);
+            unknown.start = unknown.start.max(unknown.lower);
+        }
+    }
+
     /// Start values of the free unknowns.
     pub fn start(&self) -> Vec<f64> {
         self.free.iter().map(|&i| self.all[i].start).collect()
@@ -121,10 +134,12 @@ impl Unknowns {
         &self.all[self.free[place]]
     }
 
+    /// The length of θ: free unknowns.
     pub fn len(&self) -> usize {
         self.free.len()
     }
 
+    /// Whether nothing is free.
     pub fn is_empty(&self) -> bool {
         self.free.is_empty()
     }

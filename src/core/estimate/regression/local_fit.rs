@@ -52,12 +52,12 @@ impl LocalFit {
         (fit[0], fit[1] * self.per_second())
     }
 
-    /// What the sample's own measurement counts in the value.
+    /// The weight of the sample's own measurement in the value.
     pub(crate) fn leverage(&self) -> f64 {
         self.inverse[(0, 0)]
     }
 
-    /// What each measurement of the window counts, if all do.
+    /// The weight of each measurement of the window, if all count.
     pub(crate) fn kernel(&self, time: &[f64]) -> Kernel {
         let weights = |row: usize, factor: f64| {
             let row = self.inverse.row(row) * factor;
@@ -92,6 +92,6 @@ fn scaled(t: f64, at: f64, width: f64) -> f64 {
 pub(crate) struct Kernel {
     pub value: Vec<f64>,
     pub slope: Vec<f64>,
-    /// What the sample's own measurement counts in `value`.
+    /// The weight of the sample's own measurement in `value`.
     pub leverage: f64,
 }

@@ -1,7 +1,7 @@
 //! The regression of equation error, made by an edit of the model: measured states become inputs, their
 //! derivatives outputs.
 //!
-//! What is left is a problem of the usual kind, so that cost, steps, bounds, error bounds and collinear sets are
+//! This leaves a problem of the usual kind, so that cost, steps, bounds, error bounds and collinear sets are
 //! those of output error. States that no output measures stay states: they are integrated from the initial
 //! values that the model gives them, driven by the measured ones.
 
@@ -150,7 +150,7 @@ fn edited(model: &Model, measured: &[MeasuredState]) -> ModelDocument {
     document
 }
 
-/// What no equation names any more is no unknown of the regression.
+/// Fixes the parameters that no equation names any more.
 fn fix_unused(model: &mut Model) {
     let jacobians = [
         &model.initial_jacobian,

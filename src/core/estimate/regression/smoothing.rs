@@ -27,7 +27,7 @@ const MOST_LOOKS: usize = 2_000;
 /// Steps that differ by less than this share are the same: rounding of a time of a million samples leaves 1e-10.
 const LARGEST_UNEVENNESS: f64 = 1e-9;
 
-/// Smooths `values`, measured at `time`. Values that are no numbers are left out and filled in.
+/// Smooths `values`, measured at `time`. Values that are not finite are left out and filled in.
 pub(crate) fn smoothed(time: &[f64], values: &[f64]) -> Smoothed {
     Windows::new(time, half_width(time, &[values])).smoothed(values)
 }
@@ -150,7 +150,7 @@ impl<'t> Windows<'t> {
         (first, (first + 2 * self.half).min(len - 1))
     }
 
-    /// What the weights make of the window of each sample.
+    /// The weighted sum over the window of each sample.
     fn by_kernels(
         &self,
         kernels: &[Kernel],

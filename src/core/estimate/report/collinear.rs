@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+/// Parameters of which the data see only some combinations.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct CollinearSet {
     /// One name: the data cannot see it. Several: only a combination of them shows.

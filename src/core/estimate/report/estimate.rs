@@ -17,6 +17,7 @@ use crate::estimate::options::error_bounds::ErrorBoundsKind;
 /// The answer of an estimation job.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Estimate {
+    /// Why the solver stopped.
     pub outcome: Outcome,
     /// The outcome in a sentence.
     #[schema(
@@ -25,16 +26,20 @@ pub struct Estimate {
     pub reason: String,
     /// The number of the iteration that this is.
     pub iterations: usize,
-    /// Simulations with sensitivities, and simulations alone.
+    /// Simulations with sensitivities.
     pub evaluations: usize,
+    /// Simulations without sensitivities.
     pub simulations: usize,
     /// -ln L at the estimate, plus ½ Σ ((θ - mean)/sd)² of the parameters' priors.
     pub cost: f64,
+    /// det R, in the product of the outputs' SI units squared; what the field's programs print as cost.
     #[serde(deserialize_with = "null_as_nan")]
     pub det_r: f64,
     /// R, rows by outputs, SI units squared.
     pub noise_covariance: Vec<Vec<f64>>,
+    /// How well each output is reproduced.
     pub outputs: Vec<OutputFit>,
+    /// The parameter table: free and fixed ones, in the document's order.
     pub parameters: Vec<ParameterEstimate>,
     /// What `standard_error` and `correlation` are made from. `null` where they are left out because they would
     /// mean nothing: the model reproduces an output to rounding, which noise is not part of.

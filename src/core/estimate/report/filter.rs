@@ -5,6 +5,7 @@ use utoipa::ToSchema;
 
 use super::parameter::Bound;
 
+/// The process noise, and the Kalman filter that goes with it.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct FilterEstimate {
     /// By state of the model. The free ones follow the free parameters in the iterations' `parameters` and in
@@ -19,16 +20,20 @@ pub struct FilterEstimate {
 /// The intensity f of the white noise that drives one state: dx = ... dt + f dw.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct ProcessNoiseEstimate {
+    /// The state that it drives.
     #[schema(example = "alpha")]
     pub state: String,
     /// The state's unit per √s.
     #[schema(example = "rad/s^0.5")]
     pub unit: String,
+    /// The value that the estimation started from.
     pub start: f64,
+    /// The value at the end.
     #[schema(example = 0.0024)]
     pub estimate: f64,
     /// Cramér-Rao bound; absent where the intensity is fixed, at a bound, or not seen by the data.
     pub standard_error: Option<f64>,
+    /// Whether it was held at its start value.
     pub fixed: bool,
     /// `upper`: a sample takes away all of the state's prediction error, so that more noise cannot be told from this;
     /// `lower`: too little to be told from none.
@@ -39,6 +44,7 @@ pub struct ProcessNoiseEstimate {
 /// The Kalman filter of one segment.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct SegmentGain {
+    /// The segment's label.
     pub segment: String,
     /// K, rows by states, columns by outputs, SI.
     pub gain: Vec<Vec<f64>>,
@@ -49,8 +55,11 @@ pub struct SegmentGain {
 /// One eigenvalue; errors fade where `magnitude` is below 1.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Pole {
+    /// Real part.
     pub real: f64,
+    /// Imaginary part.
     pub imaginary: f64,
+    /// The absolute value.
     #[schema(example = 0.42)]
     pub magnitude: f64,
 }

@@ -8,6 +8,7 @@ use super::number::null_as_nan;
 /// How well one output is reproduced, over all segments.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct OutputFit {
+    /// The output's name.
     #[schema(example = "alpha")]
     pub name: String,
     /// SI unit of `rms` and `bias`.

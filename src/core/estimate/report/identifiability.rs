@@ -35,8 +35,10 @@ pub struct DataInformation {
     pub highly_correlated: Vec<CorrelatedPair>,
 }
 
+/// Parameters whose errors a near dependency of the sensitivities magnifies (Belsley, Kuh and Welsch 1980).
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct NearlyCollinearSet {
+    /// The names of the set.
     #[schema(example = json!(["b_az", "K_az"]))]
     pub parameters: Vec<String>,
     /// Largest singular value over that of this set: how much the set's errors are magnified.
@@ -47,10 +49,13 @@ pub struct NearlyCollinearSet {
     pub variance_proportions: Vec<f64>,
 }
 
+/// Two parameters whose errors go together.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct CorrelatedPair {
+    /// Their names.
     #[schema(example = json!(["b_az", "K_az"]))]
     pub parameters: [String; 2],
+    /// Correlation of their errors, from -1 to 1.
     #[schema(example = -0.997)]
     pub correlation: f64,
 }

@@ -1,5 +1,5 @@
-//! What an estimation answers, and what it tells on its way: types alone, in the parameters' own units, nothing is
-//! worked out from them.
+//! The answer of an estimation, and the news on its way: types alone, in the parameters' own units. Nothing is computed
+//! here.
 
 pub(super) mod collinear;
 pub(super) mod estimate;

@@ -8,6 +8,7 @@ use crate::flight::five_digits;
 /// A number with the standard error that it has from the estimate.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Measure {
+    /// The number, in the unit of what is measured.
     #[schema(example = 2.3851)]
     pub value: f64,
     /// Absent where the covariance of the estimate is not known, or a linear bound would not hold: see the remark.

@@ -3,16 +3,21 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+/// One unknown: its start, its estimate, its error bounds, all in its own unit.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct ParameterEstimate {
+    /// The parameter's name.
     #[schema(example = "Malpha")]
     pub name: String,
+    /// The parameter's own unit, as the document writes it.
     #[schema(example = "1/s^2")]
     pub unit: String,
     /// Which segment a per-maneuver parameter belongs to.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub segment: Option<String>,
+    /// The value that the estimation started from.
     pub start: f64,
+    /// The value at the end.
     #[schema(example = -4.9176)]
     pub estimate: f64,
     /// Standard deviation of the estimate, corrected for coloured residuals unless the job asked otherwise; absent
@@ -28,15 +33,19 @@ pub struct ParameterEstimate {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = 0.04)]
     pub prior_share: Option<f64>,
+    /// Whether it was held at its start value.
     pub fixed: bool,
     /// The bound at which the parameter is held.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at_bound: Option<Bound>,
 }
 
+/// One of the two bounds of a parameter.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Bound {
+    /// The smallest value it may take.
     Lower,
+    /// The largest value it may take.
     Upper,
 }

@@ -14,14 +14,17 @@ use super::parameter::ParameterEstimate;
 /// with the noise covariance held at its estimate.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Prediction {
+    /// The segment's label.
     #[schema(example = "doublet")]
     pub segment: String,
     /// Of the estimation of the segment's own parameters; `converged` where it has none.
     pub outcome: Outcome,
+    /// The outcome in a sentence.
     pub reason: String,
     /// The segment's own parameters.
     pub parameters: Vec<ParameterEstimate>,
     /// Empty where the simulation left the range of numbers.
     pub outputs: Vec<OutputFit>,
+    /// Samples of the segment.
     pub samples: usize,
 }

@@ -1,11 +1,11 @@
-//! What an estimation tells on its way, and who is told.
+//! The progress of an estimation, and who is told of it.
 
 use std::ops::ControlFlow;
 
 use super::iteration::Iteration;
 use super::start::StartReport;
 
-/// What an estimation tells on its way.
+/// News of an estimation under way.
 #[derive(Clone, Copy, Debug)]
 pub enum Progress<'a> {
     /// The search for start values.

@@ -7,16 +7,22 @@ use utoipa::ToSchema;
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StartKind {
+    /// The document's start values.
     Document,
+    /// Least squares of the state equations.
     EquationError,
+    /// A simplex search.
     NelderMead,
+    /// Random starts, each run to its end.
     MultiStart,
+    /// Intervals whose jumps are closed step by step.
     MultipleShooting,
 }
 
 /// One line of the search for start values.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct StartReport {
+    /// How the start was looked for.
     pub method: StartKind,
     /// Evaluations of the model over all data so far.
     pub evaluations: usize,

@@ -133,7 +133,7 @@ fn run(problem: &Problem, number: usize, theta: Vec<f64>, stop: &AtomicBool) -> 
     }
 }
 
-/// What the runs so far came to.
+/// The results of the runs so far.
 #[derive(Default)]
 struct Tally {
     best: Option<(Vec<f64>, f64)>,

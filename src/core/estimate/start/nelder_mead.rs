@@ -1,5 +1,5 @@
 //! Simplex search by the cost alone, R concentrated (Nelder and Mead 1965), with coefficients that suit the number of
-//! parameters (Gao and Han 2012): needs no derivatives, and walks over ripples in which a gradient is caught.
+//! parameters (Gao and Han 2012): needs no derivatives, and passes over ripples that would trap a gradient.
 
 use super::found::Start;
 use crate::estimate::evaluation::evaluator::Evaluator;

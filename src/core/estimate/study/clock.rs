@@ -2,6 +2,7 @@
 
 /// Seconds since some moment.
 pub trait Clock {
+    /// Wall time.
     fn wall(&self) -> f64;
     /// Of this thread.
     fn cpu(&self) -> f64;

@@ -1,4 +1,4 @@
-//! What a gradient costs in operations and memory: by formula, and counted on the compiled model.
+//! The cost of a gradient in operations and memory: by formula, and counted on the compiled model.
 
 use super::report::{FormulaOperations, ProblemSize};
 use crate::estimate::evaluation::derivatives::perturbation::STRETCH;

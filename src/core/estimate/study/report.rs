@@ -1,4 +1,4 @@
-//! What a derivative study answers.
+//! The answer of a derivative study.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -8,9 +8,11 @@ use crate::estimate::options::technique::Scaling;
 /// Derivative techniques compared on one problem, at its start values.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct DerivativeStudy {
+    /// The problem that they are compared on.
     pub size: ProblemSize,
     /// Error of the gradient against the step, for each technique that has one.
     pub error_curves: Vec<ErrorCurve>,
+    /// Each technique with its usual step.
     pub techniques: Vec<TechniqueResult>,
     /// Cost of one gradient, direct and adjoint, with only some of the parameters free.
     pub costs: Vec<CostPoint>,
@@ -26,7 +28,9 @@ pub struct ProblemSize {
     /// Samples N over all segments.
     #[schema(example = 751)]
     pub samples: usize,
+    /// States of the model, n_x.
     pub states: usize,
+    /// Outputs of the model, n_y.
     pub outputs: usize,
     /// Free unknowns n_θ.
     pub unknowns: usize,
@@ -37,12 +41,14 @@ pub struct ProblemSize {
 /// Error of the gradient of one technique by its step.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct ErrorCurve {
+    /// The technique's name, as in a job's options.
     #[schema(example = "central_difference")]
     pub technique: String,
     /// From the largest step to the smallest.
     pub points: Vec<ErrorPoint>,
 }
 
+/// The error of a gradient at one step.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct ErrorPoint {
     /// Relative to each parameter's size.
@@ -57,6 +63,7 @@ pub struct ErrorPoint {
 /// One technique with its usual step.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct TechniqueResult {
+    /// The technique's name, as in a job's options.
     #[schema(example = "adjoint")]
     pub technique: String,
     /// As in the curves; of forward sensitivities absent, since they are the reference.
@@ -67,46 +74,60 @@ pub struct TechniqueResult {
     pub simulations: usize,
     /// Bytes that the technique works in, beside the recording.
     pub bytes: usize,
-    /// Time of one gradient, s; the least of several.
+    /// CPU time of one gradient, s; the least of several.
     pub cpu_seconds: f64,
+    /// Wall time of one gradient, s; the least of several.
     pub wall_seconds: f64,
     /// Of an estimation with this technique: Levenberg-Marquardt where it gives ∂y/∂θ, else BFGS.
     pub iterations: usize,
+    /// How that estimation ended.
     #[schema(example = "converged")]
     pub outcome: String,
-    /// The estimation's own time, s.
+    /// Wall time of that estimation, s.
     pub estimation_wall_seconds: f64,
+    /// CPU time of that estimation, s.
     pub estimation_cpu_seconds: f64,
     /// How much higher than the lowest cost of all techniques it ended; 0.5e-10 is 1e-5 standard errors.
     pub cost_excess: f64,
 }
 
+/// The cost of one gradient with so many parameters free.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct CostPoint {
     /// Free unknowns.
     pub unknowns: usize,
+    /// Operations by forward sensitivities.
     pub direct_operations: u64,
+    /// Operations by the adjoint.
     pub adjoint_operations: u64,
+    /// Wall time by forward sensitivities, s.
     pub direct_wall_seconds: f64,
+    /// Wall time by the adjoint, s.
     pub adjoint_wall_seconds: f64,
 }
 
 /// Machado 2022, table 11.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct FormulaOperations {
+    /// Multiplications of one gradient by forward sensitivities.
     pub direct_multiplications: u64,
+    /// Additions of one gradient by forward sensitivities.
     pub direct_additions: u64,
+    /// Multiplications of one gradient by the adjoint, the reverse mode.
     pub reverse_multiplications: u64,
+    /// Additions of one gradient by the adjoint, the reverse mode.
     pub reverse_additions: u64,
 }
 
 /// One descent from the start values until 0.01 standard errors from the minimum, in cost.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct DescentResult {
+    /// The optimiser's name.
     #[schema(example = "BFGS")]
     pub optimiser: String,
     /// What it knew of the Hessian at the start; absent where the optimiser has it at every step.
     pub scaling: Option<Scaling>,
+    /// Steps taken.
     pub iterations: usize,
     /// Gradients evaluated.
     pub gradients: usize,
@@ -119,8 +140,10 @@ pub struct DescentResult {
 /// How far the study is.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct StudyStep {
+    /// How many findings there are so far, this one included.
     #[schema(example = 7)]
     pub number: usize,
+    /// How many there will be.
     #[schema(example = 19)]
     pub of: usize,
     /// What was found, in a sentence.

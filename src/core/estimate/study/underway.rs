@@ -16,23 +16,21 @@ use crate::estimate::problem::unusable::Unusable;
 pub type Listener<'o> = dyn FnMut(Option<&StudyStep>) -> ControlFlow<()> + 'o;
 
 /// Why a study comes to no end.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug, thiserror::Error)]
 pub enum NoStudy {
+    /// The listener wanted no more.
+    #[error("stopped on request")]
     Stopped,
-    Unusable(Unusable),
-}
-
-impl From<Unusable> for NoStudy {
-    fn from(why: Unusable) -> Self {
-        Self::Unusable(why)
-    }
+    /// The start values give no cost.
+    #[error(transparent)]
+    Unusable(#[from] Unusable),
 }
 
 pub(super) struct Study<'a, 'o> {
     pub problem: Problem,
     pub theta: Vec<f64>,
     pub weighting: Weighting,
-    /// What each unknown's standard error would be if it were the only one.
+    /// The standard error that each unknown would have if it were the only one.
     pub errors: DVector<f64>,
     pub reference: DVector<f64>,
     pub clock: &'a dyn Clock,

@@ -90,7 +90,7 @@ impl<'a> Found<'a> {
             (_, 0) => return Ok(()),
             _ => {
                 return Err(cell.fault(
-                    " has more than one mark; write numbers without marks between thousands",
+                    " has more than one separator; write numbers without thousands separators",
                 ));
             }
         }
@@ -115,7 +115,7 @@ impl<'a> Found<'a> {
             None => Ok(Decimal::Point),
             Some(_) if self.is_comma_decimal => Ok(Decimal::Comma),
             Some(cell) => Err(cell.fault(
-                " may have a decimal comma or one between thousands, and no other number tells; write decimal points",
+                " may have a decimal comma or a thousands separator, and no other number tells which; write decimal points",
             )),
         }
     }

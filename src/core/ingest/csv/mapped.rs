@@ -57,7 +57,8 @@ pub(super) fn header(
         taken.take(&place, name, &channel.from, unit);
     }
     if mapping.channels.is_empty() {
-        let message = "the mapping takes no channel beside time; add every quantity that is needed";
+        let message =
+            "the mapping takes no channel besides time; add every quantity that is needed";
         let fault = Fault::new("/channels", code::NO_CHANNELS, message);
         taken.faults.push(fault);
     }
@@ -126,7 +127,7 @@ fn column(from: &str, labels: &[Label]) -> Result<usize, (&'static str, String)>
             match (found.next(), found.next()) {
                 (Some(at), None) => Ok(at),
                 (Some(_), Some(second)) => unknown(format!(
-                    "{} stands over several columns; say which by its number, as (:,{})",
+                    "{} is the title of several columns; say which by its number, as (:,{})",
                     quoted(&name),
                     second + 1
                 )),
@@ -141,7 +142,7 @@ fn column(from: &str, labels: &[Label]) -> Result<usize, (&'static str, String)>
             }
         }
         _ => unknown(
-            "a column of a CSV file is said by its name, as alpha, or by its number, as (:,2)"
+            "name a column of a CSV file by its title, as alpha, or by its number, as (:,2)"
                 .to_string(),
         ),
     }

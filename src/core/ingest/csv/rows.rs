@@ -115,7 +115,7 @@ impl Table<'_> {
         if is_missing(unquote(cell)) {
             return Ok(f64::NAN);
         }
-        let stamp = Stamp::parse(cell).ok_or("is not a time stamp as the first row has one; write it alike, as in 2026-11-21T12:00:00.123Z or 12:00:00.123")?;
+        let stamp = Stamp::parse(cell).ok_or("is not a time stamp like that of the first row; write all alike, as in 2026-11-21T12:00:00.123Z or 12:00:00.123")?;
         self.watch
             .seconds(stamp)
             .map_err(|why| format!("does not fit: {why}"))

@@ -101,7 +101,7 @@ impl Mapping {
                 let name = short_message(text);
                 let known: Vec<&str> = Self::names().collect();
                 let message = format!(
-                    "there is no mapping '{name}'; known are {}, or give a document {{\"time\": {{\"from\", \"unit\"}}, \"channels\": {{name: {{\"from\", \"unit\"}}}}}}",
+                    "there is no mapping '{name}'; those that come with Trimtab are {}; or give a document {{\"time\": {{\"from\", \"unit\"}}, \"channels\": {{name: {{\"from\", \"unit\"}}}}}}",
                     known.join(", ")
                 );
                 Err(of_file(code::INVALID_MAPPING, message))
@@ -132,7 +132,7 @@ impl Mapping {
             from.parse::<Source>().map_err(|why| {
                 let from = short_message(from);
                 let message = format!(
-                    "mapping: '{from}' is no source such as fdata(:,4), rec.alpha or (:,4): {why}"
+                    "mapping: '{from}' is not a source such as fdata(:,4), rec.alpha or (:,4): {why}"
                 );
                 Fault::new(place, code::INVALID_MAPPING, message)
             })?;
@@ -189,7 +189,7 @@ mod tests {
             );
             assert!(fault.message.contains(expected), "{fault}");
         };
-        refused("sidpack", "", "known are fvsysid-attas");
+        refused("sidpack", "", "Trimtab are fvsysid-attas");
         refused("{", "", "EOF");
         refused(r#"{"time": {"unit": "s"}}"#, "", "channels");
         refused(

@@ -127,7 +127,7 @@ impl Head {
         let matrix = Matrix::of_bytes(shape, numbers.bytes, number);
         matrix
             .map(Ok)
-            .ok_or("an array has another number of values than its dimensions say")
+            .ok_or("an array does not have as many values as its dimensions say")
     }
 }
 

@@ -71,14 +71,14 @@ fn byte_order(bytes: &[u8]) -> Result<Order, Fault> {
     match bytes.get(124..HEADER) {
         Some([0x00, 0x01, b'I', b'M']) => Ok(Order::Little),
         Some([0x01, 0x00, b'M', b'I']) => Ok(Order::Big),
-        _ if bytes.starts_with(b"MATLAB 5.0") => Err(damaged("its header is not whole")),
+        _ if bytes.starts_with(b"MATLAB 5.0") => Err(damaged("its header is incomplete")),
         // version 4 begins with a number, later ones with text
         _ if bytes.len() >= 20 && bytes[..4].contains(&0) => {
             let message = "this may be a MAT file of version 4, which is not read; save it with: save('file.mat', '-v7')";
             Err(of_file(code::MAT_VERSION, message))
         }
         _ => {
-            let message = "this is no MAT file; send a matrix of numbers as text/plain, and other recordings as CSV or JSON";
+            let message = "this is not a MAT file; send a matrix of numbers as text/plain, and other recordings as CSV or JSON";
             Err(of_file(code::NOT_A_MAT_FILE, message))
         }
     }
@@ -110,7 +110,7 @@ impl File<'_> {
             return match (matrices.next(), matrices.next()) {
                 (Some(at), None) => Ok(at),
                 _ => unknown(format!(
-                    "the file does not have just one matrix, name the variable; there is {}",
+                    "the file does not have exactly one matrix; name the variable; it has {}",
                     self.contents()
                 )),
             };
@@ -119,7 +119,7 @@ impl File<'_> {
         found.map_or_else(
             || {
                 unknown(format!(
-                    "there is no variable '{name}'; there is {}",
+                    "there is no variable '{name}'; the file has {}",
                     self.contents()
                 ))
             },
@@ -151,7 +151,7 @@ impl Archive for File<'_> {
         for field in path.iter().skip(1) {
             if !head.is_struct() || head.count() != Some(1) {
                 let message = format!(
-                    "'{here}' is no single struct but {}; '{field}' cannot be taken from it",
+                    "'{here}' is not a single struct but {}; '{field}' cannot be taken from it",
                     head.description()
                 );
                 return Err((code::UNREADABLE_SOURCE, message));
@@ -177,7 +177,7 @@ impl Archive for File<'_> {
         }
         head.matrix(&mut elements).map_err(of_damage)?.map_err(|found| {
             let message = format!(
-                "'{here}' is no matrix of real numbers but {found}; save numbers, or name a field of a struct with a dot"
+                "'{here}' is not a matrix of real numbers but {found}; save numbers, or name a field of a struct with a dot"
             );
             (code::UNREADABLE_SOURCE, message)
         })

@@ -1,4 +1,4 @@
-//! Single samples far out, and raw samples at the ends of a stretch.
+//! Single samples far out, and raw samples at the ends of a piece without gaps.
 //!
 //! Both are seen in second differences `d[k] = x[k-1] - 2 x[k] + x[k+1]`, which do not see offset and
 //! trend, against their median absolute deviation, which does not see the spikes themselves.
@@ -20,7 +20,7 @@ const AT_ENDS: f64 = 12.0;
 const END: usize = 3;
 /// Samples on each side that the local noise is taken from.
 const NEIGHBOURS: usize = 25;
-/// Shorter stretches do not tell what is usual.
+/// Shorter pieces do not tell what is usual.
 const SHORTEST: usize = 20;
 /// From median absolute deviation to standard deviation, normally distributed.
 const MAD_TO_SIGMA: f64 = 1.4826;
@@ -28,10 +28,10 @@ const MAD_TO_SIGMA: f64 = 1.4826;
 pub(super) fn spikes(name: &str, values: &[f64], segments: &[Range<usize>]) -> Option<Finding> {
     let mut rows = Vec::new();
     for segment in segments {
-        let Some(stretch) = values.get(segment.clone()).and_then(Stretch::of) else {
+        let Some(piece) = values.get(segment.clone()).and_then(Piece::of) else {
             continue;
         };
-        let mut found: Vec<usize> = stretch.inside().chain(stretch.at_ends()).collect();
+        let mut found: Vec<usize> = piece.inside().chain(piece.at_ends()).collect();
         found.sort_unstable();
         found.dedup();
         rows.extend(found.into_iter().map(|k| k + segment.start));
@@ -40,7 +40,7 @@ pub(super) fn spikes(name: &str, values: &[f64], segments: &[Range<usize>]) -> O
         return None;
     }
     let message = format!(
-        "{} sample(s) lie far off their neighbours, measured by the channel's own noise",
+        "{} sample(s) lie far from their neighbours, measured by the channel's own noise",
         rows.len()
     );
     Some(finding(
@@ -53,18 +53,18 @@ pub(super) fn spikes(name: &str, values: &[f64], segments: &[Range<usize>]) -> O
     ))
 }
 
-/// One stretch between gaps, with what is usual in it.
-struct Stretch<'a> {
+/// One piece between gaps, with what is usual in it.
+struct Piece<'a> {
     values: &'a [f64],
     /// Second differences; NaN at both ends.
     second: Vec<f64>,
-    /// Their usual size over the whole stretch: 0 for a signal that mostly stands still.
+    /// Their usual size over the whole piece: 0 for a signal that mostly stands still.
     usual: f64,
     /// The smallest size that means anything: usual noise, quantisation, rounding.
     floor: f64,
 }
 
-impl<'a> Stretch<'a> {
+impl<'a> Piece<'a> {
     /// `None` where nothing can be said: too short, or never changing.
     fn of(values: &'a [f64]) -> Option<Self> {
         if values.len() < SHORTEST {

@@ -77,7 +77,7 @@ pub(super) fn check_options(options: &Options, model: &Model, faults: &mut Vec<F
         faults.push(Fault::new(pointer, "bad_option", message));
     }
     if !model.delays.is_empty() && options.derivatives != Derivatives::default() {
-        let message = "delays are known to the technique \"forward_sensitivities\" alone; choose it, or leave the delays out of the model";
+        let message = "only the technique \"forward_sensitivities\" handles delays; choose it, or leave the delays out of the model";
         faults.push(Fault::new("/options/derivatives", "bad_option", message));
     }
     if let Some((field, message)) = options.start.unfit() {

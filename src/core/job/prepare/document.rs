@@ -15,7 +15,7 @@ pub(super) fn edited(
     let mut document = declared.clone();
     for (i, edit) in spec.edits.iter().enumerate().take(MOST_EDITS) {
         match edit.apply(&document) {
-            Ok(edited) => document = edited,
+            Ok(edited) => document = edited.document,
             Err(error) => faults.push(Fault::new(
                 format!("/edits/{i}"),
                 error.code(),

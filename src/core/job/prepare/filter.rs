@@ -26,7 +26,7 @@ pub(super) fn check_options(options: &Options, model: &Model, faults: &mut Vec<F
         return;
     }
     if !model.delays.is_empty() {
-        let message = "the filter-error estimator knows no delays; fix each delay by leaving it out of the model, or use the estimator \"output_error\"";
+        let message = "the filter-error estimator does not handle delays; fix each delay by leaving it out of the model, or use the estimator \"output_error\"";
         faults.push(fault("/options/estimator", message.to_string()));
     }
     if model.states.is_empty() {
@@ -45,11 +45,11 @@ pub(super) fn check_options(options: &Options, model: &Model, faults: &mut Vec<F
         };
         match noise.start {
             None if noise.fixed => {
-                let message = "fixed at what? give a \"start\"; 0 is no process noise";
+                let message = "a fixed intensity needs a \"start\"; 0 is no process noise";
                 faults.push(fault(&pointer, message.to_string()));
             }
             Some(start) if start == 0.0 && !noise.fixed => {
-                let message = "nothing leads away from 0: leave \"start\" out for an automatic one, or say \"fixed\": true for no process noise";
+                let message = "an intensity that starts at 0 stays there: leave \"start\" out for an automatic one, or say \"fixed\": true for no process noise";
                 faults.push(fault(&format!("{pointer}/start"), message.to_string()));
             }
             Some(start) if start != 0.0 && !INTENSITIES.contains(&(start * state.unit.scale)) => {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::diagnose::{Case, Effect, Knowledge, KnownSize, candidates};
 use crate::flight::{Fault, Unit, escape};
-use crate::model::{Added, Model};
+use crate::model::Model;
 
 /// Names in a message: there may be hundreds of candidates.
 const TOLD: usize = 30;
@@ -198,8 +198,8 @@ fn unit(case: &Case, pointer: &str, known: &KnownSize, meant: &[&Effect], faults
         let Ok(edited) = effect.apply(&case.document) else {
             continue;
         };
-        let added = Added::between(&case.document, &edited).parameters;
-        let size = added.first().and_then(|name| edited.parameters.get(name));
+        let size = edited.added.first();
+        let size = size.and_then(|added| edited.document.parameters.get(&added.name));
         let measured = size.and_then(|size| Unit::parse(&size.unit).ok());
         if let Some(measured) = measured.filter(|measured| measured.dimension != unit.dimension) {
             let message = format!(

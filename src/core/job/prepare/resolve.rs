@@ -300,7 +300,7 @@ fn samples(
             missing.len(),
             stretch.rows.start + first + 1,
             if mapped.is_some() {
-                "correct the formula where it is no number (interpolated(...) fills in between values), or choose \"rows\" without them"
+                "correct the formula where it gives no number (interpolated(...) fills in between values), or choose \"rows\" without them"
                     .to_string()
             } else {
                 format!(

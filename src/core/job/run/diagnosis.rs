@@ -6,6 +6,7 @@ use super::run;
 use crate::diagnose::{Inconclusive, Step, diagnose};
 use crate::estimate::Outcome;
 use crate::flight::Fault;
+use crate::job::no_start::no_start;
 use crate::job::plan::Plan;
 use crate::job::result::JobResult;
 
@@ -34,6 +35,7 @@ pub fn run_diagnosis(
             "diverged_at_start",
             why.to_string(),
         )]),
+        Err(Inconclusive::NoStart(why)) => Err(vec![no_start(&plan.problem, why)]),
         // what there is so far is where the declared model starts from
         Err(Inconclusive::Stopped) => {
             let mut result = run(plan, &mut |_| ControlFlow::Break(()))?;

@@ -4,7 +4,7 @@ mod diagnosis;
 mod study;
 
 pub use diagnosis::run_diagnosis;
-pub use study::{Progress, run_study};
+pub use study::{StudyProgress, run_study};
 
 use std::ops::ControlFlow;
 
@@ -24,12 +24,14 @@ pub fn run(
 ) -> Result<JobResult, Vec<Fault>> {
     let problem = &plan.problem;
     let Solution {
+        theta,
+        covariance,
         estimate: mut result,
         mut histories,
     } = estimate(problem, watcher).map_err(|why| vec![no_start(problem, why)])?;
     if result.outcome != Outcome::Cancelled {
         for validation in &plan.validation {
-            let (prediction, history) = predict(problem, &result, validation);
+            let (prediction, history) = predict(problem, &theta, &covariance, validation);
             result.prediction.push(prediction);
             histories.extend(history);
         }

@@ -12,8 +12,10 @@ use crate::job::result::JobResult;
 
 /// What a study tells as it goes.
 #[derive(Clone, Copy, Debug)]
-pub enum Progress<'a> {
+pub enum StudyProgress<'a> {
+    /// The estimation got on.
     Estimation(estimate::Progress<'a>),
+    /// A result of the comparison.
     Finding(&'a StudyStep),
     /// Nothing new, but an occasion to stop it.
     Underway,
@@ -26,16 +28,17 @@ pub enum Progress<'a> {
 pub fn run_study(
     plan: &Plan,
     clock: &dyn Clock,
-    observer: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
+    observer: &mut dyn FnMut(StudyProgress<'_>) -> ControlFlow<()>,
 ) -> Result<JobResult, Vec<Fault>> {
     let mut result = run(plan, &mut |progress| {
-        observer(Progress::Estimation(progress))
+        observer(StudyProgress::Estimation(progress))
     })?;
     if result.estimate.outcome == Outcome::Cancelled {
         return Ok(result);
     }
-    let mut listener =
-        |step: Option<&StudyStep>| observer(step.map_or(Progress::Underway, Progress::Finding));
+    let mut listener = |step: Option<&StudyStep>| {
+        observer(step.map_or(StudyProgress::Underway, StudyProgress::Finding))
+    };
     match study::study(&plan.problem, clock, &mut listener) {
         Ok(study) => result.study = Some(study),
         Err(NoStudy::Unusable(why)) => return Err(vec![no_start(&plan.problem, why)]),

@@ -1,5 +1,6 @@
 //! Effects in the equations of motion: terms, channels and states that the model leaves out.
 
+use super::edited::AddedRole;
 use super::sheet::{Sheet, dimension, unknown};
 use super::text::{names, replace};
 use super::{Edit, EditError, Reference};
@@ -35,7 +36,11 @@ pub(super) fn missing_term(sheet: &mut Sheet) -> Result<(), EditError> {
     let (_, measures) = sheet.equation(target)?;
     let unit = measures.over(measured.unwrap_or(Dimension::NONE));
     let words = format!("missing term of {target}");
-    sheet.add(&name, unknown(unit.to_string(), 0.0, None, words));
+    sheet.add(
+        &name,
+        AddedRole::Size,
+        unknown(unit.to_string(), 0.0, None, words),
+    );
     let term = about(sheet, &parsed.to_string())?;
     let (equation, _) = sheet.equation(target)?;
     *equation = format!("{equation} + {name}*({term})");
@@ -77,7 +82,7 @@ fn about(sheet: &mut Sheet, term: &str) -> Result<String, EditError> {
                     fixed: true,
                     ..unknown(unit, *value, None, words)
                 };
-                sheet.add(&held, fixed);
+                sheet.add(&held, AddedRole::Reference, fixed);
                 held
             }
         };
@@ -148,7 +153,11 @@ pub(super) fn unrecorded_input(sheet: &mut Sheet) -> Result<(), EditError> {
     let (_, measures) = sheet.equation(target)?;
     let unit = measures.over(dimension(&unit));
     let words = format!("{channel} in the equation of {target}");
-    sheet.add(&name, unknown(unit.to_string(), 0.0, None, words));
+    sheet.add(
+        &name,
+        AddedRole::Size,
+        unknown(unit.to_string(), 0.0, None, words),
+    );
     let term = about(sheet, &channel)?;
     let (equation, _) = sheet.equation(target)?;
     *equation = format!("{equation} + {name}*{term}");
@@ -191,10 +200,18 @@ pub(super) fn unsteady(sheet: &mut Sheet) -> Result<(), EditError> {
     let name = sheet.name(&format!("{target}_unsteady"))?;
     let words = format!("effect on {target} of {angle} ahead of the flow");
     let of_name = measures.over(dimension(&unit));
-    sheet.add(&name, unknown(of_name.to_string(), 0.0, None, words));
+    sheet.add(
+        &name,
+        AddedRole::Size,
+        unknown(of_name.to_string(), 0.0, None, words),
+    );
     let time = sheet.free(&format!("{target}_unsteady_time"));
     let words = format!("time constant of the flow behind {angle}");
-    sheet.add(&time, unknown("s", 0.2, Some((0.01, 5.0)), words));
+    sheet.add(
+        &time,
+        AddedRole::TimeConstant,
+        unknown("s", 0.2, Some((0.01, 5.0)), words),
+    );
     let lagged = sheet.free(&format!("{angle}_lagged"));
     let (equation, _) = sheet.law(target)?;
     *equation = format!("{equation} + {name}*({angle} - {lagged})");
@@ -220,6 +237,22 @@ pub(super) fn initial_state(sheet: &mut Sheet) -> Result<(), EditError> {
         per: Per::Maneuver,
         ..unknown(unit, 0.0, None, words)
     };
-    sheet.add(&name, parameter);
+    sheet.add(&name, AddedRole::Size, parameter);
     Ok(())
+}
+
+/// A parameter that was fixed, at what would be no effect, is to be estimated.
+pub(super) fn freed(sheet: &mut Sheet) -> Result<(), EditError> {
+    let target = sheet.target();
+    let is_fixed = |(_, parameter): &(&String, &Parameter)| parameter.fixed;
+    let known = sheet.document.parameters.iter().filter(is_fixed);
+    let missing = sheet.no_target("fixed parameter", target, known.map(|(name, _)| name));
+    match sheet.document.parameters.get_mut(target) {
+        Some(parameter) if parameter.fixed => {
+            parameter.fixed = false;
+            sheet.note(target, AddedRole::Size);
+            Ok(())
+        }
+        _ => Err(missing),
+    }
 }

@@ -1,6 +1,7 @@
 //! Effects between a recorded input and the control surface.
 
 use super::EditError;
+use super::edited::AddedRole;
 use super::sensors::{DELAY, LAG, LAGS, SCALE, later};
 use super::sheet::{Sheet, dimension, of_a_difference, per_second, unknown};
 use crate::model::document::Parameter;
@@ -10,7 +11,11 @@ pub(super) fn bias(sheet: &mut Sheet) -> Result<(), EditError> {
     let unit = of_a_difference(&sheet.input(target)?);
     let name = sheet.name(&format!("{target}_bias"))?;
     (sheet.document).substitute(target, &format!("({target} + {name})"));
-    sheet.add(&name, unknown(unit, 0.0, None, format!("bias of {target}")));
+    sheet.add(
+        &name,
+        AddedRole::Size,
+        unknown(unit, 0.0, None, format!("bias of {target}")),
+    );
     Ok(())
 }
 
@@ -20,7 +25,11 @@ pub(super) fn scale(sheet: &mut Sheet) -> Result<(), EditError> {
     let name = sheet.name(&format!("{target}_scale"))?;
     (sheet.document).substitute(target, &format!("((1 + {name})*{target})"));
     let words = format!("scale factor, less one, of {target}");
-    sheet.add(&name, unknown("-", 0.0, Some(SCALE), words));
+    sheet.add(
+        &name,
+        AddedRole::Size,
+        unknown("-", 0.0, Some(SCALE), words),
+    );
     Ok(())
 }
 
@@ -34,7 +43,11 @@ pub(super) fn delay(sheet: &mut Sheet) -> Result<(), EditError> {
         }
     }
     let words = format!("time delay of {}", sheet.edit.target);
-    sheet.add(&name, unknown("s", 0.0, Some(DELAY), words));
+    sheet.add(
+        &name,
+        AddedRole::Delay,
+        unknown("s", 0.0, Some(DELAY), words),
+    );
     Ok(())
 }
 
@@ -55,7 +68,11 @@ pub(super) fn lag(sheet: &mut Sheet) -> Result<(), EditError> {
     sheet.input(target)?;
     let name = sheet.name(&format!("{target}_lag"))?;
     let words = format!("time constant of the actuator of {target}");
-    sheet.add(&name, unknown("s", LAG, Some(LAGS), words));
+    sheet.add(
+        &name,
+        AddedRole::TimeConstant,
+        unknown("s", LAG, Some(LAGS), words),
+    );
     actuator(sheet, |state| format!("({target} - {state})/{name}"))
 }
 
@@ -67,7 +84,7 @@ fn following(sheet: &mut Sheet) -> String {
         fixed: true,
         ..unknown("s", LAG, Some(LAGS), words)
     };
-    sheet.add(&name, fixed);
+    sheet.add(&name, AddedRole::TimeConstant, fixed);
     name
 }
 
@@ -82,7 +99,11 @@ pub(super) fn rate_limit(sheet: &mut Sheet) -> Result<(), EditError> {
     } else {
         (0.5, Some((1e-3, 1e6)))
     };
-    sheet.add(&name, unknown(per_second(&unit), bounds.0, bounds.1, words));
+    sheet.add(
+        &name,
+        AddedRole::Limit,
+        unknown(per_second(&unit), bounds.0, bounds.1, words),
+    );
     let time = following(sheet);
     actuator(sheet, |state| {
         format!("{name}*tanh(({target} - {state})/({name}*{time}))")
@@ -99,7 +120,7 @@ pub(super) fn backlash(sheet: &mut Sheet) -> Result<(), EditError> {
         lower: Some(0.0),
         ..unknown(unit, 0.0, None, words)
     };
-    sheet.add(&name, parameter);
+    sheet.add(&name, AddedRole::Size, parameter);
     let time = following(sheet);
     actuator(sheet, |state| {
         format!(

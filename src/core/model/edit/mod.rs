@@ -8,6 +8,7 @@
 //! an explicit integrator cannot follow.
 
 mod dynamics;
+mod edited;
 mod error;
 mod inputs;
 mod lookup;
@@ -19,6 +20,7 @@ mod stall;
 mod text;
 mod wind;
 
+pub use edited::{Added, AddedRole, Edited};
 pub use error::EditError;
 
 use indexmap::IndexMap;
@@ -73,7 +75,9 @@ pub struct Edit {
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(untagged)]
 pub enum Reference {
+    /// A number, in the unit of the name.
     Value(f64),
+    /// An expression in parameters and constants.
     Expression(String),
 }
 
@@ -181,51 +185,6 @@ impl EditKind {
     }
 }
 
-/// A parameter that was fixed, at what would be no effect, is to be estimated.
-fn freed(sheet: &mut Sheet) -> Result<(), EditError> {
-    let target = sheet.target();
-    let is_fixed = |(_, parameter): &(&String, &super::document::Parameter)| parameter.fixed;
-    let known = sheet.document.parameters.iter().filter(is_fixed);
-    let missing = sheet.no_target("fixed parameter", target, known.map(|(name, _)| name));
-    match sheet.document.parameters.get_mut(target) {
-        Some(parameter) if parameter.fixed => {
-            parameter.fixed = false;
-            Ok(())
-        }
-        _ => Err(missing),
-    }
-}
-
-/// What an edited document has that the one before had not, by name.
-#[derive(Clone, PartialEq, Eq, Debug, Default)]
-pub struct Added {
-    /// Those that are new, or no longer fixed. The effect's size comes first. Fixed ones among them are held or read off the data.
-    pub parameters: Vec<String>,
-    /// Channels that a recording must have besides.
-    pub inputs: Vec<String>,
-    pub states: Vec<String>,
-}
-
-impl Added {
-    pub fn between(before: &ModelDocument, after: &ModelDocument) -> Self {
-        fn new<'n>(
-            after: impl Iterator<Item = &'n String>,
-            is_old: impl Fn(&str) -> bool,
-        ) -> Vec<String> {
-            after.filter(|name| !is_old(name)).cloned().collect()
-        }
-        Self {
-            parameters: new(after.parameters.keys(), |name| {
-                let old = before.parameters.get(name);
-                let is_freed = old.is_some_and(|p| p.fixed) && !after.parameters[name].fixed;
-                old.is_some() && !is_freed
-            }),
-            inputs: new(after.inputs.keys(), |name| before.inputs.contains_key(name)),
-            states: new(after.states.keys(), |name| before.states.contains_key(name)),
-        }
-    }
-}
-
 impl Edit {
     /// An edit of a kind and a target; parameters have their usual names.
     pub fn new(kind: EditKind, target: impl Into<String>) -> Self {
@@ -248,16 +207,16 @@ impl Edit {
         }
     }
 
-    /// The document with the effect in it. What it has more: [`Added::between`].
+    /// The document with the effect in it, and what it has more.
     ///
     /// # Errors
     /// The target is not in the model or not fit for the kind, the term cannot be read, the parameter's name is taken,
     /// or one of them is too long.
-    pub fn apply(&self, document: &ModelDocument) -> Result<ModelDocument, EditError> {
+    pub fn apply(&self, document: &ModelDocument) -> Result<Edited, EditError> {
         self.check_lengths()?;
         let mut sheet = Sheet::new(self, document);
         match self.kind {
-            EditKind::FixedParameter => freed(&mut sheet),
+            EditKind::FixedParameter => dynamics::freed(&mut sheet),
             EditKind::SensorBias => sensors::bias(&mut sheet),
             EditKind::SensorScale => sensors::scale(&mut sheet),
             EditKind::SensorDrift => sensors::drift(&mut sheet),
@@ -280,7 +239,11 @@ impl Edit {
             EditKind::InitialState => dynamics::initial_state(&mut sheet),
             EditKind::StructuralMode => sensors::structural_mode(&mut sheet),
         }?;
-        Ok(sheet.document)
+        Ok(Edited {
+            document: sheet.document,
+            added: sheet.added,
+            inputs: sheet.inputs,
+        })
     }
 
     /// What is written here comes back many times in the document.

@@ -1,6 +1,7 @@
 //! The lever arm of a sensor that is not where the model has it: a vane or an accelerometer.
 
 use super::EditError;
+use super::edited::AddedRole;
 use super::lookup::Speed;
 use super::sensors::{Sensor, arm};
 use super::sheet::{Sheet, dimension};
@@ -117,7 +118,7 @@ pub(super) fn lever_arm(sheet: &mut Sheet) -> Result<(), EditError> {
     sensor.add(sheet, target, &error);
     let words =
         format!("position of the sensor of {target} along {letter}, from where the model has it");
-    sheet.add(&name, arm(words));
+    sheet.add(&name, AddedRole::Size, arm(words));
     Ok(())
 }
 

@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::EditError;
+use super::edited::AddedRole;
 use super::lookup::Speed;
 use super::sheet::{Sheet, unknown};
 use super::text::laws;
@@ -33,7 +34,11 @@ pub(super) fn scaled(sheet: &mut Sheet) -> Result<(), EditError> {
     let speed = sheet.speed(Speed::Varying)?;
     let name = sheet.name("qbar_share")?;
     let words = "share of the derivatives that follows the dynamic pressure".to_string();
-    sheet.add(&name, unknown("-", 0.0, Some((-2.0, 3.0)), words));
+    sheet.add(
+        &name,
+        AddedRole::Size,
+        unknown("-", 0.0, Some((-2.0, 3.0)), words),
+    );
     let reference = reference.unwrap_or_else(|| {
         let name = sheet.free("V_ref");
         let start = Start::FromData(format!("mean({}, 5)", speed_channel(sheet, &speed)));
@@ -43,7 +48,7 @@ pub(super) fn scaled(sheet: &mut Sheet) -> Result<(), EditError> {
             per: Per::Maneuver,
             ..unknown("m/s", 0.0, None, "speed of the steady flight".to_string())
         };
-        sheet.add(&name, parameter);
+        sheet.add(&name, AddedRole::Reference, parameter);
         name
     });
     let mut ratios: BTreeMap<i32, String> = BTreeMap::new();

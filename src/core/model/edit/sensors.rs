@@ -3,6 +3,7 @@
 //! The target is an output, or an input that is measured: there the model sees the recorded value less the error.
 
 use super::EditError;
+use super::edited::AddedRole;
 use super::sheet::{Sheet, dimension, of_a_difference, per_second, unknown};
 use crate::flight::{Dimension, PhysicalQuantity};
 use crate::model::document::Parameter;
@@ -72,7 +73,11 @@ pub(super) fn bias(sheet: &mut Sheet) -> Result<(), EditError> {
     let name = sheet.name(&format!("{target}_bias"))?;
     sensor.add(sheet, target, &name);
     let unit = of_a_difference(sensor.unit());
-    sheet.add(&name, unknown(unit, 0.0, None, format!("bias of {target}")));
+    sheet.add(
+        &name,
+        AddedRole::Size,
+        unknown(unit, 0.0, None, format!("bias of {target}")),
+    );
     Ok(())
 }
 
@@ -87,7 +92,11 @@ pub(super) fn scale(sheet: &mut Sheet) -> Result<(), EditError> {
         }
     }
     let words = format!("scale factor, less one, of {target}");
-    sheet.add(&name, unknown("-", 0.0, Some(SCALE), words));
+    sheet.add(
+        &name,
+        AddedRole::Size,
+        unknown("-", 0.0, Some(SCALE), words),
+    );
     Ok(())
 }
 
@@ -99,6 +108,7 @@ pub(super) fn drift(sheet: &mut Sheet) -> Result<(), EditError> {
     let unit = per_second(sensor.unit());
     sheet.add(
         &name,
+        AddedRole::Size,
         unknown(unit, 0.0, None, format!("drift of {target}")),
     );
     Ok(())
@@ -123,7 +133,11 @@ pub(super) fn delay(sheet: &mut Sheet) -> Result<(), EditError> {
         }
     }
     let words = format!("time delay of {}", sheet.edit.target);
-    sheet.add(&name, unknown("s", 0.0, Some(DELAY), words));
+    sheet.add(
+        &name,
+        AddedRole::Delay,
+        unknown("s", 0.0, Some(DELAY), words),
+    );
     Ok(())
 }
 
@@ -143,7 +157,11 @@ pub(super) fn lag(sheet: &mut Sheet) -> Result<(), EditError> {
     let (equation, unit) = (output.equation.clone(), output.unit.clone());
     let name = sheet.name(&format!("{target}_lag"))?;
     let words = format!("time constant of the sensor of {target}");
-    sheet.add(&name, unknown("s", LAG, Some(LAGS), words));
+    sheet.add(
+        &name,
+        AddedRole::TimeConstant,
+        unknown("s", LAG, Some(LAGS), words),
+    );
     let state = sheet.free(&format!("{target}_lagged"));
     let initial = sheet.at_start(&equation, &unit, target);
     let derivative = format!("({equation} - {state})/{name}");
@@ -169,13 +187,25 @@ pub(super) fn structural_mode(sheet: &mut Sheet) -> Result<(), EditError> {
     let of_gain = dimension(&unit).over(dimension(&sheet.input(driver)?));
     let gain = sheet.name(&format!("{target}_mode_gain"))?;
     let words = format!("static gain of the structural mode from {driver} to {target}");
-    sheet.add(&gain, unknown(of_gain.to_string(), 0.0, None, words));
+    sheet.add(
+        &gain,
+        AddedRole::Size,
+        unknown(of_gain.to_string(), 0.0, None, words),
+    );
     let frequency = sheet.free(&format!("{target}_mode_frequency"));
     let words = "natural frequency of the structural mode".to_string();
-    sheet.add(&frequency, unknown("rad/s", 12.0, Some((3.0, 60.0)), words));
+    sheet.add(
+        &frequency,
+        AddedRole::Frequency,
+        unknown("rad/s", 12.0, Some((3.0, 60.0)), words),
+    );
     let damping = sheet.free(&format!("{target}_mode_damping"));
     let words = "damping ratio of the structural mode".to_string();
-    sheet.add(&damping, unknown("-", 0.02, Some((0.001, 0.3)), words));
+    sheet.add(
+        &damping,
+        AddedRole::Damping,
+        unknown("-", 0.02, Some((0.001, 0.3)), words),
+    );
     let first = sheet.first_of(driver);
     let eta = sheet.free(&format!("{target}_mode"));
     let rate = sheet.free(&format!("{target}_mode_rate"));

@@ -1,5 +1,6 @@
 //! A document while it is edited: free names, what a name measures, what a quantity is called.
 
+use super::edited::{Added, AddedRole};
 use super::text::{names, replace};
 use super::{Edit, EditError};
 use crate::flight::{Dimension, PhysicalQuantity, Unit};
@@ -10,6 +11,9 @@ use crate::model::names::Names;
 pub(super) struct Sheet<'a> {
     pub edit: &'a Edit,
     pub document: ModelDocument,
+    /// Parameters and inputs that the document did not have.
+    pub added: Vec<Added>,
+    pub inputs: Vec<String>,
 }
 
 impl<'a> Sheet<'a> {
@@ -17,6 +21,8 @@ impl<'a> Sheet<'a> {
         Self {
             edit,
             document: document.clone(),
+            added: Vec::new(),
+            inputs: Vec::new(),
         }
     }
 
@@ -59,8 +65,17 @@ impl<'a> Sheet<'a> {
             || Function::find(name).is_some()
     }
 
-    pub(super) fn add(&mut self, name: &str, parameter: Parameter) {
+    pub(super) fn add(&mut self, name: &str, role: AddedRole, parameter: Parameter) {
         self.document.parameters.insert(name.to_string(), parameter);
+        self.note(name, role);
+    }
+
+    /// A parameter that is free now and was not.
+    pub(super) fn note(&mut self, name: &str, role: AddedRole) {
+        self.added.push(Added {
+            name: name.to_string(),
+            role,
+        });
     }
 
     pub(super) fn add_state(
@@ -155,7 +170,7 @@ impl<'a> Sheet<'a> {
         Names::collect(&self.document, &mut Vec::new()).dimension(name)
     }
 
-    /// What an expression is at the start of a segment, in parameters and constants: states are replaced by their
+    /// An expression at the start of a segment, in parameters and constants: states are replaced by their
     /// initial values, definitions written out, inputs replaced by fixed parameters that read their first sample.
     /// Where that is too long, a free parameter of each maneuver that starts at the first sample of `channel`.
     pub(super) fn at_start(&mut self, text: &str, unit: &str, channel: &str) -> String {
@@ -174,7 +189,7 @@ impl<'a> Sheet<'a> {
             per: Per::Maneuver,
             ..unknown(unit, 0.0, None, format!("{channel} at the start"))
         };
-        self.add(&name, unknown);
+        self.add(&name, AddedRole::Reference, unknown);
         name
     }
 
@@ -223,7 +238,7 @@ impl<'a> Sheet<'a> {
                 per: Per::Maneuver,
                 ..unknown(unit, 0.0, None, format!("{input} at the start"))
             };
-            self.add(&name, parameter);
+            self.add(&name, AddedRole::Reference, parameter);
         }
         name
     }

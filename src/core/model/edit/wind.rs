@@ -1,6 +1,7 @@
 //! Moving air: a gust, and wind that the model does not have, or has as a constant.
 
 use super::EditError;
+use super::edited::AddedRole;
 use super::sheet::{Sheet, unknown};
 use super::text::{laws, names, replace_name};
 use crate::flight::{Dimension, PhysicalQuantity, wind as by_name};
@@ -24,17 +25,25 @@ pub(super) fn gust(sheet: &mut Sheet) -> Result<(), EditError> {
     };
     let name = sheet.name(&format!("{target}_gust"))?;
     let words = format!("amplitude of the gust in {target}");
-    sheet.add(&name, each(unknown(&unit, 0.0, None, words)));
+    sheet.add(
+        &name,
+        AddedRole::Size,
+        each(unknown(&unit, 0.0, None, words)),
+    );
     let time = sheet.free(&format!("{target}_gust_time"));
     let words = "start of the gust, after the start of the maneuver".to_string();
     let parameter = Parameter {
         lower: Some(-10.0),
         ..unknown("s", 1.0, None, words)
     };
-    sheet.add(&time, each(parameter));
+    sheet.add(&time, AddedRole::Onset, each(parameter));
     let length = sheet.free(&format!("{target}_gust_length"));
     let words = "how long the gust takes to pass".to_string();
-    sheet.add(&length, each(unknown("s", 1.0, Some((0.1, 5.0)), words)));
+    sheet.add(
+        &length,
+        AddedRole::Duration,
+        each(unknown("s", 1.0, Some((0.1, 5.0)), words)),
+    );
     let definition = sheet.free(&format!("{target}_air"));
     for equation in laws(&mut sheet.document) {
         *equation = replace_name(equation, target, &definition);
@@ -179,7 +188,7 @@ fn blow(sheet: &mut Sheet, component: &Component, is_first: bool) -> Result<(), 
         per: Per::Maneuver,
         ..unknown(unit, 0.0, Some(bounds), words)
     };
-    sheet.add(&name, parameter);
+    sheet.add(&name, AddedRole::Size, parameter);
     Ok(())
 }
 

@@ -4,24 +4,43 @@
 /// channel formulas and where a parameter's start value is worked out.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Function {
+    /// Sine of an angle in radians.
     Sin,
+    /// Cosine of an angle in radians.
     Cos,
+    /// Tangent of an angle in radians.
     Tan,
+    /// The angle from -π/2 to π/2 of a sine.
     Asin,
+    /// The angle from 0 to π of a cosine.
     Acos,
+    /// The angle between -π/2 and π/2 of a tangent.
     Atan,
+    /// `atan2(y, x)`: the angle from -π to π of the direction (x, y).
     Atan2,
+    /// Hyperbolic tangent.
     Tanh,
+    /// Exponential.
     Exp,
+    /// Natural logarithm.
     Ln,
+    /// Square root.
     Sqrt,
+    /// Absolute value.
     Abs,
+    /// -1, 0 or 1.
     Sign,
+    /// The smaller of two.
     Min,
+    /// The larger of two.
     Max,
+    /// `if(condition, a, b)`: a where the condition holds, else b.
     If,
+    /// `first(channel)`: the first sample.
     First,
+    /// `mean(channel, seconds)`: the mean over the first seconds.
     Mean,
+    /// `interpolated(channel)`: missing samples filled linearly from their neighbours.
     Interpolated,
 }
 
@@ -48,16 +67,19 @@ const ALL: [(&str, Function, usize); 19] = [
 ];
 
 impl Function {
+    /// The function of this name.
     pub fn find(name: &str) -> Option<Self> {
         ALL.iter()
             .find(|(known, ..)| *known == name)
             .map(|&(_, function, _)| function)
     }
 
+    /// As equations write it.
     pub fn name(self) -> &'static str {
         self.entry().0
     }
 
+    /// How many arguments it takes.
     pub fn arguments(self) -> usize {
         self.entry().2
     }

@@ -14,40 +14,61 @@ pub use parser::parse;
 /// A place in the text of an expression, in bytes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Span {
+    /// The first byte.
     pub start: usize,
+    /// The byte behind the last.
     pub end: usize,
 }
 
 /// A node of the tree and where it stands in the text.
 #[derive(Clone, Debug)]
 pub struct Expression {
+    /// The node, its operands below it.
     pub kind: Kind,
+    /// Its place in the text that it was parsed from.
     pub span: Span,
 }
 
+/// What a node of the tree is.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Kind {
+    /// A number as written, at least 0.
     Number(f64),
+    /// A constant, input, state, definition, parameter, output, channel, `t` or `pi`.
     Name(String),
+    /// A minus sign before its operand.
     Negate(Box<Expression>),
+    /// An operator between its operands, the left one first.
     Binary(BinaryOperator, Box<Expression>, Box<Expression>),
+    /// A function of its arguments, in the order of the text.
     Call(Function, Vec<Expression>),
 }
 
+/// What stands between two operands.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum BinaryOperator {
+    /// `+`
     Add,
+    /// `-`
     Subtract,
+    /// `*`
     Multiply,
+    /// `/`
     Divide,
+    /// `^`
     Power,
+    /// `<`
     Less,
+    /// `<=`
     LessOrEqual,
+    /// `>`
     Greater,
+    /// `>=`
     GreaterOrEqual,
 }
 
 impl BinaryOperator {
+    /// Whether it gives a condition, which only `if` takes.
     pub fn is_comparison(self) -> bool {
         matches!(
             self,
@@ -85,7 +106,9 @@ impl Expression {
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 #[error("column {}: {message}", span.start + 1)]
 pub struct SyntaxError {
+    /// Where the text cannot be read.
     pub span: Span,
+    /// What is wrong there.
     pub message: String,
 }
 

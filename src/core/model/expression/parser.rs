@@ -170,7 +170,7 @@ impl<'a> Parser<'a> {
         let Some(function) = Function::find(name) else {
             let known: Vec<_> = Function::names().collect();
             let message = format!(
-                "there is no function '{name}'; known are {}",
+                "there is no function '{name}'; choose one of {}",
                 known.join(", ")
             );
             return Err(SyntaxError { span, message });
@@ -300,7 +300,7 @@ mod tests {
         );
         assert!(
             fault("a + sine(b)")
-                .starts_with("column 5: there is no function 'sine'; known are sin,")
+                .starts_with("column 5: there is no function 'sine'; choose one of sin,")
         );
         assert_eq!(
             fault("atan2(a)"),

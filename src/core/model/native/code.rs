@@ -10,7 +10,7 @@ use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Linkage, Module, default_libcall_names};
 
 use super::emit;
-use super::handed::{Handed, Stretch};
+use super::handed::{Handed, StepBlock};
 use crate::model::program::Program;
 
 type Entry = unsafe extern "C" fn(*const Handed);
@@ -61,23 +61,23 @@ impl Code {
         Some(code)
     }
 
-    /// Takes the steps of a stretch.
+    /// Takes the steps of a block of samples.
     ///
     /// The caller has made sure that the slices are as long as the code takes them to be: `registers` as those of the
     /// program, `stage_states`, `inputs` and `times` one block for each stage and each state, input or nothing more,
     /// `state` one number for each state, `lengths` at most a block.
-    pub(super) fn run(&self, registers: &[f64], stretch: &mut Stretch<'_>) {
-        let stages = stretch.stages.as_ptr_range();
+    pub(super) fn run(&self, registers: &[f64], block: &mut StepBlock<'_>) {
+        let stages = block.stages.as_ptr_range();
         let handed = Handed {
             registers: registers.as_ptr(),
             stages: stages.start,
             stages_end: stages.end,
-            lengths: stretch.lengths.as_ptr(),
-            lengths_size: size_of_val(stretch.lengths),
-            inputs: stretch.inputs.as_flattened().as_ptr(),
-            times: stretch.times.as_flattened().as_ptr(),
-            stage_states: stretch.stage_states.as_flattened_mut().as_mut_ptr(),
-            state: stretch.state.as_mut_ptr(),
+            lengths: block.lengths.as_ptr(),
+            lengths_size: size_of_val(block.lengths),
+            inputs: block.inputs.as_flattened().as_ptr(),
+            times: block.times.as_flattened().as_ptr(),
+            stage_states: block.stage_states.as_flattened_mut().as_mut_ptr(),
+            state: block.state.as_mut_ptr(),
         };
         // SAFETY: `entry` lives as long as `self`, and reads and writes nothing but what is handed over: the numbers
         // of the program's registers, of each stage and step, and of a block for each stage and each of what it has;

@@ -2,8 +2,8 @@
 
 use crate::model::scalar::BLOCK;
 
-/// Some steps to take, and where the states go.
-pub struct Stretch<'a> {
+/// Steps to take, no more than a block has samples, and where the states go.
+pub(crate) struct StepBlock<'a> {
     /// By stage: its weight, and how far the next one goes, as shares of the step.
     pub stages: &'a [[f64; 2]],
     /// Length of each step, s: at most as many as there are samples in a block.

@@ -10,7 +10,7 @@ mod emit;
 mod functions;
 mod handed;
 
-pub use handed::Stretch;
+pub(crate) use handed::StepBlock;
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -29,7 +29,7 @@ const MOST_INSTRUCTIONS: usize = 500;
 
 /// What the steps of one model have cost so far, and their machine code once there is some.
 #[derive(Debug, Default)]
-pub struct Native {
+pub(crate) struct Native {
     interpreted: AtomicUsize,
     /// `None` inside where the machine or the model does not allow for it.
     steps: OnceLock<Option<NativeSteps>>,
@@ -38,7 +38,12 @@ pub struct Native {
 impl Native {
     /// The machine code of steps, if by now there is any. `steps` of so many stages are about to be taken: where the
     /// sum of what was asked for warrants it, this call compiles. Others meanwhile go on without.
-    pub fn steps(&self, dynamics: &Program, steps: usize, stages: usize) -> Option<&NativeSteps> {
+    pub(crate) fn steps(
+        &self,
+        dynamics: &Program,
+        steps: usize,
+        stages: usize,
+    ) -> Option<&NativeSteps> {
         if let Some(steps) = self.steps.get() {
             return steps.as_ref();
         }
@@ -53,7 +58,7 @@ impl Native {
     }
 
     /// As [`Self::steps`], whatever was asked for.
-    pub fn now(&self, dynamics: &Program) -> Option<&NativeSteps> {
+    pub(crate) fn now(&self, dynamics: &Program) -> Option<&NativeSteps> {
         let compile = || NativeSteps::compile(dynamics);
         self.steps.get_or_init(compile).as_ref()
     }
@@ -61,7 +66,7 @@ impl Native {
 
 /// Steps of any explicit method in which each stage builds on the one before it.
 #[derive(Debug)]
-pub struct NativeSteps {
+pub(crate) struct NativeSteps {
     code: Code,
     registers: usize,
     states: usize,
@@ -82,14 +87,14 @@ impl NativeSteps {
     }
 
     /// Takes steps. θ stands in `workspace`, which is one of the program that this was compiled from.
-    pub fn take(&self, workspace: &Workspace<f64>, stretch: &mut Stretch<'_>) {
-        let stages = stretch.stages.len();
-        assert!(stages > 0 && stretch.lengths.len() <= BLOCK);
+    pub(crate) fn take(&self, workspace: &Workspace<f64>, block: &mut StepBlock<'_>) {
+        let stages = block.stages.len();
+        assert!(stages > 0 && block.lengths.len() <= BLOCK);
         assert_eq!(workspace.registers().len(), self.registers);
-        assert_eq!(stretch.inputs.len(), stages * self.inputs);
-        assert_eq!(stretch.times.len(), stages);
-        assert_eq!(stretch.stage_states.len(), stages * self.states);
-        assert_eq!(stretch.state.len(), self.states);
-        self.code.run(workspace.registers(), stretch);
+        assert_eq!(block.inputs.len(), stages * self.inputs);
+        assert_eq!(block.times.len(), stages);
+        assert_eq!(block.stage_states.len(), stages * self.states);
+        assert_eq!(block.state.len(), self.states);
+        self.code.run(workspace.registers(), block);
     }
 }

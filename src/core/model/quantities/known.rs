@@ -19,8 +19,11 @@ pub enum Source {
 /// What something was taken for.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Taken {
+    /// What it is.
     pub quantity: PhysicalQuantity,
+    /// How that is known.
     pub from: Source,
+    /// Why, in words.
     #[schema(example = "alpha is recorded as it")]
     pub reason: String,
 }
@@ -50,6 +53,7 @@ impl Quantities {
         self.named.iter().filter(is).map(|(name, _)| name.as_str())
     }
 
+    /// Outputs that measure a quantity.
     pub fn outputs_of(&self, quantity: PhysicalQuantity) -> impl Iterator<Item = &str> {
         let is = move |(_, taken): &(&String, &Taken)| taken.quantity == quantity;
         (self.outputs.iter().filter(is)).map(|(name, _)| name.as_str())

@@ -22,6 +22,7 @@ use super::document::ModelDocument;
 const PASSES: usize = 4;
 
 impl Quantities {
+    /// What a document declares, and what can be guessed.
     pub fn of(document: &ModelDocument) -> Self {
         let mut found = Self::default();
         found.declared(document);

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use super::document::{Scenario, ScenarioError};
 use super::effect::ScenarioEffect;
 use crate::flight::Channel;
-use crate::model::{Added, EditKind, Model, ModelDocument};
+use crate::model::{EditKind, Model, ModelDocument};
 
 const OUTLIERS: &str = "sensor_outliers";
 const PROCESS_NOISE: &str = "process_noise";
@@ -42,7 +42,7 @@ impl<'s> Affected<'s> {
             };
             if let Some(edit) = effect.edit() {
                 let edited = (edit.apply(&affected.document)).map_err(|e| unfit(e.to_string()))?;
-                let added = Added::between(&affected.document, &edited).parameters;
+                let added: Vec<String> = edited.added.into_iter().map(|added| added.name).collect();
                 if let Some(name) = effect.values.keys().find(|name| !added.contains(name)) {
                     let known = added.join(", ");
                     return Err(unfit(format!("it adds no '{name}'; it adds {known}")));
@@ -55,7 +55,7 @@ impl<'s> Affected<'s> {
                     .map(|(name, value)| (name.clone(), *value));
                 affected.scenario.truth.extend(values);
                 affected.added.extend(added);
-                affected.document = edited;
+                affected.document = edited.document;
             } else if effect.kind == OUTLIERS {
                 affected.outliers.push((i, effect));
             } else if effect.kind == PROCESS_NOISE {
@@ -66,7 +66,7 @@ impl<'s> Affected<'s> {
             } else {
                 let known: Vec<&str> = EditKind::ALL.iter().map(|kind| kind.name()).collect();
                 return Err(unfit(format!(
-                    "there is no effect '{}'; known are {}, {OUTLIERS}, {PROCESS_NOISE}",
+                    "there is no effect '{}'; choose one of {}, {OUTLIERS}, {PROCESS_NOISE}",
                     effect.kind,
                     known.join(", ")
                 )));

@@ -17,8 +17,10 @@ use crate::flight::Unit;
 pub struct Scenario {
     /// A catalog name.
     pub model: String,
+    /// One line for people.
     #[serde(default)]
     pub description: String,
+    /// Of the noise; another seed makes another recording of the same maneuver.
     pub seed: u64,
     /// Between samples, s.
     pub step: f64,
@@ -26,6 +28,7 @@ pub struct Scenario {
     pub duration: f64,
     /// Parameters, in their own units; those left out have the document's start value.
     pub truth: IndexMap<String, f64>,
+    /// Every input of the model, and how it moves.
     pub inputs: IndexMap<String, ScenarioInput>,
     /// By state: the intensity of white process noise, in the state's unit per √s, as of turbulence.
     #[serde(default)]
@@ -41,19 +44,24 @@ pub struct Scenario {
     pub effects: Vec<ScenarioEffect>,
 }
 
+/// How one input moves, and the unit in which it is recorded.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioInput {
+    /// The unit of `trim`, of the design's amplitudes, and of the recorded channel.
     pub unit: String,
     /// The deflection of the steady flight.
     #[serde(default)]
     pub trim: f64,
+    /// The deflection from trim over time.
     pub design: InputDesign,
 }
 
+/// How one output is recorded.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioOutput {
+    /// The unit of the recorded channel and of its noise.
     pub unit: String,
     /// Standard deviation of the measurement noise.
     pub noise: f64,
@@ -62,18 +70,29 @@ pub struct ScenarioOutput {
     pub colour: NoiseColour,
 }
 
+/// A channel that is recorded beside the model: a constant with white noise.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioChannel {
+    /// The unit of the recorded channel, of its value and of its noise.
     pub unit: String,
+    /// The constant.
     pub value: f64,
+    /// Standard deviation of its noise.
     pub noise: f64,
 }
 
+/// Why a scenario cannot be flown.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 pub enum ScenarioError {
+    /// A part of it contradicts the model, or itself.
     #[error("{what}: {message}")]
-    Unfit { what: String, message: String },
+    Unfit {
+        /// Which part of the scenario.
+        what: String,
+        /// What is wrong with it, and what would put it right.
+        message: String,
+    },
 }
 
 /// A unit of a dimension that the model asks for.

@@ -33,17 +33,23 @@ use crate::model::{Edit, EditKind, Input, Reference};
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioEffect {
+    /// The name of an [`EditKind`], `sensor_outliers` or `process_noise`.
     pub kind: String,
+    /// The channel, state or definition that it acts on.
     pub target: String,
+    /// As of an [`Edit`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub term: Option<String>,
+    /// As of an [`Edit`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub parameter: Option<String>,
     /// As of an [`Edit`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
+    /// As of an [`Edit`].
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub channels: IndexMap<String, Input>,
+    /// As of an [`Edit`].
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub about: IndexMap<String, Reference>,
     /// Of the first parameter that is added; the share of spikes, or the intensity of process noise.

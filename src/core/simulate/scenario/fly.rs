@@ -12,7 +12,7 @@ use crate::flight::{Channel, Dimension, Maneuver, Unit};
 use crate::model::{ChannelFormula, Model, Recorded, Start};
 use crate::simulate::method::{InputInterpolation, Integrator};
 use crate::simulate::segment::{Segment, Steps};
-use crate::simulate::trajectory::simulate_disturbed;
+use crate::simulate::simulation::simulate_disturbed;
 
 /// Integration steps between two samples: the truth is finer than what is recorded of it.
 const SUBSTEPS: usize = 10;
@@ -38,7 +38,7 @@ impl Scenario {
     }
 
     /// What is recorded. Of the parameters, `read_off` are read off the designed inputs where their start says so.
-    fn record(&self, model: &Model, read_off: &[String]) -> Result<Recording, ScenarioError> {
+    fn record(&self, model: &Model, read_off: &[String]) -> Result<TimeAndChannels, ScenarioError> {
         let unfit = |what: &str, message: String| ScenarioError::Unfit {
             what: what.to_string(),
             message,
@@ -130,7 +130,7 @@ impl Scenario {
             let known = model.states.iter().any(|state| state.name == *name);
             (!(known && *value >= 0.0 && value.is_finite())).then(|| ScenarioError::Unfit {
                 what: format!("process_noise.{name}"),
-                message: "an intensity of a state of the model, 0 or more, is asked for".into(),
+                message: "give the intensity of a state of the model, 0 or more".into(),
             })
         };
         match self.process_noise.iter().find_map(unfit) {
@@ -171,12 +171,12 @@ impl Scenario {
                 let number = formula.and_then(|formula| formula.number(designed));
                 number.map_err(|error| ScenarioError::Unfit {
                     what: what(&info.name),
-                    message: format!("{error}; state its truth"),
+                    message: format!("{error}; give its true value"),
                 })
             }
             (None, Start::FromData(_)) => {
                 let message =
-                    "the model reads this parameter off the data: state its truth".to_string();
+                    "the model reads this parameter off the data: give its true value".to_string();
                 Err(ScenarioError::Unfit {
                     what: what(&info.name),
                     message,
@@ -244,7 +244,7 @@ impl Scenario {
 }
 
 /// Time and channels.
-type Recording = (Vec<f64>, IndexMap<String, Channel>);
+type TimeAndChannels = (Vec<f64>, IndexMap<String, Channel>);
 
 fn maneuver(
     time: Vec<f64>,

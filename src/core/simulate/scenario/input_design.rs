@@ -14,52 +14,78 @@ pub enum InputDesign {
     /// Pulses of 3, 2, 1 and 1 units of time, alternating in sign: flat spectrum over a wide band.
     #[serde(rename = "3-2-1-1")]
     ThreeTwoOneOne {
+        /// When the first pulse begins, s.
         start: f64,
+        /// The unit of time, the length of the shortest pulse, s.
         unit_time: f64,
+        /// Deflection from trim, in the unit of the input; negative begins the other way.
         amplitude: f64,
     },
     /// One pulse each way.
     #[serde(rename = "doublet")]
     Doublet {
+        /// When the first pulse begins, s.
         start: f64,
+        /// The length of each pulse, s.
         unit_time: f64,
+        /// Deflection from trim, in the unit of the input; negative begins the other way.
         amplitude: f64,
     },
     /// Pulses of given length and amplitude, one after the other.
     #[serde(rename = "pulses")]
-    Pulses { start: f64, pulses: Vec<[f64; 2]> },
+    Pulses {
+        /// When the first pulse begins, s.
+        start: f64,
+        /// Of each its length, s, and its deflection from trim, in the unit of the input.
+        pulses: Vec<[f64; 2]>,
+    },
     /// Times, s, and the values held from there on.
     #[serde(rename = "steps")]
-    Steps { steps: Vec<[f64; 2]> },
+    Steps {
+        /// By increasing time: seconds from the start, and the deflection from trim, in the unit of the input.
+        steps: Vec<[f64; 2]>,
+    },
     /// A sum of sines of equal size and Schroeder phases, so that the sum has a low peak: the amplitude is the sum's
     /// root mean square times √2.
     #[serde(rename = "multisine")]
     Multisine {
+        /// When it begins, s.
         start: f64,
+        /// How long it lasts, s.
         duration: f64,
         /// Hz; multiples of 1/duration make it end where it begins.
         frequencies: Vec<f64>,
+        /// In the unit of the input.
         amplitude: f64,
     },
     /// A sine whose frequency grows linearly, Hz.
     #[serde(rename = "sweep")]
     Sweep {
+        /// When it begins, s.
         start: f64,
+        /// How long it lasts, s.
         duration: f64,
+        /// The frequency at its start, Hz.
         from: f64,
+        /// The frequency at its end, Hz.
         to: f64,
+        /// Of the sine, in the unit of the input.
         amplitude: f64,
     },
     /// As it was recorded: times from the start, s, and values in the unit of the input, linear between them. `file` and
     /// `channel` name a recording instead, a path relative to the scenario; see [`super::Scenario::read_recorded`].
     #[serde(rename = "recorded")]
     Recorded {
+        /// A recording, by its path.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         file: Option<String>,
+        /// The channel of the recording.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         channel: Option<String>,
+        /// Seconds from the start, increasing.
         #[serde(default)]
         time: Vec<f64>,
+        /// One for each time, in the unit of the input.
         #[serde(default)]
         values: Vec<f64>,
     },

@@ -14,9 +14,15 @@ pub enum NoiseColour {
     #[default]
     White,
     /// A first-order Gauss-Markov process: autocorrelation exp(-lag/correlation_time), s.
-    FirstOrder { correlation_time: f64 },
+    FirstOrder {
+        /// The lag at which the autocorrelation has fallen to 1/e, s.
+        correlation_time: f64,
+    },
     /// White noise behind a second-order Butterworth low-pass of this bandwidth, Hz.
-    BandLimited { bandwidth: f64 },
+    BandLimited {
+        /// The frequency at which the power has fallen to one half, Hz.
+        bandwidth: f64,
+    },
 }
 
 impl NoiseColour {

@@ -132,7 +132,7 @@ fn last_event_id(headers: &HeaderMap) -> Result<Option<u64>, Problem> {
         .to_str()
         .ok()
         .and_then(|text| text.trim().parse().ok());
-    let detail = "Last-Event-ID: it is none of the numbers that events of a job have";
+    let detail = "Last-Event-ID: it is not the number of an event";
     number
         .map(Some)
         .ok_or_else(|| Problem::new(Code::InvalidHeader, detail))

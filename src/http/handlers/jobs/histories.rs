@@ -11,12 +11,12 @@ use uuid::Uuid;
 use super::job;
 use super::results;
 use crate::estimate::{OutputSeries, Role, Series, TimeHistory};
-use crate::http::answer::csv::{Csv, header};
 use crate::http::answer::decimate::{Wanted, pick};
 use crate::http::answer::format::{Format, cacheable, choose};
 use crate::http::problem::{Problem, ProblemDocument};
 use crate::http::request::query::{JobId, Parameters};
 use crate::http::service::{Server, Service};
+use crate::ingest::CsvWriter;
 
 pub(crate) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
@@ -239,9 +239,9 @@ fn residuals_as_json(segments: Vec<SegmentHistory>) -> Result<Vec<u8>, Problem> 
 fn histories_as_csv(segments: Vec<SegmentHistory>) -> Result<Vec<u8>, Problem> {
     let columns = |history: &TimeHistory| {
         let inputs = history.inputs.iter();
-        let inputs = inputs.map(|s| (header(&s.name, &s.unit), s.values.clone()));
+        let inputs = inputs.map(|s| (title(&s.name, &s.unit), s.values.clone()));
         let outputs = history.outputs.iter().flat_map(|s| {
-            let of = |what: &str| header(&format!("{}_{what}", s.name), &s.unit);
+            let of = |what: &str| title(&format!("{}_{what}", s.name), &s.unit);
             let columns = [
                 (of("measured"), &s.measured),
                 (of("declared"), &s.declared),
@@ -255,41 +255,49 @@ fn histories_as_csv(segments: Vec<SegmentHistory>) -> Result<Vec<u8>, Problem> {
         });
         inputs.chain(outputs).collect()
     };
-    Ok(as_csv(&segments, columns)?)
+    Ok(as_csv(&segments, columns))
 }
 
 fn residuals_as_csv(segments: Vec<SegmentHistory>) -> Result<Vec<u8>, Problem> {
     let columns = |history: &TimeHistory| {
         let outputs = history.outputs.iter();
         outputs
-            .map(|s| (header(&s.name, &s.unit), s.residual.clone()))
+            .map(|s| (title(&s.name, &s.unit), s.residual.clone()))
             .collect()
     };
-    Ok(as_csv(&segments, columns)?)
+    Ok(as_csv(&segments, columns))
 }
 
 fn as_csv(
     segments: &[SegmentHistory],
     columns: impl Fn(&TimeHistory) -> Vec<(String, Vec<f64>)>,
-) -> csv::Result<Vec<u8>> {
+) -> Vec<u8> {
     let first = segments
         .first()
         .map(|segment| columns(&segment.history))
         .unwrap_or_default();
     let names = first.iter().map(|(name, _)| name.as_str());
-    let mut csv = Csv::with_header(["segment", "t[s]"].into_iter().chain(names))?;
+    let mut csv = CsvWriter::with_header(["segment", "t[s]"].into_iter().chain(names));
     for SegmentHistory { history, .. } in segments {
         let columns = columns(history);
         for (row, time) in history.time.iter().enumerate() {
-            csv.text(&history.segment)?;
-            csv.number(Some(*time))?;
+            csv.text(&history.segment);
+            csv.number(*time);
             for (_, values) in &columns {
-                csv.number(values.get(row).copied())?;
+                csv.number(values.get(row).copied());
             }
-            csv.end_row()?;
+            csv.end_row();
         }
     }
-    csv.into_bytes()
+    csv.finish().into_bytes()
+}
+
+/// `name[unit]`; a pure number has no unit.
+fn title(name: &str, unit: &str) -> String {
+    match unit {
+        "" | "-" => name.to_string(),
+        unit => format!("{name}[{unit}]"),
+    }
 }
 
 #[cfg(test)]

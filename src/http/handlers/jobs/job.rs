@@ -185,7 +185,7 @@ async fn list_jobs(
     let moment = |text: String| {
         Clock::read(&text).ok_or_else(|| {
             let detail =
-                format!("created_after: '{text}' is no moment; give it as 2026-11-21T12:00:00Z");
+                format!("created_after: '{text}' is not a time; write it as 2026-11-21T12:00:00Z");
             Problem::new(Code::InvalidQuery, detail)
         })
     };

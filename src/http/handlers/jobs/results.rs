@@ -13,13 +13,13 @@ use super::job;
 use crate::estimate::{
     Bound, CollinearSet, ErrorBoundsKind, Estimate, FilterEstimate, Outcome, ParameterEstimate,
 };
-use crate::http::answer::csv::Csv;
 use crate::http::answer::format::{Format, cacheable, choose};
 use crate::http::code::Code;
 use crate::http::handlers::models;
 use crate::http::problem::{Problem, ProblemDocument};
 use crate::http::request::query::{JobId, Parameters};
 use crate::http::service::{Server, Service};
+use crate::ingest::CsvWriter;
 use crate::job::EventBody;
 use crate::model::ModelDocument;
 use crate::store::{JobRecord, Part};
@@ -123,13 +123,13 @@ async fn get_parameters(
     let estimate = part(&service, id, Part::Estimate).await?;
     let table: ParameterTable = serde_json::from_str(&estimate)?;
     let body = match format {
-        Format::Csv => parameters_as_csv(&table.parameters)?,
-        _ => serde_json::to_vec(&table)?,
+        Format::Csv => parameters_as_csv(&table.parameters),
+        _ => serde_json::to_string(&table)?,
     };
     Ok(cacheable(&headers, format, body))
 }
 
-fn parameters_as_csv(parameters: &[ParameterEstimate]) -> csv::Result<Vec<u8>> {
+fn parameters_as_csv(parameters: &[ParameterEstimate]) -> String {
     let header = [
         "name",
         "segment",
@@ -141,24 +141,24 @@ fn parameters_as_csv(parameters: &[ParameterEstimate]) -> csv::Result<Vec<u8>> {
         "at_bound",
         "conventional_standard_error",
     ];
-    let mut csv = Csv::with_header(header)?;
+    let mut csv = CsvWriter::with_header(header);
     for parameter in parameters {
-        csv.text(&parameter.name)?;
-        csv.text(parameter.segment.as_deref().unwrap_or_default())?;
-        csv.text(&parameter.unit)?;
-        csv.number(Some(parameter.start))?;
-        csv.number(Some(parameter.estimate))?;
-        csv.number(parameter.standard_error)?;
-        csv.text(if parameter.fixed { "true" } else { "false" })?;
+        csv.text(&parameter.name);
+        csv.text(parameter.segment.as_deref().unwrap_or_default());
+        csv.text(&parameter.unit);
+        csv.number(parameter.start);
+        csv.number(parameter.estimate);
+        csv.number(parameter.standard_error);
+        csv.text(if parameter.fixed { "true" } else { "false" });
         csv.text(match parameter.at_bound {
             Some(Bound::Lower) => "lower",
             Some(Bound::Upper) => "upper",
             None => "",
-        })?;
-        csv.number(parameter.conventional_standard_error)?;
-        csv.end_row()?;
+        });
+        csv.number(parameter.conventional_standard_error);
+        csv.end_row();
     }
-    csv.into_bytes()
+    csv.finish()
 }
 
 /// The model as estimated: the one that was named, with the job's edits and overrides in it.

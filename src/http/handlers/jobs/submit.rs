@@ -1,6 +1,5 @@
 //! `POST /v1/jobs`: everything that would keep a job from starting is said here, at once.
 
-use std::collections::HashMap;
 use std::sync::Arc;
 
 use axum::Json;
@@ -23,7 +22,7 @@ use crate::http::request::query::Parameters;
 use crate::http::service::{Server, Service};
 use crate::job::{self, Fault, HIGHEST_PRIORITY, JobSpec, MOST_MANEUVERS, ModelSource, Prepared};
 use crate::model::ModelDocument;
-use crate::store::NewJob;
+use crate::store::{NewJob, NotLoaded};
 
 pub(crate) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(submit_job))
@@ -36,7 +35,7 @@ const LONGEST_TAG: usize = 64;
 /// What a request that is answered with 200 has led to.
 #[derive(Serialize, ToSchema)]
 #[serde(untagged)]
-enum Outcome {
+enum Submission {
     Prepared(Prepared),
     Job(Box<JobResource>),
 }
@@ -59,7 +58,7 @@ struct SubmitQuery {
     request_body = JobSpec,
     responses(
         (status = 202, description = "It is accepted.", body = JobResource, headers(("Location" = String, description = "Its path."))),
-        (status = 200, description = "With `validate_only`: what the job would amount to. With `Prefer: wait=N`: the job, which is over.", body = inline(Outcome)),
+        (status = 200, description = "With `validate_only`: what the job would amount to. With `Prefer: wait=N`: the job, which is over.", body = inline(Submission)),
         (status = 400, description = "`invalid_json`", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 422, description = "`wrong_shape`, `invalid_job`: `errors` lists the faults by JSON pointer.", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
@@ -73,7 +72,7 @@ async fn submit_job(
     let spec = Arc::new(spec);
     let (model, prepared) = check(&service, &spec).await?;
     if query.validate_only {
-        return Ok(Json(Outcome::Prepared(prepared)).into_response());
+        return Ok(Json(Submission::Prepared(prepared)).into_response());
     }
     room(&service, 1).await?;
     let job = new_job(&spec, text, &model)?;
@@ -90,7 +89,7 @@ async fn submit_job(
     };
     let job = JobResource::of(job);
     let location = [(header::LOCATION, job.path())];
-    let mut response = (status, location, Json(Outcome::Job(Box::new(job)))).into_response();
+    let mut response = (status, location, Json(Submission::Job(Box::new(job)))).into_response();
     response.headers_mut().extend(wait.map(prefer::applied));
     Ok(response)
 }
@@ -211,7 +210,7 @@ async fn resolve_model(
     Ok(model.ok_or_else(|| {
         let name: String = name.chars().take(80).collect();
         let message = format!(
-            "there is no model '{name}'; the catalog goes by name, stored models by their id: /v1/models lists both"
+            "there is no model '{name}'; name a catalog model by its name, a stored one by its id: /v1/models lists both"
         );
         Fault::new("/model", "unknown_model", message)
     }))
@@ -234,42 +233,29 @@ async fn load(
         )]));
     }
     let limit = service.config.max_job_values;
-    let mut known: HashMap<&str, Arc<Maneuver>> = HashMap::new();
-    let (mut maneuvers, mut faults, mut values) = (Vec::new(), Vec::new(), 0);
-    for (number, used) in spec.maneuvers.iter().enumerate() {
-        if let Some(maneuver) = known.get(used.id.as_str()) {
-            maneuvers.push(maneuver.clone());
-            continue;
-        }
-        let Some(maneuver) = service.store.maneuver_data(&used.id).await? else {
-            let message =
-                "there is no maneuver of this id; upload it first, and use the id in the answer";
-            faults.push(Fault::new(
-                format!("/maneuvers/{number}/id"),
-                "unknown_maneuver",
-                message,
-            ));
-            continue;
-        };
-        values += maneuver.len() * (1 + maneuver.channels().len());
-        if values > limit {
-            let message = format!(
+    let ids: Vec<&str> = spec.maneuvers.iter().map(|used| used.id.as_str()).collect();
+    let loaded = service.store.load(&ids, limit).await?;
+    Ok(loaded.map_err(|missing| {
+        missing
+            .into_iter()
+            .map(|why| not_loaded(why, limit))
+            .collect()
+    }))
+}
+
+fn not_loaded(why: NotLoaded, limit: usize) -> Fault {
+    match why {
+        NotLoaded::Unknown(place) => Fault::new(
+            format!("/maneuvers/{place}/id"),
+            "unknown_maneuver",
+            "there is no maneuver of this id; upload it first, and use the id in the answer",
+        ),
+        NotLoaded::TooMuch(place) => Fault::new(
+            format!("/maneuvers/{place}"),
+            "too_much_data",
+            format!(
                 "the maneuvers hold more than {limit} values (--max-job-values); use fewer or shorter ones"
-            );
-            faults.push(Fault::new(
-                format!("/maneuvers/{number}"),
-                "too_much_data",
-                message,
-            ));
-            break;
-        }
-        let maneuver = Arc::new(maneuver);
-        known.insert(&used.id, maneuver.clone());
-        maneuvers.push(maneuver);
+            ),
+        ),
     }
-    Ok(if faults.is_empty() {
-        Ok(maneuvers)
-    } else {
-        Err(faults)
-    })
 }

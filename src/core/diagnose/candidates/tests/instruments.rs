@@ -19,7 +19,8 @@ fn candidates_stay_few_and_are_all_fit() {
             assert!(seen.insert(effect.name()), "{} twice", effect.name());
             let edited = effect
                 .apply(&document)
-                .unwrap_or_else(|e| panic!("{}: {e}", effect.name()));
+                .unwrap_or_else(|e| panic!("{}: {e}", effect.name()))
+                .document;
             Model::compile(&edited).unwrap_or_else(|f| panic!("{}: {f:#?}", effect.name()));
         }
     }
@@ -102,7 +103,7 @@ fn each_clock_is_one_candidate() {
         .find(|effect| effect.target == "p+q+r")
         .unwrap();
     let document = catalog::find("flight-path-reconstruction").unwrap();
-    let edited = gyros.apply(&document).unwrap();
+    let edited = gyros.apply(&document).unwrap().document;
     for name in ["p", "q", "r"] {
         assert_eq!(edited.inputs[name].delay.as_deref(), Some("-p_q_r_delay"));
     }
@@ -142,7 +143,7 @@ fn a_wind_is_one_candidate() {
         .iter()
         .find(|e| e.name() == "wind of W_x+W_y+W_z (constant)")
         .unwrap();
-    let edited = steady.apply(&still).unwrap();
+    let edited = steady.apply(&still).unwrap().document;
     for (state, wind) in [
         ("x", "W_x_constant"),
         ("y", "W_y_constant"),
@@ -160,7 +161,7 @@ fn what_is_known_bounds_a_size_or_leaves_it_out() {
     let usual = case(&document, &beside());
     let vane = find(&usual, "sensor_position of alpha (x)").unwrap();
     assert_eq!(vane.plausible.unwrap().upper, 15.0);
-    let edited = vane.apply(&document).unwrap();
+    let edited = vane.apply(&document).unwrap().document;
     assert_eq!(edited.parameters["alpha_x"].upper, Some(15.0));
     assert_eq!(edited.parameters["alpha_x"].prior, None);
     let gyro = find(&usual, "sensor_scale of q").unwrap();
@@ -168,7 +169,8 @@ fn what_is_known_bounds_a_size_or_leaves_it_out() {
     let vane_delay = find(&usual, "sensor_delay of alpha")
         .unwrap()
         .apply(&document)
-        .unwrap();
+        .unwrap()
+        .document;
     assert_eq!(vane_delay.parameters["alpha_delay"].lower, Some(0.0));
     // declared where it is: not moved again
     let mut placed = document.clone();
@@ -176,7 +178,7 @@ fn what_is_known_bounds_a_size_or_leaves_it_out() {
     let vane = find(&case(&placed, &beside()), "sensor_position of alpha (x)").unwrap();
     assert!(vane.plausible.unwrap().known);
     assert_eq!(
-        vane.apply(&placed).unwrap().parameters["alpha_x"].upper,
+        vane.apply(&placed).unwrap().document.parameters["alpha_x"].upper,
         Some(0.5)
     );
     // the job knows better
@@ -205,13 +207,14 @@ fn what_is_known_bounds_a_size_or_leaves_it_out() {
         assert!(!found.contains(gone), "{gone}");
     }
     let vane = find(&told, "sensor_position of alpha (x)").unwrap();
-    let prior = vane.apply(&placed).unwrap().parameters["alpha_x"]
+    let prior = vane.apply(&placed).unwrap().document.parameters["alpha_x"]
         .prior
         .unwrap();
     assert_eq!((prior.mean, prior.sd), (0.0, 0.1));
     let gyros = find(&told, "sensor_delay of p+q+r")
         .unwrap()
         .apply(&placed)
-        .unwrap();
+        .unwrap()
+        .document;
     assert_eq!(gyros.parameters["p_q_r_delay"].upper, Some(0.02));
 }

@@ -76,7 +76,7 @@ fn what_the_document_fixes_comes_first() {
     ];
     assert_eq!(first, all);
     let document = catalog::find("six-degrees-of-freedom").unwrap();
-    let freed = effects[9].apply(&document).unwrap();
+    let freed = effects[9].apply(&document).unwrap().document;
     assert!(!freed.parameters["Cmad"].fixed);
     // the steady flight, starts of maneuvers and what is read off the data are no candidates
     for (model, wanted) in [
@@ -126,7 +126,7 @@ fn products_with_recorded_channels_are_offered_about_a_reference() {
         .find(|effect| effect.name() == "missing_term alpha^2 in q");
     let edited = square
         .unwrap()
-        .apply(&catalog::find("short-period").unwrap())
+        .apply(&catalog::find("short-period").unwrap().document)
         .unwrap();
     let equation = &edited.states["q"].derivative;
     assert!(
@@ -139,7 +139,7 @@ fn products_with_recorded_channels_are_offered_about_a_reference() {
         .find(|effect| effect.name() == "missing_term alpha^2 in Cm");
     let edited = square
         .unwrap()
-        .apply(&catalog::find("longitudinal-nonlinear").unwrap())
+        .apply(&catalog::find("longitudinal-nonlinear").unwrap().document)
         .unwrap();
     assert!(edited.parameters["alpha_about"].fixed);
     assert!(
@@ -185,7 +185,9 @@ fn damping_scales_otherwise_than_stiffness() {
         .iter()
         .find(|effect| effect.name() == "missing_term qbar in all")
         .unwrap();
-    let edited = all.apply(&catalog::find("short-period").unwrap()).unwrap();
+    let edited = all
+        .apply(&catalog::find("short-period").unwrap().document)
+        .unwrap();
     let pitching = &edited.states["q"].derivative;
     assert!(pitching.contains("(Ma*qbar_ratio)") && pitching.contains("(Mq*speed_ratio_1)"));
     assert!(edited.definitions["qbar_ratio"].equation.contains("^2"));

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::line_search::{Probe, strong_wolfe};
 
-/// What is to be minimised.
+/// A function to be minimised.
 pub trait Objective {
     /// Cost and gradient; none where there is no cost.
     fn evaluate(&mut self, theta: &[f64]) -> Option<(f64, DVector<f64>)>;
@@ -16,7 +16,7 @@ impl<F: FnMut(&[f64]) -> Option<(f64, DVector<f64>)>> Objective for F {
     }
 }
 
-/// What is learnt from a step.
+/// The update of the inverse Hessian after a step.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Update {
     /// The inverse Hessian, by Broyden, Fletcher, Goldfarb and Shanno.
@@ -35,7 +35,8 @@ pub struct Moved {
 }
 
 /// No step lowers the cost.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
+#[error("no step lowers the cost")]
 pub struct NoWay;
 
 /// A share of |s||y| below which sᵀy says nothing of the curvature.
@@ -44,8 +45,11 @@ const LEAST_CURVATURE: f64 = 1e-10;
 /// An iterate, and the idea of the Hessian that goes with it.
 #[derive(Clone, Debug)]
 pub struct Optimiser {
+    /// Where it is.
     pub theta: Vec<f64>,
+    /// The cost there.
     pub cost: f64,
+    /// The gradient of the cost there.
     pub gradient: DVector<f64>,
     lower: Vec<f64>,
     upper: Vec<f64>,

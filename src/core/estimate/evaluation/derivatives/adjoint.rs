@@ -21,12 +21,14 @@ pub struct CostAndGradient<'p> {
     checkpoints: Vec<Checkpoints>,
     /// The last way forward: where it was, and what came of it.
     last: Option<(Vec<f64>, Weighting)>,
-    /// Ways forward, and ways back, so far.
+    /// Ways forward so far.
     pub simulations: usize,
+    /// Ways back so far.
     pub gradients: usize,
 }
 
 impl<'p> CostAndGradient<'p> {
+    /// Machinery for the problem's model and integration scheme.
     pub fn new(problem: &'p Problem) -> Self {
         let options = &problem.options;
         let (integrator, interpolation) = (options.integrator, options.input_interpolation);

@@ -5,9 +5,9 @@ use num_complex::Complex64;
 use super::perturbation::Perturbation;
 
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub struct ComplexStep {
+pub(crate) struct ComplexStep {
     /// Relative to the parameter's size, which counts as 1 at least.
-    pub step: f64,
+    pub(crate) step: f64,
 }
 
 impl ComplexStep {

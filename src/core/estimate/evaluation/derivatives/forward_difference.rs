@@ -3,9 +3,9 @@
 use super::perturbation::{Perturbation, size};
 
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub struct ForwardDifference {
+pub(crate) struct ForwardDifference {
     /// Relative to the parameter's size.
-    pub step: f64,
+    pub(crate) step: f64,
 }
 
 impl Perturbation for ForwardDifference {

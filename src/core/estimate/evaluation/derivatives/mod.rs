@@ -11,7 +11,3 @@ pub(in crate::estimate) mod forward_difference;
 pub(in crate::estimate) mod perturbation;
 
 pub use adjoint::CostAndGradient;
-pub use central_difference::CentralDifference;
-pub use complex_step::ComplexStep;
-pub use forward_difference::ForwardDifference;
-pub use perturbation::{Perturbation, STRETCH, columns};

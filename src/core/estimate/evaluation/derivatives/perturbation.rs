@@ -12,7 +12,7 @@ use crate::model::Scalar;
 use crate::simulate::{March, Standing};
 
 /// Samples in a stretch.
-pub const STRETCH: usize = 256;
+pub(crate) const STRETCH: usize = 256;
 
 /// Parameters smaller than this, SI, are perturbed as if they had this size: a bias of 0 has no size of its own.
 const SMALLEST_SIZE: f64 = 1e-2;
@@ -23,7 +23,7 @@ pub(crate) fn size(value: f64) -> f64 {
 }
 
 /// A technique that simulates with one parameter changed.
-pub trait Perturbation {
+pub(crate) trait Perturbation {
     type Number: Scalar;
     /// Simulations for each parameter.
     const RUNS: usize;
@@ -34,11 +34,11 @@ pub trait Perturbation {
 }
 
 /// Residuals and columns of ∂y/∂θ over some consecutive samples of a segment.
-pub struct Columns<'a> {
+pub(crate) struct Differentiated<'a> {
     /// z − y by output, then sample of the stretch.
-    pub residuals: &'a [DVector<f64>],
+    pub(crate) residuals: &'a [DVector<f64>],
     /// By output: samples by the segment's own columns.
-    pub slopes: &'a [DMatrix<f64>],
+    pub(crate) slopes: &'a [DMatrix<f64>],
 }
 
 /// Runs along a segment and hands each stretch to `sink`. `places` are those of θ to differentiate by; the answer
@@ -46,13 +46,13 @@ pub struct Columns<'a> {
 ///
 /// # Errors
 /// The unperturbed simulation leaves the range of numbers.
-pub fn columns<P: Perturbation>(
+pub(crate) fn columns<P: Perturbation>(
     technique: &P,
     problem: &Problem,
     index: usize,
     theta: &[f64],
     places: &[usize],
-    mut sink: impl FnMut(&Columns<'_>),
+    mut sink: impl FnMut(&Differentiated<'_>),
 ) -> Result<Vec<usize>, Unusable> {
     let (model, options) = (&problem.model, &problem.options);
     let (segment, outputs) = (&problem.segments[index], model.outputs.len());
@@ -123,7 +123,7 @@ pub fn columns<P: Perturbation>(
                 slopes[i].row_mut(k).fill(0.0);
             }
         }
-        sink(&Columns {
+        sink(&Differentiated {
             residuals: &y,
             slopes: &slopes,
         });
@@ -172,7 +172,7 @@ impl LocalSums {
         }
     }
 
-    fn add(&mut self, stretch: &Columns<'_>, full: bool) {
+    fn add(&mut self, stretch: &Differentiated<'_>, full: bool) {
         let (slopes, residuals) = (stretch.slopes, stretch.residuals);
         for (product, (i, j)) in self.products.iter_mut().zip(pairs(slopes.len(), full)) {
             self.sums.residuals[(i, j)] += residuals[i].dot(&residuals[j]);

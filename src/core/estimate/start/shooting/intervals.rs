@@ -35,7 +35,7 @@ pub(super) struct Cut<'p> {
 }
 
 /// Residuals and states at the ends of intervals.
-pub(super) struct Walk {
+pub(super) struct Simulated {
     pub residuals: ResidualSums,
     /// By segment and interval.
     pub ends: Nodes,
@@ -138,7 +138,7 @@ impl<'p> Cut<'p> {
     }
 
     /// Simulates all intervals; `None` where one leaves the range of numbers.
-    pub(super) fn walk(&self, theta: &[f64], nodes: &Nodes) -> Option<Walk> {
+    pub(super) fn simulate(&self, theta: &[f64], nodes: &Nodes) -> Option<Simulated> {
         let outputs = self.problem.model.outputs.len();
         let mut residuals = DMatrix::zeros(outputs, outputs);
         let mut ends = Vec::new();
@@ -158,7 +158,7 @@ impl<'p> Cut<'p> {
             .iter()
             .chain(ends.iter().flatten().flatten())
             .all(|v| v.is_finite());
-        finite.then_some(Walk { residuals, ends })
+        finite.then_some(Simulated { residuals, ends })
     }
 
     /// Linearises all intervals; `weights` is R⁻¹. `None` where one leaves the range of numbers.

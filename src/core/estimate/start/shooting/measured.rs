@@ -1,4 +1,4 @@
-//! What smoothing the measurements tells before the first step: where the nodes are, and how large the noise is.
+//! The first nodes and the size of the noise, from smoothed measurements.
 
 use nalgebra::DVector;
 

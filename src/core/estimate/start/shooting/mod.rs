@@ -111,7 +111,7 @@ pub(crate) fn multiple_shooting(
     })
 }
 
-/// What closing the jumps led to.
+/// A trajectory whose jumps were closed, as far as they could be.
 struct Closed {
     theta: Vec<f64>,
     /// -ln L of the whole trajectory, infinite where it leaves the range of numbers.
@@ -156,12 +156,12 @@ struct Point {
 
 impl Point {
     fn at(cut: &Cut<'_>, theta: Vec<f64>, nodes: Nodes, noise: &DVector<f64>) -> Option<Self> {
-        let walk = cut.walk(&theta, &nodes)?;
+        let simulated = cut.simulate(&theta, &nodes)?;
         let problem = cut.problem;
-        let weighting = Weighting::at(problem, &theta, &walk.residuals).ok()?;
+        let weighting = Weighting::at(problem, &theta, &simulated.residuals).ok()?;
         let size = |jump: DVector<f64>| jump.component_div(noise).norm_squared();
         let mut jumps = 0.0;
-        for (segment, (ends, nodes)) in walk.ends.iter().zip(&nodes).enumerate() {
+        for (segment, (ends, nodes)) in simulated.ends.iter().zip(&nodes).enumerate() {
             jumps += size(beginning(problem, segment, &theta, &nodes[0])?.jump);
             jumps += ends
                 .iter()

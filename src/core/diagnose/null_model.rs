@@ -1,4 +1,4 @@
-//! What a candidate has to beat: the model as it is, and how much better noise alone would make it look.
+//! The null model: the model as it is, which a candidate has to beat by more than noise alone would.
 
 use super::case::Case;
 use super::colour::Colour;
@@ -10,8 +10,8 @@ use super::report::{Evidence, Member, OutputGain, Refusal};
 use super::screen::{Screen, Screened, critical, tail};
 use super::stack::Layout;
 use super::trial::{Trial, fit, starts, starts_of_delay};
-use crate::estimate::{Bound, Role};
-use crate::model::{Added, EditKind, Per};
+use crate::estimate::Role;
+use crate::model::{Added, AddedRole, EditKind, Edited, Per};
 
 /// How often the whole family of candidates may find something where there is nothing, by its own statistics.
 const FAMILY_ERROR: f64 = 0.005;
@@ -28,7 +28,7 @@ const SAME: f64 = 1e-3;
 /// So many of the minima found are followed to where the likelihood is greatest.
 const BEST: usize = 4;
 
-/// What a likelihood ratio has to pass.
+/// The value that a likelihood ratio has to exceed.
 pub(super) struct Threshold {
     /// Independent ones that the candidates ask.
     pub questions: f64,
@@ -42,8 +42,8 @@ impl Threshold {
     }
 }
 
-/// What a candidate has to beat: the model as it is.
-pub(super) struct Rival<'c> {
+/// The model as it is, which a candidate has to beat.
+pub(super) struct NullModel<'c> {
     case: &'c Case,
     base: &'c Fitted,
     orders: &'c [usize],
@@ -52,7 +52,7 @@ pub(super) struct Rival<'c> {
     held_out: Option<Vec<f64>>,
 }
 
-impl<'c> Rival<'c> {
+impl<'c> NullModel<'c> {
     pub(super) fn new(case: &'c Case, base: &'c Fitted, orders: &'c [usize]) -> Self {
         // both sides at the likeliest for coloured noise
         let polished = base.clone().polished(orders);
@@ -74,16 +74,19 @@ impl<'c> Rival<'c> {
         effect: Effect,
         screened: Option<Screened>,
     ) -> Result<Trial, String> {
-        let document = effect
+        let edited = effect
             .apply(&self.base.document)
             .map_err(|error| error.to_string())?;
         let starts = match &screened {
             Some(seen) => {
-                let further = starts_of_delay(self.case, &effect, &seen.added);
+                let further = starts_of_delay(self.case, &effect, &edited.added);
                 seen.starts().into_iter().chain(further).collect()
             }
-            None => starts(self.case, &effect, &document, &self.base.document),
+            None => starts(self.case, &effect, &edited),
         };
+        let Edited {
+            document, added, ..
+        } = edited;
         let tried = screened.as_ref().map_or(starts.len(), |seen| seen.starts);
         let mut failure = String::new();
         let mut fits: Vec<(f64, Fitted)> = Vec::new();
@@ -137,6 +140,7 @@ impl<'c> Rival<'c> {
         Ok(Trial {
             explained: self.explained(&fitted),
             effect,
+            added,
             starts: tried,
             screened,
             fitted,
@@ -147,7 +151,7 @@ impl<'c> Rival<'c> {
         })
     }
 
-    /// What a fit takes off the whitened residual, of length 1.
+    /// The part of the whitened residual that a fit explains, of length 1.
     fn explained(&self, fitted: &Fitted) -> Vec<f64> {
         let layout = Layout::of(&self.base.problem);
         let before = &self.base.residual;
@@ -163,7 +167,7 @@ impl<'c> Rival<'c> {
         taken
     }
 
-    /// What speaks against accepting it.
+    /// The objection to accepting it, if there is one.
     pub(super) fn objection(
         &self,
         trial: &Trial,
@@ -179,15 +183,14 @@ impl<'c> Rival<'c> {
             );
             return Some((Refusal::NotSignificant, why));
         }
-        let mut at_bound = trial.fitted.at_bound(self.base);
-        at_bound.retain(|(name, _)| decides(&trial.effect, name));
-        if let Some((name, _)) = at_bound.first() {
+        let decisive = |added: &&&Added| decides(&trial.effect, added.role);
+        if let Some(added) = (trial.fitted.at_bound(&trial.added).iter()).find(decisive) {
+            let name = &added.name;
             let why = format!("its estimate ends at a bound of its physical range ({name})");
             return Some((Refusal::OutOfRange, why));
         }
-        let mut settled = self.settled_at_bound(trial);
-        settled.retain(|(name, _)| decides(&trial.effect, name));
-        if let Some((name, _)) = settled.first() {
+        if let Some(added) = self.settled_at_bound(trial).iter().find(decisive) {
+            let name = &added.name;
             let why = format!(
                 "output error takes its estimate to a bound of its physical range ({name})"
             );
@@ -213,28 +216,26 @@ impl<'c> Rival<'c> {
     }
 
     /// The likelihood weighs fast residuals, output error slow ones: an effect that is real stands before both.
-    fn settled_at_bound(&self, trial: &Trial) -> Vec<(String, Bound)> {
+    fn settled_at_bound<'t>(&self, trial: &'t Trial) -> Vec<&'t Added> {
         let coloured = self.orders.iter().any(|&order| order > 0);
         if !coloured || trial.effect.is_noise() {
             return Vec::new();
         }
         let document = trial.fitted.document.clone();
         // where output error comes to nothing it speaks neither for nor against
-        Fitted::trial(self.case, document, &trial.fitted.values)
-            .map(|settled| settled.at_bound(self.base))
+        Fitted::trial(self.case, document, &trial.fitted.values())
+            .map(|settled| settled.at_bound(&trial.added))
             .unwrap_or_default()
     }
 
     /// Why the sizes in parts of the data do not agree; by the noise that is left with the effect in the model.
     fn scatter(&self, trial: &Trial) -> Option<String> {
-        let name = trial.screened.as_ref()?.added.first()?;
-        let info = trial
-            .fitted
-            .problem
-            .model
-            .parameters
-            .iter()
-            .find(|info| info.name == *name)?;
+        trial.screened.as_ref()?;
+        let parameters = &trial.fitted.problem.model.parameters;
+        let info = trial.added.iter().find_map(|added| {
+            let mut free = parameters.iter().filter(|info| !info.document.fixed);
+            free.find(|info| info.name == added.name)
+        })?;
         if info.document.per == Per::Maneuver || is_local_in_time(&trial.effect) {
             return None;
         }
@@ -243,7 +244,7 @@ impl<'c> Rival<'c> {
         let colour = Colour::of_orders(&layout, &trial.fitted.residual, self.orders);
         let screen = Screen::new(self.case, &trial.fitted, &colour)?;
         let folds = screen.pulls(&info.name)?;
-        let size = trial.fitted.values.get(&(info.name.clone(), None))?;
+        let size = *trial.fitted.values().get(&(info.name.clone(), None))?;
         let chi_squared: f64 = folds
             .iter()
             .map(|(pull, error)| (pull / error).powi(2))
@@ -292,7 +293,7 @@ impl<'c> Rival<'c> {
                     })
                     .collect(),
             },
-            added: Added::between(&self.base.document, &best.fitted.document).parameters,
+            added: best.added,
             effect: best.effect,
             fitted: best.fitted,
         }
@@ -301,12 +302,10 @@ impl<'c> Rival<'c> {
 
 /// Whether a parameter at its bound speaks against the effect: how steeply and how late the flow separates is hardly seen
 /// in many a stall, at which angle it does is.
-fn decides(effect: &Effect, parameter: &str) -> bool {
+fn decides(effect: &Effect, role: AddedRole) -> bool {
+    use AddedRole::{Delay, Steepness, TimeConstant};
     let is_stall = effect.kind == EffectKind::Edit(EditKind::StallHysteresis);
-    !is_stall
-        || !["_steepness", "_time", "_delay"]
-            .iter()
-            .any(|shape| parameter.contains(shape))
+    !(is_stall && matches!(role, Steepness | TimeConstant | Delay))
 }
 
 /// Effects that stand at one place in time repeat in no other part.

@@ -5,12 +5,12 @@ use std::str::FromStr;
 
 /// `FILE`, or `FILE:FIRST-LAST` for rows counted from 1, both included.
 #[derive(Clone, PartialEq, Debug)]
-pub(super) struct Stretch {
+pub(super) struct FileRows {
     pub file: PathBuf,
     pub rows: Option<[usize; 2]>,
 }
 
-impl FromStr for Stretch {
+impl FromStr for FileRows {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -32,13 +32,13 @@ impl FromStr for Stretch {
                 rows: Some([first, last]),
             }),
             _ => Err(format!(
-                "'{rows}' is no range of rows: FIRST-LAST is asked for, from 1, both included"
+                "'{rows}' is not a range of rows; write FIRST-LAST, counted from 1, both included"
             )),
         }
     }
 }
 
-impl Stretch {
+impl FileRows {
     /// What it is called in tables.
     pub(super) fn label(&self) -> Option<String> {
         let stem = self.file.file_stem()?.to_string_lossy().into_owned();
@@ -55,7 +55,7 @@ mod tests {
 
     #[test]
     fn rows_stand_behind_the_file() {
-        let read = |text: &str| text.parse::<Stretch>();
+        let read = |text: &str| text.parse::<FileRows>();
         let whole = read("C:/flights/a.csv").unwrap();
         assert_eq!(whole.rows, None);
         let part = read("C:/flights/a.csv:10-200").unwrap();

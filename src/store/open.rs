@@ -1,0 +1,69 @@
+//! Opening a database, whichever engine it has.
+
+use std::time::Duration;
+
+use tokio::time::{Instant, sleep};
+
+use super::address::{connection, without_password};
+use super::clock::Clock;
+use super::database::Store;
+use super::engine::Engine;
+use super::error::StoreError;
+use super::signal::Signals;
+use super::{migrate, neighbours};
+
+impl Store {
+    /// Opens the database at `address` and creates what is missing: a file (a path or `sqlite:PATH`), or
+    /// `postgres://USER:PASSWORD@HOST/DATABASE`, which many machines may share.
+    ///
+    /// # Errors
+    /// The address cannot be used, or the database is of a later version.
+    pub async fn open(address: &str) -> Result<Self, StoreError> {
+        Self::open_with_clock(address, Clock::default()).await
+    }
+
+    /// As [`Store::open`], with a clock that the caller may put forward.
+    ///
+    /// # Errors
+    /// As [`Store::open`].
+    pub async fn open_with_clock(address: &str, clock: Clock) -> Result<Self, StoreError> {
+        sqlx::any::install_default_drivers();
+        let (engine, url) = connection(address)?;
+        let deadline = Instant::now() + engine.patience();
+        loop {
+            match Self::connect(engine, &url, &clock).await {
+                Err(error) if error.is_passing() && Instant::now() < deadline => {
+                    tracing::warn!(%error, "the database does not answer yet; trying again");
+                    sleep(Duration::from_secs(1)).await;
+                }
+                Err(StoreError::Database(error)) => {
+                    return Err(StoreError::Address {
+                        address: without_password(address),
+                        why: error.to_string(),
+                    });
+                }
+                opened => return opened,
+            }
+        }
+    }
+
+    async fn connect(engine: Engine, url: &str, clock: &Clock) -> Result<Self, StoreError> {
+        let writer = engine.pool(engine.writers()).connect(url).await?;
+        let readers = engine.pool(8).connect(url).await?;
+        let signals = Signals::new();
+        let neighbours = match engine {
+            Engine::Sqlite => None,
+            Engine::Postgres => Some(neighbours::listen(url, &readers, clock, &signals).await?),
+        };
+        let store = Self {
+            engine,
+            readers,
+            writer,
+            clock: clock.clone(),
+            signals,
+            _neighbours: neighbours,
+        };
+        migrate::run(&store).await?;
+        Ok(store)
+    }
+}
