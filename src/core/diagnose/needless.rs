@@ -111,6 +111,7 @@ mod tests {
     use super::super::flight::Flight;
     use super::super::report::{Evidence, Member};
     use super::*;
+    use crate::diagnose::knowledge::Knowledge;
     use crate::estimate::{Options, Role};
     use crate::model::{EditKind, Model, catalog};
     use crate::simulate::{Scenario, ScenarioEffect, Steps};
@@ -142,6 +143,8 @@ mod tests {
             flights: vec![flight],
             options: Options::default(),
             candidates: Vec::new(),
+            knowledge: Knowledge::default(),
+            consumed: Vec::new(),
         }
     }
 

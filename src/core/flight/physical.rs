@@ -160,8 +160,8 @@ impl PhysicalQuantity {
     pub fn family(self) -> Family {
         use PhysicalQuantity::*;
         match self {
-            AngleOfAttack | AngleOfSideslip | AngleOfAttackRate | AngleOfSideslipRate | Airspeed
-            | Mach | DynamicPressure | AirDensity | Altitude => Family::AirData,
+            AngleOfAttack | AngleOfSideslip | AngleOfAttackRate | AngleOfSideslipRate
+            | Airspeed | Mach | DynamicPressure | AirDensity | Altitude => Family::AirData,
             VelocityX | VelocityY | VelocityZ => Family::Velocity,
             RollRate | PitchRate | YawRate => Family::Gyro,
             RollAcceleration | PitchAcceleration | YawAcceleration => Family::AngularAcceleration,

@@ -83,6 +83,14 @@ impl<'c> Subject<'c> {
             || document.definitions.contains_key(name)
     }
 
+    /// Whether an equation would feed on itself with a name in it: a definition through others, a state by its own rate.
+    pub(super) fn closes_a_circle(&self, name: &str, target: &str) -> bool {
+        match self.document.definitions.contains_key(target) {
+            true => self.depends(name, target),
+            false => name == format!("{target}dot"),
+        }
+    }
+
     /// Whether a name depends on another, through definitions.
     pub(super) fn depends(&self, name: &str, on: &str) -> bool {
         let mut pending = vec![name.to_string()];

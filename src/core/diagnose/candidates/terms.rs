@@ -35,10 +35,7 @@ pub(super) fn candidates(subject: &Subject<'_>) -> Vec<Effect> {
                 .is_some_and(|monomial| present.contains(monomial))
         };
         let fits = |product: &&Product<'_>| {
-            // a rate of the very state is no term of its equation
-            let closes_a_circle = |v: &&Variable| {
-                subject.depends(&v.name, &law.target) || v.name == format!("{}dot", law.target)
-            };
+            let closes_a_circle = |v: &&Variable| subject.closes_a_circle(&v.name, &law.target);
             product.belongs_to(law.motion)
                 && !holds(product)
                 && !product.variables.iter().any(closes_a_circle)
@@ -140,9 +137,7 @@ impl<'v> Product<'v> {
             return true;
         }
         match self.variables.as_slice() {
-            [one] if one.is_speed() || one.is_flow_rate() => {
-                one.quantity.motion() == Some(motion)
-            }
+            [one] if one.is_speed() || one.is_flow_rate() => one.quantity.motion() == Some(motion),
             [one] if self.text == one.name => true,
             _ => self.is_odd == (motion == Motion::Lateral),
         }
@@ -171,7 +166,7 @@ fn products(variables: &[Variable]) -> Vec<Product<'_>> {
         }
     }
     if let Some(speed) = variables.iter().find(|v| v.is_speed()) {
-        let scaled = variables.iter().filter(|v| moves(v) || deflects(v));
+        let scaled = (variables.iter()).filter(|v| v.quantity.is_flow_angle() || deflects(v));
         all.extend(scaled.map(|v| Product::pair(speed, v)));
     }
     all

@@ -50,19 +50,13 @@ impl Subject<'_> {
         use PhysicalQuantity::{
             Airspeed, AngleOfAttack, AngleOfSideslip, Mach, PitchRate, RollRate, YawRate,
         };
-        let single = [
-            AngleOfAttack,
-            AngleOfSideslip,
-            RollRate,
-            PitchRate,
-            YawRate,
-            Airspeed,
-            Mach,
-        ];
+        let single = [AngleOfAttack, AngleOfSideslip, RollRate, PitchRate, YawRate];
         let mut variables: Vec<Variable> = single
             .into_iter()
             .filter_map(|quantity| self.variable(quantity))
             .collect();
+        // where both are recorded the one is hardly told from the other
+        variables.extend(self.variable(Airspeed).or_else(|| self.variable(Mach)));
         variables.extend(self.flow_rates());
         let inputs = self.document.inputs.keys();
         let controls = inputs.filter_map(|name| {

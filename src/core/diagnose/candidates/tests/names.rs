@@ -6,8 +6,9 @@ use indexmap::IndexMap;
 
 use super::{BESIDE, beside, case, names, offered};
 use crate::diagnose::candidates::taken_for;
+use crate::diagnose::effect::{Effect, EffectKind};
 use crate::flight::PhysicalQuantity;
-use crate::model::{ModelDocument, Quantities, Start, catalog};
+use crate::model::{EditKind, ModelDocument, Quantities, Start, catalog};
 
 /// Each name in a text by another.
 fn renamed(text: &str, by: &BTreeMap<String, String>) -> String {
@@ -89,11 +90,27 @@ fn names_do_not_matter() {
         let renamed_beside: Vec<_> = (beside().into_iter())
             .map(|(name, unit, is)| (by[&name].clone(), unit, is))
             .collect();
+        // the arms of a sensor are axes, not names
+        let said = |effect: &Effect, by: &BTreeMap<String, String>| {
+            let is_arm = effect.kind == EffectKind::Edit(EditKind::SensorPosition);
+            let term = effect.term.as_deref().unwrap_or_default();
+            let term = if is_arm {
+                term.to_string()
+            } else {
+                renamed(term, by)
+            };
+            let target = renamed(&effect.target, by);
+            format!(
+                "{} of {target} ({term}) {:?}",
+                effect.word(),
+                effect.plausible
+            )
+        };
         let wanted: BTreeSet<String> = (offered(&case(&document, &beside())).iter())
-            .map(|effect| format!("{} {:?}", renamed(&effect.name(), &by), effect.plausible))
+            .map(|effect| said(effect, &by))
             .collect();
         let found: BTreeSet<String> = (offered(&case(&other, &renamed_beside)).iter())
-            .map(|effect| format!("{} {:?}", effect.name(), effect.plausible))
+            .map(|effect| said(effect, &BTreeMap::new()))
             .collect();
         let missing: Vec<&String> = wanted.difference(&found).collect();
         let new: Vec<&String> = found.difference(&wanted).collect();
