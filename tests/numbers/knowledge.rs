@@ -10,7 +10,7 @@ use trimtab_core::model::{ModelDocument, catalog};
 
 use crate::common::recordings::{elevator, maneuver};
 
-fn faults(knowledge: &Value) -> Vec<(String, &'static str, String)> {
+fn faults(knowledge: &Value) -> Vec<(String, String, String)> {
     let recorded = maneuver(elevator().as_bytes());
     let spec = json!({
         "kind": "diagnose",
@@ -23,8 +23,9 @@ fn faults(knowledge: &Value) -> Vec<(String, &'static str, String)> {
     match job::prepare(&spec, &document, &[recorded]) {
         Ok(_) => Vec::new(),
         Err(faults) => {
-            let of =
-                |fault: trimtab_core::flight::Fault| (fault.pointer, fault.code, fault.message);
+            let of = |fault: trimtab_core::flight::Fault| {
+                (fault.pointer, fault.code.into(), fault.message)
+            };
             faults.into_iter().map(of).collect()
         }
     }
@@ -105,7 +106,7 @@ fn what_is_known_of_no_candidate_is_refused_with_what_there_is() {
         let [(at, what, message)] = found.as_slice() else {
             panic!("{knowledge}: {found:#?}");
         };
-        assert_eq!((at.as_str(), *what), (pointer, code), "{message}");
+        assert_eq!((at.as_str(), what.as_str()), (pointer, code), "{message}");
         assert!(message.contains(remedy), "{message}");
     }
 }

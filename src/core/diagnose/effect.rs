@@ -103,12 +103,12 @@ impl Effect {
             whole.added.extend(edited.added);
             whole.inputs.extend(edited.inputs);
         }
-        if let (Some(plausible), Some(size)) = (&self.plausible, whole.added.first())
-            && let Some(size) = whole.document.parameters.get_mut(&size.name)
-        {
-            let held = self.kind == EffectKind::Edit(EditKind::FixedParameter);
+        let size = whole.added.first();
+        let size = size.and_then(|added| whole.document.parameters.get_mut(&added.name));
+        if let (Some(plausible), Some(size)) = (&self.plausible, size) {
+            let is_held = self.kind == EffectKind::Edit(EditKind::FixedParameter);
             let none = match size.start {
-                Start::Value(value) if held => value,
+                Start::Value(value) if is_held => value,
                 _ => 0.0,
             };
             plausible.bound(size, none);

@@ -7,7 +7,7 @@ pub fn by_name(name: &str, dimension: Dimension) -> Option<PhysicalQuantity> {
     let found = by_letter(name, dimension)
         .or_else(|| by_word(&plain(name)))
         .or_else(|| by_word(&plain(before_suffix(name)?)))
-        .or_else(|| deflection(name))?;
+        .or_else(|| deflection(name).filter(|_| dimension.is_none()))?;
     found.measures(dimension).then_some(found)
 }
 
@@ -63,6 +63,8 @@ fn by_word(word: &str) -> Option<PhysicalQuantity> {
         | "alphavane" | "alphatrue" => AngleOfAttack,
         "beta" | "aos" | "ssa" | "sideslip" | "angleofsideslip" | "sideslipangle" | "betam"
         | "betav" | "betavane" | "betatrue" => AngleOfSideslip,
+        "alphadot" | "alfadot" | "aoadot" => AngleOfAttackRate,
+        "betadot" | "aosdot" => AngleOfSideslipRate,
         "vtas" | "tas" | "va" | "vt" | "vtrue" | "airspeed" | "trueairspeed" | "vair" => Airspeed,
         "mach" | "ma" | "machnumber" => Mach,
         "qbar" | "qdyn" | "qinf" | "qc" | "dynamicpressure" | "pdyn" => DynamicPressure,
@@ -99,7 +101,7 @@ fn by_word(word: &str) -> Option<PhysicalQuantity> {
     })
 }
 
-/// `de`, `da_right`, `dsp`, `delta_x`: a d before one or two letters.
+/// `de`, `da_right`, `dsp`, `delta_x`: a d before one or two letters, of something without a dimension.
 fn deflection(name: &str) -> Option<PhysicalQuantity> {
     use PhysicalQuantity::*;
     let word = name.split('_').next().unwrap_or_default();
@@ -115,7 +117,7 @@ fn deflection(name: &str) -> Option<PhysicalQuantity> {
         "r" => Rudder,
         "c" => Canard,
         "f" | "fl" => Flap,
-        _ if letters && (1..=3).contains(&which.len()) => Control,
+        _ if letters && (1..=2).contains(&which.len()) => Control,
         _ => return None,
     })
 }
@@ -195,6 +197,7 @@ mod tests {
             ("delta_e", "rad", Elevator),
             ("dsp", "rad", Control),
             ("qdot", "rad/s^2", PitchAcceleration),
+            ("alpha_dot", "rad/s", AngleOfAttackRate),
         ] {
             assert_eq!(of(name, unit), Some(quantity), "{name} in {unit}");
         }
@@ -203,7 +206,6 @@ mod tests {
     #[test]
     fn what_is_measured_otherwise_is_something_else() {
         for (name, unit) in [
-            ("alphadot", "rad/s"),
             ("alpha_dot", "rad"),
             ("p", "Pa"),
             ("x", "rad"),

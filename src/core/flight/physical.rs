@@ -12,91 +12,95 @@ use super::Dimension;
 )]
 #[serde(rename_all = "snake_case")]
 pub enum PhysicalQuantity {
-    /// α, rad.
+    /// α, positive with the flow from below.
     AngleOfAttack,
-    /// β, rad.
+    /// β, positive with the flow from the right.
     AngleOfSideslip,
-    /// V, m/s, true.
+    /// dα/dt
+    AngleOfAttackRate,
+    /// dβ/dt
+    AngleOfSideslipRate,
+    /// True airspeed.
     Airspeed,
     /// Mach number.
     Mach,
-    /// q̄, Pa.
+    /// q̄
     DynamicPressure,
-    /// ρ, kg/m³.
+    /// ρ
     AirDensity,
-    /// u, m/s.
+    /// Through the air, forward.
     VelocityX,
-    /// v, m/s.
+    /// Through the air, to the right.
     VelocityY,
-    /// w, m/s.
+    /// Through the air, down.
     VelocityZ,
-    /// p, rad/s.
+    /// p
     RollRate,
-    /// q, rad/s.
+    /// q
     PitchRate,
-    /// r, rad/s.
+    /// r
     YawRate,
-    /// dp/dt, rad/s².
+    /// dp/dt
     RollAcceleration,
-    /// dq/dt, rad/s².
+    /// dq/dt
     PitchAcceleration,
-    /// dr/dt, rad/s².
+    /// dr/dt
     YawAcceleration,
     /// A specific force, or a load factor.
     AccelerationX,
-    /// As [`Self::AccelerationX`], to the right.
+    /// As that along x.
     AccelerationY,
-    /// As [`Self::AccelerationX`], downwards.
+    /// As that along x.
     AccelerationZ,
-    /// φ, rad.
+    /// φ
     RollAngle,
-    /// θ, rad.
+    /// θ
     PitchAngle,
-    /// ψ, rad.
+    /// ψ
     HeadingAngle,
-    /// North, m.
+    /// North.
     PositionX,
-    /// East, m.
+    /// East.
     PositionY,
-    /// Down, m.
+    /// Down.
     PositionZ,
-    /// h, m.
+    /// Up.
     Altitude,
-    /// Towards north, m/s.
+    /// Velocity of the air over ground, towards north.
     WindX,
-    /// Towards east, m/s.
+    /// Towards east.
     WindY,
-    /// Downwards, m/s.
+    /// Downwards.
     WindZ,
-    /// δe, rad.
+    /// A deflection, or the command of one.
     Elevator,
-    /// δa, rad.
+    /// A deflection, or the command of one.
     Aileron,
-    /// δr, rad.
+    /// A deflection, or the command of one.
     Rudder,
-    /// δc, rad.
+    /// A deflection, or the command of one.
     Canard,
-    /// δf, rad.
+    /// A deflection, or the command of one.
     Flap,
-    /// N, or a throttle.
+    /// A force, or a lever.
     Thrust,
     /// Any other control.
     Control,
-    /// CL.
+    /// C_L
     LiftCoefficient,
-    /// CD.
+    /// C_D
     DragCoefficient,
-    /// CY.
+    /// C_Y
     SideForceCoefficient,
-    /// CX.
+    /// C_X, forward.
     ForceCoefficientX,
-    /// CZ.
+    /// C_Z, down.
     ForceCoefficientZ,
-    /// Cl.
+    /// C_l
     RollingMomentCoefficient,
-    /// Cm.
+    /// C_m
     PitchingMomentCoefficient,
-    /// Cn.
+    /// C_n
     YawingMomentCoefficient,
     /// Any other aerodynamic coefficient.
     Coefficient,
@@ -109,29 +113,29 @@ pub enum PhysicalQuantity {
 /// The instruments that record a quantity, or the part of the model that it belongs to.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub enum Family {
-    /// Vanes, probes, the air data computer.
+    /// Flow angles, speed, pressures, altitude.
     AirData,
     /// Velocities in body axes.
     Velocity,
-    /// Rate gyros.
+    /// Rates.
     Gyro,
-    /// Rates differentiated, or accelerometers for them.
+    /// Their derivatives.
     AngularAcceleration,
-    /// Accelerometers.
+    /// Specific forces.
     Accelerometer,
-    /// Angles of an inertial platform.
+    /// Attitude angles.
     Attitude,
-    /// Satellite navigation.
+    /// Positions over ground.
     Position,
-    /// The air around it.
+    /// Winds.
     Wind,
-    /// Control surfaces and engines.
+    /// Controls.
     Control,
     /// Aerodynamic coefficients.
     Coefficient,
-    /// Elastic modes.
+    /// Elastic states.
     Structural,
-    /// None of these.
+    /// All else.
     Other,
 }
 
@@ -152,12 +156,12 @@ impl PhysicalQuantity {
             .unwrap_or_default()
     }
 
-    /// The instruments that record it.
+    /// Who records it.
     pub fn family(self) -> Family {
         use PhysicalQuantity::*;
         match self {
-            AngleOfAttack | AngleOfSideslip | Airspeed | Mach | DynamicPressure | AirDensity
-            | Altitude => Family::AirData,
+            AngleOfAttack | AngleOfSideslip | AngleOfAttackRate | AngleOfSideslipRate
+            | Airspeed | Mach | DynamicPressure | AirDensity | Altitude => Family::AirData,
             VelocityX | VelocityY | VelocityZ => Family::Velocity,
             RollRate | PitchRate | YawRate => Family::Gyro,
             RollAcceleration | PitchAcceleration | YawAcceleration => Family::AngularAcceleration,
@@ -185,7 +189,7 @@ impl PhysicalQuantity {
         matches!(self, Self::AngleOfAttack | Self::AngleOfSideslip)
     }
 
-    /// A control surface or an engine.
+    /// What the pilot or an engine moves.
     pub fn is_control(self) -> bool {
         self.family() == Family::Control
     }
@@ -201,11 +205,12 @@ impl PhysicalQuantity {
         )
     }
 
-    /// `None` of what may belong to either.
+    /// The motion that it belongs to; `None` of what may belong to either.
     pub fn motion(self) -> Option<Motion> {
         use PhysicalQuantity::*;
         match self {
             AngleOfSideslip
+            | AngleOfSideslipRate
             | VelocityY
             | RollRate
             | YawRate
@@ -220,6 +225,7 @@ impl PhysicalQuantity {
             | RollingMomentCoefficient
             | YawingMomentCoefficient => Some(Motion::Lateral),
             AngleOfAttack
+            | AngleOfAttackRate
             | Airspeed
             | Mach
             | DynamicPressure
@@ -253,6 +259,7 @@ impl PhysicalQuantity {
         match self.family() {
             Family::AirData => match self {
                 Self::Airspeed => dimension == speed,
+                Self::AngleOfAttackRate | Self::AngleOfSideslipRate => dimension == per_second,
                 Self::DynamicPressure => {
                     let area = Dimension::METRE.times(Dimension::METRE);
                     let newton = Dimension::KILOGRAM.times(speed).over(Dimension::SECOND);

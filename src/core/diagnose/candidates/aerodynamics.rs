@@ -116,7 +116,10 @@ fn unsteady(subject: &Subject<'_>) -> Vec<Effect> {
             let fits = law
                 .motion
                 .is_none_or(|motion| angle.quantity.motion() == Some(motion));
-            if fits && angle.name != law.target && !subject.depends(&angle.name, &law.target) {
+            if fits
+                && angle.name != law.target
+                && !subject.closes_a_circle(&angle.name, &law.target)
+            {
                 effects.push(Effect::edit(
                     EditKind::UnsteadyAero,
                     law.target.as_str(),

@@ -3,15 +3,29 @@
 use super::subject::Subject;
 use crate::diagnose::effect::{Effect, Treatment};
 use crate::flight::{Family, PhysicalQuantity};
+use crate::model::expression;
 use crate::model::{Edit, EditKind, Per};
 
 pub(super) fn candidates(subject: &Subject<'_>) -> Vec<Effect> {
     let mut effects = winds(subject);
-    let states = subject.document.states.keys();
-    effects.extend(states.map(|state| Effect::edit(EditKind::InitialState, state.as_str(), None)));
+    let states = subject.document.states.iter();
+    let held = states.filter(|(_, state)| is_held(subject, &state.initial));
+    effects.extend(held.map(|(name, _)| Effect::edit(EditKind::InitialState, name.as_str(), None)));
     effects.extend(air(subject));
     effects.extend(modes(subject));
     effects
+}
+
+/// Whether a state begins where the model has it: no maneuver has a free start of its own.
+fn is_held(subject: &Subject<'_>, initial: &str) -> bool {
+    let Ok(initial) = expression::parse(initial) else {
+        return false;
+    };
+    let is_free = |name: &str| {
+        let parameter = subject.document.parameters.get(name);
+        parameter.is_some_and(|parameter| !parameter.fixed && parameter.per == Per::Maneuver)
+    };
+    !initial.names().iter().any(|(name, _)| is_free(name))
 }
 
 /// One candidate each: a wind is a vector.
@@ -65,7 +79,8 @@ fn air(subject: &Subject<'_>) -> Vec<Effect> {
     effects
 }
 
-/// Rates, accelerations and vanes feel the structure; what is integrated from them hardly does.
+/// Rates, accelerations and vanes feel the structure, which controls of the same motion excite; what is integrated from
+/// them hardly does.
 fn modes(subject: &Subject<'_>) -> Vec<Effect> {
     let document = subject.document;
     let feels = |name: &&String| {
@@ -78,12 +93,18 @@ fn modes(subject: &Subject<'_>) -> Vec<Effect> {
                 )
         })
     };
-    let drives = |name: &&String| {
-        let quantity = subject.quantities.get(name);
-        quantity.is_some_and(|q| q.is_control() && q != PhysicalQuantity::Thrust)
+    let drives = |input: &str, output: &str| {
+        let driven = subject
+            .quantities
+            .output(output)
+            .and_then(PhysicalQuantity::motion);
+        subject.quantities.get(input).is_some_and(|quantity| {
+            let alike = driven.is_none() || quantity.motion().is_none_or(|own| Some(own) == driven);
+            quantity.is_control() && quantity != PhysicalQuantity::Thrust && alike
+        })
     };
     let of = |output: &String| {
-        let inputs = document.inputs.keys().filter(drives);
+        let inputs = document.inputs.keys().filter(|input| drives(input, output));
         let mode =
             |input: &String| Effect::edit(EditKind::StructuralMode, output.as_str(), Some(input));
         inputs.map(mode).collect::<Vec<_>>()

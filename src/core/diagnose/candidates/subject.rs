@@ -47,8 +47,7 @@ impl<'c> Subject<'c> {
     /// The effect of an edit that the document takes, with the channels that it uses and no others.
     pub(super) fn fit(&self, mut edit: Edit) -> Option<Effect> {
         let edited = edit.apply(self.document).ok()?;
-        edit.channels
-            .retain(|name, _| edited.document.inputs.contains_key(name));
+        edit.channels.retain(|name, _| edited.inputs.contains(name));
         Some(Effect::of(edit))
     }
 
@@ -82,6 +81,14 @@ impl<'c> Subject<'c> {
         document.inputs.contains_key(name)
             || document.states.contains_key(name)
             || document.definitions.contains_key(name)
+    }
+
+    /// Whether an equation would feed on itself with a name in it: a definition through others, a state by its own rate.
+    pub(super) fn closes_a_circle(&self, name: &str, target: &str) -> bool {
+        match self.document.definitions.contains_key(target) {
+            true => self.depends(name, target),
+            false => name == format!("{target}dot"),
+        }
     }
 
     /// Whether a name depends on another, through definitions.

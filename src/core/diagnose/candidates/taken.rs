@@ -11,12 +11,12 @@ use crate::model::{Quantities, Source};
 /// What a quantity of the model, or a recorded channel, was taken for.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct TakenFor {
-    /// As the model or the recording calls it.
+    /// An input, state, definition or output, or a recorded channel.
     #[schema(example = "AoA")]
     pub name: String,
-    /// Which quantity it was taken for.
+    /// What it was taken for.
     pub quantity: PhysicalQuantity,
-    /// Whether the document or the job says so, or it was guessed.
+    /// How that is known.
     pub from: Source,
     /// Why, in words.
     #[schema(example = "by its name and unit")]

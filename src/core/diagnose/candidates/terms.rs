@@ -35,7 +35,7 @@ pub(super) fn candidates(subject: &Subject<'_>) -> Vec<Effect> {
                 .is_some_and(|monomial| present.contains(monomial))
         };
         let fits = |product: &&Product<'_>| {
-            let closes_a_circle = |v: &&Variable| subject.depends(&v.name, &law.target);
+            let closes_a_circle = |v: &&Variable| subject.closes_a_circle(&v.name, &law.target);
             product.belongs_to(law.motion)
                 && !holds(product)
                 && !product.variables.iter().any(closes_a_circle)
@@ -137,7 +137,8 @@ impl<'v> Product<'v> {
             return true;
         }
         match self.variables.as_slice() {
-            [one] if self.text == one.name => !one.is_speed() || motion == Motion::Longitudinal,
+            [one] if one.is_speed() || one.is_flow_rate() => one.quantity.motion() == Some(motion),
+            [one] if self.text == one.name => true,
             _ => self.is_odd == (motion == Motion::Lateral),
         }
     }
@@ -165,7 +166,7 @@ fn products(variables: &[Variable]) -> Vec<Product<'_>> {
         }
     }
     if let Some(speed) = variables.iter().find(|v| v.is_speed()) {
-        let scaled = variables.iter().filter(|v| moves(v) || deflects(v));
+        let scaled = (variables.iter()).filter(|v| v.quantity.is_flow_angle() || deflects(v));
         all.extend(scaled.map(|v| Product::pair(speed, v)));
     }
     all

@@ -33,6 +33,11 @@ impl Variable {
         )
     }
 
+    pub(super) fn is_flow_rate(&self) -> bool {
+        use PhysicalQuantity::{AngleOfAttackRate, AngleOfSideslipRate};
+        matches!(self.quantity, AngleOfAttackRate | AngleOfSideslipRate)
+    }
+
     /// Whether the motion that it belongs to is symmetric: it changes sign with the side.
     pub(super) fn is_odd(&self) -> bool {
         self.quantity.motion() == Some(Motion::Lateral)
@@ -45,19 +50,14 @@ impl Subject<'_> {
         use PhysicalQuantity::{
             Airspeed, AngleOfAttack, AngleOfSideslip, Mach, PitchRate, RollRate, YawRate,
         };
-        let single = [
-            AngleOfAttack,
-            AngleOfSideslip,
-            RollRate,
-            PitchRate,
-            YawRate,
-            Airspeed,
-            Mach,
-        ];
+        let single = [AngleOfAttack, AngleOfSideslip, RollRate, PitchRate, YawRate];
         let mut variables: Vec<Variable> = single
             .into_iter()
             .filter_map(|quantity| self.variable(quantity))
             .collect();
+        // where both are recorded the one is hardly told from the other
+        variables.extend(self.variable(Airspeed).or_else(|| self.variable(Mach)));
+        variables.extend(self.flow_rates());
         let inputs = self.document.inputs.keys();
         let controls = inputs.filter_map(|name| {
             let quantity = self.quantities.get(name).filter(|q| q.is_control())?;
@@ -78,6 +78,31 @@ impl Subject<'_> {
             (variable.movement).is_none_or(|movement| movement.moves(variable.quantity))
         });
         variables
+    }
+
+    /// Rates of the flow angles: quantities of their own, or the derivatives of states.
+    fn flow_rates(&self) -> Vec<Variable> {
+        use PhysicalQuantity::{
+            AngleOfAttack, AngleOfAttackRate, AngleOfSideslip, AngleOfSideslipRate,
+        };
+        let rate = |(angle, rate): (PhysicalQuantity, PhysicalQuantity)| {
+            let is_state = |name: &&str| self.document.states.contains_key(*name);
+            let state = || self.quantities.all_of(angle).find(is_state);
+            let derivative = || {
+                Some(Variable {
+                    name: format!("{}dot", state()?),
+                    quantity: rate,
+                    channel: None,
+                    movement: None,
+                })
+            };
+            self.variable(rate).or_else(derivative)
+        };
+        let both = [
+            (AngleOfAttack, AngleOfAttackRate),
+            (AngleOfSideslip, AngleOfSideslipRate),
+        ];
+        both.into_iter().filter_map(rate).collect()
     }
 
     /// The model's own state, else definition, else input; else a recorded channel.

@@ -199,7 +199,7 @@ fn unit(case: &Case, pointer: &str, known: &KnownSize, meant: &[&Effect], faults
             continue;
         };
         let size = edited.added.first();
-        let size = size.and_then(|size| edited.document.parameters.get(&size.name));
+        let size = size.and_then(|added| edited.document.parameters.get(&added.name));
         let measured = size.and_then(|size| Unit::parse(&size.unit).ok());
         if let Some(measured) = measured.filter(|measured| measured.dimension != unit.dimension) {
             let message = format!(

@@ -241,3 +241,19 @@ pub(super) fn initial_state(sheet: &mut Sheet) -> Result<(), EditError> {
     sheet.add(&name, AddedRole::Size, parameter);
     Ok(())
 }
+
+/// A parameter that was fixed, at what would be no effect, is to be estimated.
+pub(super) fn freed(sheet: &mut Sheet) -> Result<(), EditError> {
+    let target = sheet.target();
+    let is_fixed = |(_, parameter): &(&String, &Parameter)| parameter.fixed;
+    let known = sheet.document.parameters.iter().filter(is_fixed);
+    let missing = sheet.no_target("fixed parameter", target, known.map(|(name, _)| name));
+    match sheet.document.parameters.get_mut(target) {
+        Some(parameter) if parameter.fixed => {
+            parameter.fixed = false;
+            sheet.note(target, AddedRole::Size);
+            Ok(())
+        }
+        _ => Err(missing),
+    }
+}

@@ -6,7 +6,7 @@ use crate::flight::{Dimension, PhysicalQuantity};
 use crate::model::Quantities;
 use crate::model::document::Input;
 
-/// What a speed may be read from.
+/// The quantities that a speed may be read from.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Speed {
     /// A quantity that varies, or the steady flight's.
@@ -22,8 +22,21 @@ impl Sheet<'_> {
     /// A quantity that varies with time, for an equation: a state, else a definition, else an input, else what an output
     /// says.
     pub(super) fn quantity(&self, wanted: PhysicalQuantity) -> Option<String> {
-        let document = &self.document;
         let quantities = self.quantities();
+        self.varying(&quantities, wanted).or_else(|| {
+            let output = quantities.outputs_of(wanted).next()?;
+            let output = self.document.outputs.get(output)?;
+            Some(format!("({})", output.equation))
+        })
+    }
+
+    /// The state, else the definition, else the input that is a quantity.
+    pub(super) fn varying(
+        &self,
+        quantities: &Quantities,
+        wanted: PhysicalQuantity,
+    ) -> Option<String> {
+        let document = &self.document;
         let of = |is: &dyn Fn(&str) -> bool| {
             let mut names = quantities.all_of(wanted);
             names.find(|name| is(name)).map(ToString::to_string)
@@ -31,11 +44,6 @@ impl Sheet<'_> {
         of(&|name| document.states.contains_key(name))
             .or_else(|| of(&|name| document.definitions.contains_key(name)))
             .or_else(|| of(&|name| document.inputs.contains_key(name)))
-            .or_else(|| {
-                let output = quantities.outputs_of(wanted).next()?;
-                let output = document.outputs.get(output)?;
-                Some(format!("({})", output.equation))
-            })
     }
 
     /// An airspeed for an equation. A speed that the document does not have becomes a recorded input.

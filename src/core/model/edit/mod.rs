@@ -54,7 +54,7 @@ impl Edit {
         self.check_lengths()?;
         let mut sheet = Sheet::new(self, document);
         match self.kind {
-            EditKind::FixedParameter => freed(&mut sheet),
+            EditKind::FixedParameter => dynamics::freed(&mut sheet),
             EditKind::SensorBias => sensors::bias(&mut sheet),
             EditKind::SensorScale => sensors::scale(&mut sheet),
             EditKind::SensorDrift => sensors::drift(&mut sheet),

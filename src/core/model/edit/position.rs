@@ -31,7 +31,7 @@ impl Quantity {
         (dimension(unit) == measures).then_some(found)
     }
 
-    /// The contribution of one metre of the arm, as terms: a sign and the rates that are multiplied. `V` divides all.
+    /// What one metre of the arm adds, as terms: a sign and the rates that are multiplied. `V` divides all.
     fn terms(self, axis: Axis) -> &'static [(&'static str, &'static [&'static str])] {
         match (self, axis) {
             (Self::Alpha, Axis::X) => &[("-", &["q"])],

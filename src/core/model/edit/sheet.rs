@@ -76,6 +76,11 @@ impl<'a> Sheet<'a> {
 
     pub(super) fn add(&mut self, name: &str, role: AddedRole, parameter: Parameter) {
         self.document.parameters.insert(name.to_string(), parameter);
+        self.note(name, role);
+    }
+
+    /// A parameter that is free now and was not.
+    pub(super) fn note(&mut self, name: &str, role: AddedRole) {
         self.added.push(Added {
             name: name.to_string(),
             role,

@@ -2,10 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use indexmap::IndexMap;
+
 use super::{BESIDE, beside, case, names, offered};
 use crate::diagnose::candidates::taken_for;
+use crate::diagnose::effect::{Effect, EffectKind};
 use crate::flight::PhysicalQuantity;
-use crate::model::{ModelDocument, Quantities, catalog};
+use crate::model::{EditKind, ModelDocument, Quantities, Start, catalog};
 
 /// Each name in a text by another.
 fn renamed(text: &str, by: &BTreeMap<String, String>) -> String {
@@ -16,7 +19,10 @@ fn renamed(text: &str, by: &BTreeMap<String, String>) -> String {
             word.push(c);
             continue;
         }
-        result.push_str(by.get(&word).unwrap_or(&word));
+        // the rate of a state is called after it
+        let rate = || Some(format!("{}dot", by.get(word.strip_suffix("dot")?)?));
+        let other = by.get(&word).cloned().or_else(rate);
+        result.push_str(other.as_ref().unwrap_or(&word));
         word.clear();
         result.push(c);
     }
@@ -24,33 +30,39 @@ fn renamed(text: &str, by: &BTreeMap<String, String>) -> String {
 }
 
 fn with_other_names(document: &ModelDocument, by: &BTreeMap<String, String>) -> ModelDocument {
-    let mut value = serde_json::to_value(document).unwrap();
-    for section in [
-        "constants",
-        "inputs",
-        "parameters",
-        "definitions",
-        "states",
-        "outputs",
-    ] {
-        let Some(entries) = value.get(section).and_then(|v| v.as_object()).cloned() else {
-            continue;
+    fn section<T: Clone>(
+        entries: &IndexMap<String, T>,
+        by: &BTreeMap<String, String>,
+        change: impl Fn(&mut T),
+    ) -> IndexMap<String, T> {
+        let renamed = |(name, entry): (&String, &T)| {
+            let mut entry = entry.clone();
+            change(&mut entry);
+            (by[name].clone(), entry)
         };
-        let rename = |(name, mut entry): (String, serde_json::Value)| {
-            for field in ["equation", "derivative", "initial", "delay", "start"] {
-                if let Some(text) = entry.get(field).and_then(|text| text.as_str()) {
-                    entry[field] = renamed(text, by).into();
-                }
-            }
-            (renamed(&name, by), entry)
-        };
-        value[section] = entries
-            .into_iter()
-            .map(rename)
-            .collect::<serde_json::Map<_, _>>()
-            .into();
+        entries.iter().map(renamed).collect()
     }
-    serde_json::from_value(value).unwrap()
+    let text = |text: &mut String| *text = renamed(text, by);
+    let delay = |delay: &mut Option<String>| delay.iter_mut().for_each(text);
+    ModelDocument {
+        constants: section(&document.constants, by, |_| {}),
+        inputs: section(&document.inputs, by, |x| delay(&mut x.delay)),
+        parameters: section(&document.parameters, by, |x| {
+            if let Start::FromData(start) = &mut x.start {
+                text(start);
+            }
+        }),
+        definitions: section(&document.definitions, by, |x| text(&mut x.equation)),
+        states: section(&document.states, by, |x| {
+            text(&mut x.initial);
+            text(&mut x.derivative);
+        }),
+        outputs: section(&document.outputs, by, |x| {
+            text(&mut x.equation);
+            delay(&mut x.delay);
+        }),
+        ..document.clone()
+    }
 }
 
 /// Every name of a document and of what is recorded beside it, by one that says nothing.
@@ -78,13 +90,28 @@ fn names_do_not_matter() {
         let renamed_beside: Vec<_> = (beside().into_iter())
             .map(|(name, unit, is)| (by[&name].clone(), unit, is))
             .collect();
+        // the arms of a sensor are axes, not names
+        let said = |effect: &Effect, by: &BTreeMap<String, String>| {
+            let is_arm = effect.kind == EffectKind::Edit(EditKind::SensorPosition);
+            let term = effect.term.as_deref().unwrap_or_default();
+            let term = if is_arm {
+                term.to_string()
+            } else {
+                renamed(term, by)
+            };
+            let target = renamed(&effect.target, by);
+            format!(
+                "{} of {target} ({term}) {:?}",
+                effect.word(),
+                effect.plausible
+            )
+        };
         let wanted: BTreeSet<String> = (offered(&case(&document, &beside())).iter())
-            .map(|effect| format!("{} {:?}", renamed(&effect.name(), &by), effect.plausible))
+            .map(|effect| said(effect, &by))
             .collect();
         let found: BTreeSet<String> = (offered(&case(&other, &renamed_beside)).iter())
-            .map(|effect| format!("{} {:?}", effect.name(), effect.plausible))
+            .map(|effect| said(effect, &BTreeMap::new()))
             .collect();
-        // products are written in the order of quantities, sensors in that of the document
         let missing: Vec<&String> = wanted.difference(&found).collect();
         let new: Vec<&String> = found.difference(&wanted).collect();
         assert!(

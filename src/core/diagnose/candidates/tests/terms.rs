@@ -115,6 +115,7 @@ fn products_with_recorded_channels_are_offered_about_a_reference() {
         "missing_term alpha*beta in r",
         "missing_term V*beta in ay",
         "missing_term alpha*dr in ay",
+        "missing_term p*abs(p) in p",
         "unrecorded_input of p (q)",
         "unrecorded_input of r (df)",
     ] {
@@ -127,9 +128,8 @@ fn products_with_recorded_channels_are_offered_about_a_reference() {
     let edited = square
         .unwrap()
         .apply(&catalog::find("short-period").unwrap())
-        .unwrap()
-        .document;
-    let equation = &edited.states["q"].derivative;
+        .unwrap();
+    let equation = &edited.document.states["q"].derivative;
     assert!(
         equation.contains("q_term*((alpha - alpha_eq)^2)"),
         "{equation}"
@@ -141,11 +141,10 @@ fn products_with_recorded_channels_are_offered_about_a_reference() {
     let edited = square
         .unwrap()
         .apply(&catalog::find("longitudinal-nonlinear").unwrap())
-        .unwrap()
-        .document;
-    assert!(edited.parameters["alpha_about"].fixed);
+        .unwrap();
+    assert!(edited.document.parameters["alpha_about"].fixed);
     assert!(
-        edited.definitions["Cm"]
+        edited.document.definitions["Cm"]
             .equation
             .contains("(alpha - alpha_about)^2")
     );
@@ -187,15 +186,16 @@ fn damping_scales_otherwise_than_stiffness() {
         .iter()
         .find(|effect| effect.name() == "missing_term qbar in all")
         .unwrap();
-    let edited = all
-        .apply(&catalog::find("short-period").unwrap())
-        .unwrap()
-        .document;
-    let pitching = &edited.states["q"].derivative;
+    let edited = all.apply(&catalog::find("short-period").unwrap()).unwrap();
+    let pitching = &edited.document.states["q"].derivative;
     assert!(pitching.contains("(Ma*qbar_ratio)") && pitching.contains("(Mq*speed_ratio_1)"));
-    assert!(edited.definitions["qbar_ratio"].equation.contains("^2"));
     assert!(
-        edited.states["alpha"]
+        edited.document.definitions["qbar_ratio"]
+            .equation
+            .contains("^2")
+    );
+    assert!(
+        edited.document.states["alpha"]
             .derivative
             .contains("(Za*speed_ratio_1)")
     );
