@@ -12,8 +12,10 @@ pub(crate) struct Replay {
     records: Vec<(usize, f64, Vec<f64>)>,
 }
 
-/// File, control, the columns it is made of with their factors, and which seconds are of use.
-const SOURCES: [(&str, usize, &[(&str, f64)], f64); 6] = [
+/// File, control, the columns it is made of with their factors, and the step, s.
+type Source = (&'static str, usize, &'static [(&'static str, f64)], f64);
+
+const SOURCES: [Source; 6] = [
     ("attas_elv1.csv", ELEVATOR, &[("de", 1.0)], 0.04),
     ("hfb320_1_10.csv", ELEVATOR, &[("de", 1.0)], 0.1),
     (

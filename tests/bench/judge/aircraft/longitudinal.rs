@@ -201,7 +201,7 @@ pub(super) fn make(random: &mut Random, replay: Option<&Replay>) -> Aircraft {
     );
     let channels = vec![
         Channel::new("elev", "deg", Quantity::Command(ELEVATOR), 0.002).given(),
-        Channel::new("jet", "N", Quantity::Command(THRUST), 5.0).given(),
+        Channel::new("jet", "N", Quantity::Command(THRUST), 1.0).given(),
         Channel::new("TAS", "m/s", Quantity::Speed, 0.15),
         Channel::new("AoA", "deg", Quantity::Alpha, 0.06),
         Channel::new("pitch", "deg", Quantity::Theta, 0.05),
