@@ -171,6 +171,7 @@ fn cases() -> Vec<Case> {
         case("flight-path-reconstruction", Wind, "Wx", "constant", &[], 1e-9, &[("W_x_constant", 3.0)], "x"),
         case("flight-path-reconstruction", Wind, "W_y", "ramp", &[], 1e-9, &[("W_y_ramp", 0.3)], "beta"),
         case("flight-path-reconstruction", Wind, "W_z", "shear", &[], 1e-9, &[("W_z_shear", 0.05)], "alpha"),
+        case("flight-path-reconstruction-attitude", FixedParameter, "b_alpha", "", &[], 0.0, &[("b_alpha", 0.02)], "alpha"),
         case(sp, InitialState, "q", "", &[], 0.0, &[("q_start", 0.01)], "q"),
         case(sp, StructuralMode, "q", "de", &[], 0.0, &[("q_mode_gain", 1.0)], "q"),
     ]
@@ -190,7 +191,11 @@ fn without_effect_an_edited_model_is_the_model_before_and_with_it_is_not() {
         let text = toml::to_string(&after).expect("TOML");
         assert_eq!(toml::from_str::<ModelDocument>(&text).unwrap(), after);
         assert_eq!(added.inputs, case.inputs, "{what}");
-        let is_new = |name: &&String| !before.parameters.contains_key(*name);
+        // new, or no longer fixed
+        let is_new = |name: &&String| {
+            let known = before.parameters.get(*name);
+            known.is_none_or(|known| known.fixed && !after.parameters[*name].fixed)
+        };
         let new: Vec<&String> = after.parameters.keys().filter(is_new).collect();
         let named: Vec<&String> = added.added.iter().map(|added| &added.name).collect();
         assert_eq!(named, new, "{what}");
@@ -517,7 +522,7 @@ fn a_scenario_names_what_is_wrong_with_an_effect() {
     };
     assert!(
         refused("sensor_noise:q=1")
-            .contains("there is no effect 'sensor_noise'; choose one of sensor_bias")
+            .contains("there is no effect 'sensor_noise'; choose one of fixed_parameter")
     );
     assert!(refused("sensor_bias:beta=1").contains("it has alpha, q"));
     assert!(refused("sensor_outliers:beta=0.1").contains("recorded are de, alpha, q, V"));

@@ -31,6 +31,12 @@ const LEAST_SHARE: f64 = 0.1;
 /// Where flights that were not fitted say nothing of an effect, those that were must say this much more.
 const UNHEARD: f64 = 2.0;
 
+/// The price of a size of which nothing is known,
+const UNKNOWN: f64 = 4.0;
+
+/// and the most that a known one may cost: the data have the last word.
+const SURPRISING: f64 = 12.0;
+
 /// A candidate with nothing against it.
 #[derive(Clone, Debug)]
 pub(super) struct Passed {
@@ -43,11 +49,42 @@ pub(super) struct Passed {
 
 impl Passed {
     /// By what candidates are chosen: twice the gain of the likelihood on the flights that were fitted, and the gain of
-    /// plain errors on those that were not, less the price of its parameters (Schwarz).
+    /// plain errors on those that were not, less the price of its parameters (Schwarz) and of a size that is not usual.
     pub(super) fn merit(&self) -> f64 {
         let samples = self.settled.problem.samples().max(1) as f64;
         let held_out: f64 = self.gains.iter().map(|gain| gain.gain).sum();
-        self.trial.likelihood_ratio + held_out - self.trial.freedom as f64 * samples.ln()
+        let price = self.trial.freedom as f64 * samples.ln();
+        self.trial.likelihood_ratio + held_out - price - self.surprise()
+    }
+
+    /// Twice the logarithm of how usual its size is, where that is known of its instrument: of candidates that the data
+    /// cannot tell apart the more usual one comes first.
+    fn surprise(&self) -> f64 {
+        let Some(plausible) = self.trial.effect.plausible else {
+            return UNKNOWN;
+        };
+        let size = (self.trial.added.first())
+            .map(|size| self.settled.sizes(std::slice::from_ref(size)))
+            .and_then(|sizes| sizes.first().map(|size| size.value));
+        match size {
+            Some(size) if plausible.sd > 0.0 && vanishes_at_zero(&self.trial.effect) => {
+                (size / plausible.sd).powi(2).min(SURPRISING)
+            }
+            _ => UNKNOWN,
+        }
+    }
+
+    /// What a linear step promised of it: of the likelihood, and of plain errors. What was tried outright has kept it.
+    pub(super) fn promise(&self) -> (f64, f64) {
+        let held_out: f64 = self.gains.iter().map(|gain| gain.gain).sum();
+        let reached = (
+            self.trial.likelihood_ratio,
+            held_out.max(self.trial.likelihood_ratio),
+        );
+        (self.trial.screened.as_ref()).map_or(reached, |seen| {
+            let promised = (seen.promise.max(seen.score), seen.plain);
+            (promised.0.min(reached.0), promised.1.min(reached.1))
+        })
     }
 }
 

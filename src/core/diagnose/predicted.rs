@@ -75,7 +75,8 @@ impl Predicted {
         pairs.map(gain).collect()
     }
 
-    /// Σ d²/σ², d by how much the two predictions differ: the gain that is to be expected of the better of them.
+    /// The gain that is to be expected of the better of two predictions: Σ N ln(1 + Σ d²/Σ e²), d by how much they
+    /// differ, e the errors of this one.
     pub(super) fn distance_from(&self, before: &Self) -> f64 {
         let pairs = self.outputs.iter().zip(&before.outputs);
         let of = |(now, before): (&Errors, &Errors)| {
@@ -84,7 +85,7 @@ impl Predicted {
                 .map(|(a, b)| (a - b).powi(2))
                 .filter(|square| square.is_finite())
                 .sum();
-            squares * now.samples() / now.squares()
+            now.samples() * (squares / now.squares()).ln_1p()
         };
         pairs.map(of).sum()
     }

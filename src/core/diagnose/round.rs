@@ -298,12 +298,16 @@ fn in_play(seen: &Seen, passed: &[Passed]) -> bool {
     if coloured <= WORTH_A_TRIAL {
         return false;
     }
-    let reached = |of: fn(&Passed) -> f64| passed.iter().map(of).fold(0.0, f64::max);
-    let by_likelihood = reached(|passed| passed.trial.likelihood_ratio);
-    let by_errors = reached(|passed| passed.gains.iter().map(|gain| gain.gain).sum());
+    // promises against promises: a step from afar may promise far less than it leads to
+    let reached = |of: fn(&Passed) -> (f64, f64)| {
+        passed.iter().map(of).fold((0.0_f64, 0.0_f64), |best, one| {
+            (best.0.max(one.0), best.1.max(one.1))
+        })
+    };
+    let (by_likelihood, by_errors) = reached(Passed::promise);
     passed.is_empty()
         || coloured > STILL_IN_PLAY * by_likelihood
-        || plain > STILL_IN_PLAY * by_errors.max(by_likelihood)
+        || plain > STILL_IN_PLAY * by_errors
 }
 
 /// Why a candidate was left untried.

@@ -81,31 +81,33 @@ fn without_far(series: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// λ by sample, by the roughness around it, and the size of the spike that it speaks of.
+/// λ by sample, and the size of the spike that it speaks of. It is measured by the spread of λ itself, around the sample
+/// and in the whole: where the residual is no autoregression its innovations are not white.
 fn standardised(colour: &Autoregression, series: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let mut innovations = vec![0.0; series.len()];
     colour.whiten(series, series, &mut innovations);
     let pattern: Vec<f64> = std::iter::once(1.0)
         .chain(colour.coefficients().iter().map(|a| -a))
         .collect();
-    let whole = robust_deviation(&innovations).max(f64::MIN_POSITIVE);
     let deviation = colour.deviation();
     let of = |k: usize| {
         if !series[k].is_finite() {
-            return (0.0, 0.0);
+            return (f64::NAN, 0.0);
         }
         let ahead = innovations[k..].iter().zip(&pattern);
         let (product, square) = ahead.fold((0.0, 0.0), |(product, square), (w, p)| {
             (product + w * p, square + p * p)
         });
-        let around = k.saturating_sub(AROUND)..(k + AROUND + 1).min(series.len());
-        let scale = robust_deviation(&innovations[around]).max(whole);
-        (
-            product / (square.sqrt() * scale),
-            deviation * product / square,
-        )
+        (product / square.sqrt(), deviation * product / square)
     };
-    (0..series.len()).map(of).unzip()
+    let (raw, sizes): (Vec<f64>, Vec<f64>) = (0..series.len()).map(of).unzip();
+    let whole = robust_deviation(&raw).max(f64::MIN_POSITIVE);
+    let lambda = (0..raw.len()).map(|k| {
+        let around = k.saturating_sub(AROUND)..(k + AROUND + 1).min(raw.len());
+        let lambda = raw[k] / robust_deviation(&raw[around]).max(whole);
+        if lambda.is_finite() { lambda } else { 0.0 }
+    });
+    (lambda.collect(), sizes)
 }
 
 /// The share of samples that are contaminated, where that is likelier than none at all.

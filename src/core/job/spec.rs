@@ -90,6 +90,7 @@ impl JobSpec {
             parameters: IndexMap::new(),
             constants: IndexMap::new(),
             candidates: Vec::new(),
+            knowledge: Default::default(),
             options: Options::default(),
         }
     }

@@ -28,22 +28,6 @@ pub use written::{Edit, EditKind, Reference};
 use super::document::ModelDocument;
 use sheet::Sheet;
 
-/// A parameter that was fixed, at what would be no effect, is to be estimated.
-fn freed(sheet: &mut Sheet) -> Result<(), EditError> {
-    let target = sheet.target();
-    let is_fixed = |(_, parameter): &(&String, &super::document::Parameter)| parameter.fixed;
-    let known = sheet.document.parameters.iter().filter(is_fixed);
-    let missing = sheet.no_target("fixed parameter", target, known.map(|(name, _)| name));
-    match sheet.document.parameters.get_mut(target) {
-        Some(parameter) if parameter.fixed => {
-            parameter.fixed = false;
-            sheet.frees(target);
-            Ok(())
-        }
-        _ => Err(missing),
-    }
-}
-
 impl Edit {
     /// The document with the effect in it, and what it has more.
     ///

@@ -66,14 +66,6 @@ impl<'a> Sheet<'a> {
             || Function::find(name).is_some()
     }
 
-    /// A parameter of the document is no longer fixed.
-    pub(super) fn frees(&mut self, name: &str) {
-        self.added.push(Added {
-            name: name.to_string(),
-            role: AddedRole::Size,
-        });
-    }
-
     pub(super) fn add(&mut self, name: &str, role: AddedRole, parameter: Parameter) {
         self.document.parameters.insert(name.to_string(), parameter);
         self.note(name, role);

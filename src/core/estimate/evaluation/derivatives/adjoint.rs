@@ -10,7 +10,7 @@ use crate::estimate::likelihood::priors;
 use crate::estimate::likelihood::sums::mirror;
 use crate::estimate::likelihood::weighting::Weighting;
 use crate::estimate::problem::missing::present;
-use crate::estimate::problem::unusable::Unusable;
+use crate::estimate::problem::unusable::{Unusable, left_range};
 use crate::estimate::problem::{Problem, set_parameters};
 use crate::simulate::{Adjoint, Checkpoints};
 
