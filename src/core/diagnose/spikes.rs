@@ -219,13 +219,24 @@ fn robust_deviation(values: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+
     use super::*;
+
+    /// White, of deviation 0.3.
+    fn noise() -> Vec<f64> {
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        let draw = |_| 0.3 * Distribution::<f64>::sample(&StandardNormal, &mut random);
+        (0..600).map(draw).collect()
+    }
 
     #[test]
     fn spikes_and_stuck_values_are_found_and_noise_is_not() {
-        let noise = |k: usize| ((k * 7919 + 13) % 101) as f64 / 101.0 - 0.5;
+        let noise = noise();
         let model: Vec<f64> = (0..500).map(|k| 20.0 * (k as f64 / 40.0).sin()).collect();
-        let mut measured: Vec<f64> = (0..500).map(|k| model[k] + noise(k)).collect();
+        let mut measured: Vec<f64> = (0..500).map(|k| model[k] + noise[k]).collect();
         let residual = |measured: &[f64]| -> Vec<f64> {
             measured.iter().zip(&model).map(|(z, y)| z - y).collect()
         };
@@ -248,21 +259,21 @@ mod tests {
     /// buffet in a stall, and steady flight recorded to a coarse digit while the model drifts off.
     #[test]
     fn rough_stretches_and_coarse_digits_are_no_outliers() {
-        let noise = |k: usize| ((k * 7919 + 13) % 101) as f64 / 101.0 - 0.5;
+        let noise = noise();
         let of = |measured: &dyn Fn(usize) -> f64, model: &dyn Fn(usize) -> f64| {
             let measured: Vec<f64> = (0..600).map(measured).collect();
             let residual: Vec<f64> = (0..600).map(|k| measured[k] - model(k)).collect();
             spikes(&residual, &measured)
         };
-        let lumps = |k: usize| (noise(k / 2) * 8.0).round() * 0.04 + 1e-4 * noise(k);
+        let lumps = |k: usize| (noise[k / 2] * 8.0).round() * 0.04 + 1e-4 * noise[k];
         assert_eq!(of(&lumps, &|_| 0.0), []);
-        let buffet = |k: usize| noise(k) * if k < 500 { 1.0 } else { 15.0 };
+        let buffet = |k: usize| noise[k] * if k < 500 { 1.0 } else { 15.0 };
         assert_eq!(of(&buffet, &|_| 0.0), []);
         let steady = |k: usize| {
             if k < 300 {
                 0.5
             } else {
-                0.5 + 0.1 * (noise(k) * 4.0).round()
+                0.5 + 0.1 * (noise[k] * 4.0).round()
             }
         };
         assert_eq!(of(&steady, &|k| 0.004 * k as f64), []);

@@ -235,13 +235,13 @@ mod tests {
             for r in [0.5, 2.0, 8.0] {
                 let wanted = walked(&axis, |at, u, h| at + (u - at).clamp(-r * h, r * h));
                 let (found, _) = passed(&axis, false, &[(Element::RateLimit, r)]);
+                let step = (0..COUNT - 1).map(|k| axis.length(k)).fold(0.0, f64::max);
                 let mut limited = 0;
                 for k in 1..COUNT {
                     let rate = (found[k] - found[k - 1]).abs() / axis.length(k - 1);
                     assert!(rate <= r * (1.0 + 1e-12));
                     limited += usize::from(rate > 0.99 * r);
                     let apart = (found[k] - wanted[k]).abs();
-                    let step = axis.length(k - 1).max(STEP);
                     assert!(apart <= 2e-3 * r * step, "{r} {k}: {apart}");
                 }
                 assert!(limited >= 2, "{r} is no limit");

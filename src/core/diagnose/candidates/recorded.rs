@@ -17,7 +17,8 @@ pub(super) struct Channel {
 /// How a channel moves over all flights that are fitted, SI.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Movement {
-    pub mean: f64,
+    /// The median: a control that is pulsed spends most of its time where the aircraft is trimmed.
+    pub middle: f64,
     pub least: f64,
     pub most: f64,
 }
@@ -31,18 +32,13 @@ const STILL_SHARE: f64 = 0.01;
 
 impl Movement {
     fn of<'v>(values: impl Iterator<Item = &'v f64>) -> Option<Self> {
-        let (mut count, mut sum) = (0.0, 0.0);
-        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-        for value in values.filter(|value| value.is_finite()) {
-            count += 1.0;
-            sum += value;
-            least = least.min(*value);
-            most = most.max(*value);
-        }
-        (count > 0.0).then(|| Self {
-            mean: sum / count,
-            least,
-            most,
+        let finite = values.copied().filter(|value| value.is_finite());
+        let mut values: Vec<f64> = finite.collect();
+        values.sort_by(f64::total_cmp);
+        Some(Self {
+            middle: *values.get(values.len() / 2)?,
+            least: *values.first()?,
+            most: *values.last()?,
         })
     }
 
@@ -60,7 +56,7 @@ impl Movement {
                 range > STILL_ANGLE
             }
             Family::AirData if quantity.is_flow_angle() => range > STILL_ANGLE,
-            _ => range > STILL_SHARE * self.mean.abs(),
+            _ => range > STILL_SHARE * self.middle.abs(),
         }
     }
 }

@@ -160,9 +160,9 @@ impl Subject<'_> {
         if variable.is_odd() || variable.is_rate() {
             return None;
         }
-        let mean = variable.movement?.mean;
+        let middle = variable.movement?.middle;
         let unit = self.unit(variable)?;
-        Some(Reference::Value(rounded(unit.from_si(mean))))
+        Some(Reference::Value(rounded(unit.from_si(middle))))
     }
 
     fn unit(&self, variable: &Variable) -> Option<crate::flight::Unit> {

@@ -2,11 +2,10 @@
 //! which at their values of no effect is the model before.
 //!
 //! The added parameters carry units, start values and their physical range. Every effect contains its own absence:
-//! [`Edit::absence`] says at which values the edited model is the model before. Lags, rate limits, play and delays are
+//! [`Edited::absence`] says at which values the edited model is the model before. Lags, rate limits, play and delays are
 //! elements in the path of a signal (see [`super::Element`]). The time constants of the effects that are states must
 //! stay above about 0.4 of the time between samples: what is faster than that an explicit integrator cannot follow.
 
-mod absence;
 mod dynamics;
 mod edited;
 mod error;

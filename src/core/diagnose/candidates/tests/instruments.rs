@@ -164,7 +164,7 @@ fn what_is_known_bounds_a_size_or_leaves_it_out() {
     assert_eq!(edited.parameters["alpha_x"].upper, Some(15.0));
     assert_eq!(edited.parameters["alpha_x"].prior, None);
     let gyro = find(&usual, "sensor_scale of q").unwrap();
-    assert_eq!(gyro.plausible.unwrap().lower, -0.1);
+    assert_eq!(gyro.plausible.unwrap().lower, -0.3);
     let vane_delay = find(&usual, "sensor_delay of alpha")
         .unwrap()
         .apply(&document)
