@@ -57,7 +57,7 @@ fn told(inspection: &Inspection) -> String {
 
 fn columns(inspection: &Inspection) -> Table {
     let mut table = Table::new();
-    table.load_preset(UTF8_BORDERS_ONLY);
+    table.load_style(UTF8_BORDERS_ONLY);
     table.set_header(["column", "title", "unit", "first value"]);
     for (at, column) in inspection.columns.iter().enumerate() {
         let number = (at + 1).to_string();

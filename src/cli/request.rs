@@ -222,6 +222,7 @@ impl Request {
             channels,
             parameters,
             candidates: Vec::new(),
+            knowledge: Default::default(),
             constants,
             options: Options {
                 method: if self.gauss_newton {

@@ -5,6 +5,7 @@
 use maud::{Markup, html};
 
 use super::notation::Notation;
+use crate::model::Element;
 use crate::model::expression::{BinaryOperator, Expression, Function, Kind, parse};
 
 /// What stands to the left of the `=`.
@@ -17,8 +18,8 @@ pub(super) enum Left<'a> {
     /// A definition.
     Value(&'a str),
     Output(&'a str),
-    /// The delay of an input or an output.
-    Delay(&'a str),
+    /// The size of an element in the path of an input or output: its play, rate limit, lag or delay.
+    Size(Element, &'a str),
 }
 
 impl Left<'_> {
@@ -30,8 +31,8 @@ impl Left<'_> {
             },
             Left::Value(name) => notation.name(name),
             Left::Output(name) => notation.output(name),
-            Left::Delay(name) => {
-                html! { mrow { mtext { "delay of\u{a0}" } (notation.name(name)) } }
+            Left::Size(element, name) => {
+                html! { mrow { mtext { (element.words()) " of\u{a0}" } (notation.name(name)) } }
             }
         }
     }
@@ -42,7 +43,7 @@ impl Left<'_> {
             Left::Initial(name) => format!("{name}(0)"),
             Left::Value(name) => name.to_string(),
             Left::Output(name) => format!("output {name}"),
-            Left::Delay(name) => format!("delay of {name}"),
+            Left::Size(element, name) => format!("{} of {name}", element.words()),
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use super::mathml::{Left, equation};
 use super::notation::Notation;
-use crate::model::catalog;
 use crate::model::expression::parse;
+use crate::model::{Element, catalog};
 
 /// The right side in a line: fractions as `[a|b]`, powers as `{a|b}`, products with a blank.
 fn line(text: &str) -> String {
@@ -147,7 +147,7 @@ fn the_left_side_says_what_it_is() {
     assert_eq!(left(Left::Rate("alpha")), "α˙");
     assert_eq!(left(Left::Initial("q")), "q(0)");
     assert_eq!(left(Left::Output("q")), "qout");
-    assert_eq!(left(Left::Delay("q")), "delay of\u{a0}q");
+    assert_eq!(left(Left::Size(Element::Delay, "q")), "delay of\u{a0}q");
     assert_eq!(left(Left::Rate("qbar")), "[dq¯|dt]");
 }
 
@@ -187,7 +187,7 @@ fn hostile_texts_are_escaped_and_long_ones_typeset() {
     for left in [
         Left::Rate(hostile),
         Left::Output(hostile),
-        Left::Delay(hostile),
+        Left::Size(Element::RateLimit, hostile),
     ] {
         for text in ["1", "a + ", "<b>", "x\" onload=\"y"] {
             let markup = equation(&none, left, text).0;

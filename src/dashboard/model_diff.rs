@@ -9,7 +9,7 @@ use super::notation::Notation;
 use crate::diagnose::DocumentChange;
 use crate::flight::escape;
 use crate::flight::{Shown, shown_in};
-use crate::model::ModelDocument;
+use crate::model::{Element, ModelDocument};
 
 /// Another model, and what it has that this one has not.
 pub struct Comparison {
@@ -101,17 +101,17 @@ pub(super) fn equations_at(notation: &Notation, pointer: &str, value: &Value) ->
         Some(member) => value.as_str().filter(|_| member == key),
         None => value.get(key).and_then(Value::as_str),
     };
+    let size = |element: Element| (element.field(), Left::Size(element, name));
     let lefts = match section.as_str() {
         "states" => vec![
             ("derivative", Left::Rate(name)),
             ("initial", Left::Initial(name)),
         ],
         "definitions" => vec![("equation", Left::Value(name))],
-        "inputs" => vec![("delay", Left::Delay(name))],
-        "outputs" => vec![
-            ("equation", Left::Output(name)),
-            ("delay", Left::Delay(name)),
-        ],
+        "inputs" => Element::ALL.map(size).to_vec(),
+        "outputs" => std::iter::once(("equation", Left::Output(name)))
+            .chain(Element::ALL.map(size))
+            .collect(),
         _ => Vec::new(),
     };
     lefts
@@ -127,7 +127,9 @@ fn side(notation: &Notation, document: &ModelDocument, pointer: &str, value: &Va
         let steps = steps(pointer);
         let shown = unit_at(document, pointer);
         let is_equation = |key: &str| {
-            !equations.is_empty() && ["derivative", "initial", "equation", "delay"].contains(&key)
+            let is_size = Element::ALL.iter().any(|element| element.field() == key);
+            !equations.is_empty()
+                && (is_size || ["derivative", "initial", "equation"].contains(&key))
         };
         return html! {
             @for equation in &equations { div { (equation) } }

@@ -7,7 +7,7 @@ use super::mathml::{Left, equation};
 use super::model_diff::{Comparison, comparison};
 use super::model_tables as tables;
 use super::notation::Notation;
-use crate::model::ModelDocument;
+use crate::model::{Element, ModelDocument};
 
 /// What the page shows.
 pub struct ModelView {
@@ -63,14 +63,17 @@ fn actions(id: &str) -> Markup {
 }
 
 fn equations(document: &ModelDocument, notation: &Notation) -> Markup {
-    let input_delays =
-        (document.inputs.iter()).filter_map(|(name, input)| Some((name, input.delay.as_ref()?)));
-    let output_delays =
-        (document.outputs.iter()).filter_map(|(name, output)| Some((name, output.delay.as_ref()?)));
-    let delays: Vec<_> = input_delays
-        .chain(output_delays)
-        .map(|(name, delay)| (Left::Delay(name), delay.as_str(), "in seconds"))
-        .collect();
+    let inputs = document.inputs.iter().map(|(name, one)| (name, one.path()));
+    let outputs = document
+        .outputs
+        .iter()
+        .map(|(name, one)| (name, one.path()));
+    let mut paths = Vec::new();
+    for (name, path) in inputs.chain(outputs) {
+        let passed = path.into_iter();
+        paths
+            .extend(passed.map(|(element, size)| (Left::Size(element, name), size, what(element))));
+    }
     let states = || document.states.iter();
     let dynamics = states().map(|(name, state)| {
         let (text, description) = (state.derivative.as_str(), state.description.as_str());
@@ -94,7 +97,16 @@ fn equations(document: &ModelDocument, notation: &Notation) -> Markup {
         (list("Initial values", notation, initial))
         (list("Definitions", notation, definitions))
         (list("Output equations", notation, outputs))
-        (list("Delays", notation, delays.into_iter()))
+        (list("Signal paths", notation, paths.into_iter()))
+    }
+}
+
+fn what(element: Element) -> &'static str {
+    match element {
+        Element::Play => "half the width of the dead band",
+        Element::RateLimit => "largest rate",
+        Element::Lag => "time constant, in seconds",
+        Element::Delay => "in seconds",
     }
 }
 

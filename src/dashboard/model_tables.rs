@@ -6,7 +6,7 @@ use super::mathml;
 use super::notation::Notation;
 use crate::estimate::five_digits;
 use crate::flight::{Shown, shown_in};
-use crate::model::{ModelDocument, Parameter, Per, Start};
+use crate::model::{Element, ModelDocument, Parameter, Per, Start};
 
 pub(super) fn parameters(document: &ModelDocument, notation: &Notation) -> Markup {
     let has_priors = document.parameters.values().any(|one| one.prior.is_some());
@@ -72,35 +72,40 @@ pub(super) fn constants(document: &ModelDocument, notation: &Notation) -> Markup
 
 pub(super) fn inputs(document: &ModelDocument, notation: &Notation) -> Markup {
     let rows = (document.inputs.iter())
-        .map(|(name, input)| (name, &input.unit, &input.delay, &input.description));
+        .map(|(name, input)| (name, &input.unit, input.path(), &input.description));
     channels("input", rows, notation)
 }
 
 pub(super) fn outputs(document: &ModelDocument, notation: &Notation) -> Markup {
     let rows = (document.outputs.iter())
-        .map(|(name, output)| (name, &output.unit, &output.delay, &output.description));
+        .map(|(name, output)| (name, &output.unit, output.path(), &output.description));
     channels("output", rows, notation)
 }
 
 fn channels<'a>(
     heading: &str,
-    rows: impl Iterator<Item = (&'a String, &'a String, &'a Option<String>, &'a String)>,
+    rows: impl Iterator<Item = (&'a String, &'a String, Vec<(Element, &'a str)>, &'a String)>,
     notation: &Notation,
 ) -> Markup {
     let rows: Vec<_> = rows.collect();
-    let has_delays = rows.iter().any(|(_, _, delay, _)| delay.is_some());
+    let has_paths = rows.iter().any(|(_, _, path, _)| !path.is_empty());
     html! {
         table {
             thead { tr {
                 th scope="col" { (heading) } th scope="col" { "symbol" } th scope="col" { "unit" }
-                @if has_delays { th scope="col" { "delay, s" } }
+                @if has_paths { th scope="col" { "path" } }
                 th scope="col" { "description" }
             } }
             tbody {
-                @for (name, unit, delay, description) in rows {
+                @for (name, unit, path, description) in rows {
                     tr {
                         th scope="row" { (name) } td { (mathml::name(notation, name)) } td.soft { (shown_in(unit).unit) }
-                        @if has_delays { td { @if let Some(delay) = delay { code { (delay) } } } }
+                        @if has_paths { td {
+                            @for (at, (element, size)) in path.iter().enumerate() {
+                                @if at > 0 { ", " }
+                                (element.words()) " " code { (size) }
+                            }
+                        } }
                         td.soft { (description) }
                     }
                 }

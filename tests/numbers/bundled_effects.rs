@@ -49,10 +49,15 @@ fn diagnosis_of(model: &str, files: &[(String, &str)], parameters: Value) -> Dia
 
 /// Whether the effect, or one that the data cannot tell from it, is this one.
 fn contains(named: &NamedEffect, truth: &ScenarioEffect) -> bool {
+    // a scenario says the unit of a channel beside its name
+    let bare = |term: &Option<String>| {
+        let name = term.as_deref().unwrap_or_default();
+        name.split('[').next().unwrap_or_default().to_string()
+    };
     (named.group.iter()).any(|member| {
         let effect = &member.effect;
         (effect.word(), &effect.target) == (truth.kind.clone(), &truth.target)
-            && (effect.term.is_none() || effect.term == truth.term)
+            && (effect.term.is_none() || bare(&effect.term) == bare(&truth.term))
     })
 }
 

@@ -57,6 +57,8 @@ fn refused(document: ModelDocument) -> HashMap<String, Refusal> {
         flights: vec![flight],
         options: Options::default(),
         candidates: Vec::new(),
+        knowledge: Default::default(),
+        consumed: Vec::new(),
     };
     let Ok(conclusion) = diagnose(&case, &mut |_| ControlFlow::Continue(())) else {
         panic!("no conclusion");

@@ -192,7 +192,7 @@ fn machine_code_gives_the_numbers_of_the_interpreter_to_the_last_bit() {
             let model = compile(&document);
             assert!(model.make_native(), "{}", document.name);
             let what = format!("{} {scheme:?}", document.name);
-            if model.delays.is_empty() {
+            if model.paths.is_empty() {
                 assert!(
                     outputs(&model, scheme) == interpreted(&model, scheme),
                     "outputs of {what}"

@@ -18,6 +18,7 @@ mod common {
     pub(crate) mod study_problems;
 }
 
+mod absence;
 mod accuracy;
 mod bundled_data;
 mod bundled_effects;
@@ -31,6 +32,7 @@ mod estimation;
 mod filter_error;
 mod findings;
 mod invisible_effects;
+mod knowledge;
 mod likelihood;
 mod machine_code;
 mod missing_samples;
@@ -38,6 +40,8 @@ mod model_documents;
 mod modes;
 mod one_step;
 mod options;
+mod paths;
+mod play_and_limits;
 mod priors;
 mod sensitivities;
 mod starts;

@@ -4,25 +4,28 @@ use std::ops::ControlFlow;
 
 use nalgebra::DMatrix;
 
+use super::accepted::Accepted;
+use super::candidates::taken_for;
 use super::case::{Case, Unfit};
-use super::colour::Colour;
+use super::declared::Declared;
 use super::difference::difference;
 use super::fitted::Fitted;
-use super::found::{Accepted, Found};
-use super::report::{
-    Diagnosis, EffectParameter, FitChange, NamedEffect, ParameterChange, Refusal, Verdict,
-};
+use super::found::Found;
+use super::report::{Diagnosis, EffectParameter, FitChange, NamedEffect, ParameterChange};
 use super::residual::analyse;
 use super::screen::Screen;
 use super::sentence;
 use super::size::sizes;
-use super::stack::Layout;
+use super::verdict::{self, Left};
 use crate::estimate::{
     Estimate, OutputFit, ParameterEstimate, Problem, Role, Solution, TimeHistory, estimate,
     five_digits, predict,
 };
 use crate::flight::{Shown, Unit, shown_in};
 use crate::model::{ModelDocument, Start};
+
+/// Noise alone makes a residual look coherent with an input once in so many diagnoses.
+const COHERENT: f64 = 1e-3;
 
 /// Everything that a diagnosis comes to.
 pub struct Conclusion {
@@ -34,23 +37,18 @@ pub struct Conclusion {
     pub histories: Vec<TimeHistory>,
 }
 
-/// Noise alone makes a residual look coherent with an input once in so many diagnoses.
-const COHERENT: f64 = 1e-3;
-
-/// A member of an alias group that is less likely than this does not keep the likeliest from being named singly.
-const UNLIKELY: f64 = 0.01;
-
-/// Fewer samples than this for each free parameter decide nothing.
-const LEAST_SAMPLES: usize = 5;
-
-/// `fitted` are the time histories of the declared model on the flights that it was fitted to.
 pub(super) fn answer(
     case: &Case,
-    declared: &Fitted,
-    fitted: &[TimeHistory],
+    declared: &Declared,
     last: &Fitted,
     found: Found,
 ) -> Result<Conclusion, Unfit> {
+    let Declared {
+        fitted: declared,
+        histories: fitted,
+        remarks,
+        ..
+    } = declared;
     let after = full(case, declared, last)?;
     let estimated = after.solution.estimate.clone();
     let mut histories = after.solution.histories.clone();
@@ -102,13 +100,13 @@ pub(super) fn answer(
     } else {
         coherent(case, last)
     };
-    let verdict = verdict(case, declared, &found, &incoherent);
-    let mut remarks = remarks(case, &fits);
-    for (output, input) in &incoherent {
-        remarks.push(format!(
-            "what is left of {output} still follows {input}: something that no candidate of the catalogue explains"
-        ));
-    }
+    let left = Left {
+        coherent: &incoherent,
+        differs: found.differs_between_maneuvers(),
+    };
+    let verdict = verdict::of(case, declared, &found, &left);
+    let mut remarks = remarks.clone();
+    remarks.extend(remarks_on(case, &fits));
     let effects: Vec<NamedEffect> = found
         .accepted
         .iter()
@@ -116,9 +114,10 @@ pub(super) fn answer(
         .collect();
     let diagnosis = Diagnosis {
         verdict,
-        sentence: conclusion(verdict, &effects, &fits, &incoherent),
+        sentence: verdict::sentence(verdict, &effects, &fits, &left),
         effects,
         refused: found.truly_refused(),
+        quantities: taken_for(case),
         parameters: changes(&declared.estimate, &estimated),
         before: declared.estimate.clone(),
         model: estimated_document(&after.problem, &after.solution.theta),
@@ -182,10 +181,8 @@ fn predictions(
 
 /// Outputs and inputs that the residual still is coherent with.
 fn coherent(case: &Case, last: &Fitted) -> Vec<(String, String)> {
-    let layout = Layout::of(&last.problem);
-    let colour = Colour::of_best_order(&layout, &last.residual);
     let model = &last.problem.model;
-    let Some(screen) = Screen::new(case, last, &colour) else {
+    let Some(screen) = Screen::new(case, last) else {
         return Vec::new();
     };
     let mut found = Vec::new();
@@ -200,56 +197,7 @@ fn coherent(case: &Case, last: &Fitted) -> Vec<(String, String)> {
     found
 }
 
-fn verdict(
-    case: &Case,
-    declared: &Fitted,
-    found: &Found,
-    coherent: &[(String, String)],
-) -> Verdict {
-    let samples: usize = declared
-        .problem
-        .segments
-        .iter()
-        .map(|segment| segment.len())
-        .sum();
-    let still = (declared.problem.segments.iter())
-        .all(|segment| segment.inputs.iter().all(|u| u.iter().all(|v| *v == u[0])));
-    let moved = !declared.problem.model.inputs.is_empty();
-    if found.accepted.is_empty()
-        && (samples < LEAST_SAMPLES * declared.problem.unknowns.len() || (still && moved))
-    {
-        return Verdict::NotTestable;
-    }
-    if found.accepted.is_empty() && unrepeated(case, found) {
-        return Verdict::NotTestable;
-    }
-    if !coherent.is_empty() {
-        return Verdict::Unexplained;
-    }
-    let members = |accepted: &Accepted| {
-        let likely = accepted
-            .group
-            .iter()
-            .filter(|member| member.weight > UNLIKELY);
-        likely.count()
-    };
-    match found.accepted.iter().map(members).max() {
-        None => Verdict::NothingMissing,
-        Some(1) => Verdict::Named,
-        Some(_) => Verdict::NamedGroup,
-    }
-}
-
-/// Something was significant, and there is but one maneuver on which to see whether it repeats.
-fn unrepeated(case: &Case, found: &Found) -> bool {
-    case.flights.len() == 1
-        && found
-            .refused
-            .iter()
-            .any(|refused| refused.reason == Refusal::NotRepeatable)
-}
-
-fn remarks(case: &Case, fits: &[FitChange]) -> Vec<String> {
+fn remarks_on(case: &Case, fits: &[FitChange]) -> Vec<String> {
     let mut remarks = Vec::new();
     if case.of_role(Role::Validation).next().is_none() {
         remarks.push(
@@ -334,58 +282,4 @@ fn estimated_document(problem: &Problem, theta: &[f64]) -> ModelDocument {
         }
     }
     document
-}
-
-fn conclusion(
-    verdict: Verdict,
-    effects: &[NamedEffect],
-    fits: &[FitChange],
-    coherent: &[(String, String)],
-) -> String {
-    let found: Vec<&str> = effects
-        .iter()
-        .map(|effect| effect.sentence.as_str())
-        .collect();
-    let found = found.join("; ");
-    let errors = || {
-        let role = [Role::Final, Role::Validation, Role::Estimation]
-            .into_iter()
-            .find(|role| fits.iter().any(|fit| fit.role == *role))?;
-        let of: Vec<String> = (fits.iter().filter(|fit| fit.role == role))
-            .map(|fit| {
-                let Shown { scale, unit } = shown_in(&fit.after.unit);
-                let [before, after] =
-                    [&fit.before, &fit.after].map(|fit| five_digits(fit.rms * scale));
-                format!("{} {before} to {after} {unit}", fit.before.name)
-            })
-            .collect();
-        let on = match role {
-            Role::Estimation => "of the fit",
-            Role::Validation => "of the prediction",
-            Role::Final => "of the prediction of data that took no part in any decision",
-        };
-        Some(format!("RMS error {on}: {}", of.join(", ")))
-    };
-    let errors = errors().unwrap_or_default();
-    match verdict {
-        Verdict::Named => format!("{found}. {errors}"),
-        Verdict::NamedGroup => {
-            let group = effects.iter().find(|effect| effect.group.iter().filter(|member| member.weight > UNLIKELY).count() > 1);
-            let names: Vec<String> = (group.iter().flat_map(|effect| &effect.group))
-                .map(|member| format!("{} ({:.0} %)", member.effect.name(), 100.0 * member.weight))
-                .collect();
-            format!("{found}. The data cannot tell apart: {}. {errors}", names.join(", "))
-        }
-        Verdict::NothingMissing => {
-            "no effect of the catalogue is missing, and what is left follows no input".to_string()
-        }
-        Verdict::Unexplained => {
-            let left: Vec<String> = coherent.iter().map(|(o, i)| format!("{o} follows {i}")).collect();
-            let found = if found.is_empty() { String::new() } else { format!("{found}. ") };
-            format!("{found}Something is missing that no candidate explains: what is left of {}", left.join(", "))
-        }
-        Verdict::NotTestable => {
-            "the data cannot decide: fly another maneuver that moves every input, at least some seconds long".to_string()
-        }
-    }
 }

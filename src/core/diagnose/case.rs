@@ -4,6 +4,7 @@ use indexmap::IndexMap;
 
 use super::effect::Effect;
 use super::flight::Flight;
+use super::knowledge::Knowledge;
 use crate::estimate::{Options, Problem, Role, Unknown, Unknowns, Validation};
 use crate::flight::Dimension;
 use crate::model::{ChannelFormula, Model, ModelDocument, Start};
@@ -19,12 +20,17 @@ pub struct Case {
     pub options: Options,
     /// Candidates of the user's own, tried beside the catalogue's.
     pub candidates: Vec<Effect>,
+    /// What is known before the data.
+    pub knowledge: Knowledge,
+    /// Recorded channels that formulas have made into inputs and outputs of the model: there for start values, and no
+    /// inputs that the model lacks.
+    pub consumed: Vec<String>,
 }
 
 /// Values of parameters, SI: by name, and by segment where each has its own.
 pub(super) type Values = IndexMap<(String, Option<String>), f64>;
 
-/// An explicit integrator cannot follow a lag of fewer samples than this.
+/// A state that is faster than this many samples an explicit integrator cannot follow.
 const SHORTEST_LAG: f64 = 0.45;
 
 /// Why a model cannot be fitted to the case.

@@ -93,6 +93,18 @@ impl Autoregression {
         model
     }
 
+    /// The predictor's coefficients, the nearest sample's first.
+    pub(super) fn coefficients(&self) -> &[f64] {
+        self.predictors.last().map_or(&[], Vec::as_slice)
+    }
+
+    /// Standard deviation of the prediction error.
+    pub(super) fn deviation(&self) -> f64 {
+        self.variances
+            .last()
+            .map_or(0.0, |variance| variance.sqrt())
+    }
+
     pub(super) fn order(&self) -> usize {
         self.predictors.len() - 1
     }
@@ -172,6 +184,21 @@ impl Colour {
         (0..layout.outputs)
             .map(|output| self.ln_likelihood_of(layout, residual, output))
             .sum()
+    }
+
+    /// ln L of a residual with the noise that suits it best, each output's order taken by Schwarz's criterion and paid
+    /// for by it: −½ order ln N. Each hypothesis has its own: orders chosen on a residual that still holds an effect
+    /// would take the effect for noise.
+    pub(super) fn ln_evidence(layout: &Layout, residual: &[f64]) -> f64 {
+        let own = Self::of_best_order(layout, residual);
+        let price = |output: usize| {
+            let samples = layout.of_output(residual, output);
+            let count = samples.iter().flat_map(|s| s.iter());
+            let count = count.filter(|e| e.is_finite()).count().max(1) as f64;
+            0.5 * own.0[output].order() as f64 * count.ln()
+        };
+        let price: f64 = (0..layout.outputs).map(price).sum();
+        own.ln_likelihood(layout, residual) - price
     }
 
     /// The share of one output.

@@ -56,13 +56,7 @@ mod tests {
     #[test]
     fn an_edit_shows_where_it_changed_the_document() {
         let before = catalog::find("short-period").unwrap();
-        let edit = Edit {
-            kind: EditKind::SensorScale,
-            target: "q".into(),
-            term: None,
-            parameter: None,
-            unit: None,
-        };
+        let edit = Edit::new(EditKind::SensorScale, "q");
         let changes = difference(&before, &edit.apply(&before).unwrap().document);
         let places: Vec<&str> = changes
             .iter()

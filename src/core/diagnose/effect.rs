@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::model::{Edit, EditError, EditKind, Edited, ModelDocument};
+use super::plausible::Plausible;
+use crate::model::{Edit, EditError, EditKind, Edited, ModelDocument, Start};
 
 /// What kind of effect. Most are edits of the model document; the others change how it is fitted.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
@@ -42,24 +43,28 @@ pub struct Effect {
     /// The edits that make it; none of a treatment.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub edits: Vec<Edit>,
+    /// The range in which its size, the first parameter that it frees or adds, is looked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plausible: Option<Plausible>,
 }
 
 impl Effect {
     /// A single edit of the document.
     pub fn edit(kind: EditKind, target: impl Into<String>, term: Option<&str>) -> Self {
-        let target = target.into();
-        let edit = Edit {
-            kind,
-            target: target.clone(),
+        Self::of(Edit {
             term: term.map(ToString::to_string),
-            parameter: None,
-            unit: None,
-        };
+            ..Edit::new(kind, target)
+        })
+    }
+
+    /// The effect that is one edit.
+    pub fn of(edit: Edit) -> Self {
         Self {
-            kind: EffectKind::Edit(kind),
-            target,
+            kind: EffectKind::Edit(edit.kind),
+            target: edit.target.clone(),
             term: edit.term.clone(),
             edits: vec![edit],
+            plausible: None,
         }
     }
 
@@ -70,6 +75,7 @@ impl Effect {
             target: target.into(),
             term: None,
             edits: Vec::new(),
+            plausible: None,
         }
     }
 
@@ -96,6 +102,16 @@ impl Effect {
             whole.document = edited.document;
             whole.added.extend(edited.added);
             whole.inputs.extend(edited.inputs);
+        }
+        let size = whole.added.first();
+        let size = size.and_then(|added| whole.document.parameters.get_mut(&added.name));
+        if let (Some(plausible), Some(size)) = (&self.plausible, size) {
+            let is_held = self.kind == EffectKind::Edit(EditKind::FixedParameter);
+            let none = match size.start {
+                Start::Value(value) if is_held => value,
+                _ => 0.0,
+            };
+            plausible.bound(size, none);
         }
         Ok(whole)
     }

@@ -7,9 +7,7 @@ use nalgebra::DMatrix;
 use super::case::{Case, Unfit, Values, values};
 use super::colour::Colour;
 use super::stack::Layout;
-use crate::estimate::{
-    Bound, ErrorBoundsKind, Estimate, Outcome, Problem, Role, Solution, output_error, predict,
-};
+use crate::estimate::{Bound, ErrorBoundsKind, Estimate, Outcome, Problem, Solution, output_error};
 use crate::model::{Added, ModelDocument};
 
 /// A model and its fit to the estimation flights.
@@ -33,6 +31,9 @@ pub(super) struct Fitted {
 const TRIAL_TOLERANCE: f64 = 1e-3;
 const TRIAL_ITERATIONS: usize = 30;
 
+/// A fit that is to be reported goes on until it has converged, or this often.
+const SETTLING_ITERATIONS: usize = 100;
+
 impl Fitted {
     /// A quick fit from given values.
     ///
@@ -43,7 +44,13 @@ impl Fitted {
         document: ModelDocument,
         start: &Values,
     ) -> Result<Self, Unfit> {
-        Self::within(TRIAL_ITERATIONS, case, document, start)
+        Self::within(
+            case,
+            document,
+            start,
+            TRIAL_ITERATIONS,
+            ErrorBoundsKind::Conventional,
+        )
     }
 
     /// No fit at all: the model at given values.
@@ -51,17 +58,31 @@ impl Fitted {
     /// # Errors
     /// The model does not fit the recordings, or leaves the range of numbers.
     pub(super) fn at(case: &Case, document: ModelDocument, values: &Values) -> Result<Self, Unfit> {
-        Self::within(0, case, document, values)
+        Self::within(case, document, values, 0, ErrorBoundsKind::Conventional)
     }
 
-    fn within(
-        iterations: usize,
+    /// The fit by output error that is decided on and reported: converged, with bounds corrected for colour.
+    ///
+    /// # Errors
+    /// As [`Self::trial`].
+    pub(super) fn settled(
         case: &Case,
         document: ModelDocument,
         start: &Values,
     ) -> Result<Self, Unfit> {
+        let bounds = ErrorBoundsKind::Corrected;
+        Self::within(case, document, start, SETTLING_ITERATIONS, bounds)
+    }
+
+    fn within(
+        case: &Case,
+        document: ModelDocument,
+        start: &Values,
+        iterations: usize,
+        bounds: ErrorBoundsKind,
+    ) -> Result<Self, Unfit> {
         let mut problem = case.problem(&document, start)?;
-        problem.options.error_bounds = ErrorBoundsKind::Conventional;
+        problem.options.error_bounds = bounds;
         problem.options.tolerance = problem.options.tolerance.max(TRIAL_TOLERANCE);
         problem.options.max_iterations = iterations;
         let solution = output_error(&problem, &mut |_| ControlFlow::Continue(()))
@@ -107,35 +128,23 @@ impl Fitted {
         added.iter().filter(is_at_bound).collect()
     }
 
-    /// ln L of its residuals by output, with noise of given orders.
-    pub(super) fn ln_likelihood(&self, orders: &[usize]) -> f64 {
-        let layout = Layout::of(&self.problem);
-        Colour::of_orders(&layout, &self.residual, orders).ln_likelihood(&layout, &self.residual)
+    /// ln L of its residuals with the noise that suits them, its orders paid for.
+    pub(super) fn ln_evidence(&self) -> f64 {
+        Colour::ln_evidence(&Layout::of(&self.problem), &self.residual)
     }
 
-    /// Predicts the flights of a role; ln L by output of the prediction's residuals, with noise of given orders.
-    ///
-    /// # Errors
-    /// The prediction leaves the range of numbers.
-    pub(super) fn held_out(
-        &self,
-        case: &Case,
-        role: Role,
-        orders: &[usize],
-    ) -> Result<Vec<f64>, Unfit> {
-        let mut problem = self.problem.clone();
-        problem.options.error_bounds = ErrorBoundsKind::Conventional;
-        let mut histories = Vec::new();
-        for validation in case.held_out(role, &self.problem)? {
-            let (prediction, history) =
-                predict(&problem, &self.theta, &self.covariance, &validation);
-            histories.push(history.ok_or(Unfit(prediction.reason))?);
-        }
-        let lengths: Vec<usize> = histories.iter().map(|history| history.time.len()).collect();
-        let layout = Layout::of_lengths(&lengths, self.problem.model.outputs.len());
-        let residual = layout.residual(&histories);
-        let colour = Colour::of_orders(&layout, &residual, orders);
-        let of = |output| colour.ln_likelihood_of(&layout, &residual, output);
-        Ok((0..layout.outputs).map(of).collect())
+    /// The orders of the noise that suits its residuals.
+    pub(super) fn orders(&self) -> Vec<usize> {
+        Colour::of_best_order(&Layout::of(&self.problem), &self.residual).orders()
+    }
+
+    pub(super) fn is_coloured(&self) -> bool {
+        self.orders().iter().any(|&order| order > 0)
+    }
+
+    /// Moved to where the likelihood with the noise that suits it is greatest.
+    pub(super) fn likeliest(self) -> Self {
+        let orders = self.orders();
+        self.polished(&orders)
     }
 }

@@ -1,19 +1,12 @@
 //! Effects that the rounds found, and those that they refused.
 
+use super::accepted::Accepted;
 use super::effect::Effect;
-use super::fitted::Fitted;
-use super::report::{Evidence, Member, Refusal, RefusedEffect};
+use super::report::{Refusal, RefusedEffect};
 use crate::model::Added;
 
-/// An effect that was accepted, and the fit with it.
-pub(super) struct Accepted {
-    pub effect: Effect,
-    /// The parameters that it added, as they are called in the model with all effects that stand.
-    pub added: Vec<Added>,
-    pub fitted: Fitted,
-    pub group: Vec<Member>,
-    pub evidence: Evidence,
-}
+/// A likelihood ratio that no chance makes, however many candidates there are.
+const CLEARLY: f64 = 40.0;
 
 /// Effects that were accepted, in their order, and candidates that were not, with the reason.
 #[derive(Default)]
@@ -23,6 +16,32 @@ pub(super) struct Found {
 }
 
 impl Found {
+    /// The parameters that the accepted effects added.
+    pub(super) fn added(&self) -> Vec<Added> {
+        let accepted = self.accepted.iter();
+        accepted.flat_map(|a| a.added.iter().cloned()).collect()
+    }
+
+    /// Whether something was clearly there on the flights that were fitted, and was not so on others.
+    pub(super) fn differs_between_maneuvers(&self) -> Option<&RefusedEffect> {
+        let differs = |refused: &&RefusedEffect| {
+            matches!(
+                refused.reason,
+                Refusal::NotPredictive | Refusal::NotRepeatable
+            )
+        };
+        let clearly = |refused: &&RefusedEffect| {
+            refused
+                .likelihood_ratio
+                .is_some_and(|ratio| ratio > CLEARLY)
+        };
+        let most = |refused: &&RefusedEffect| refused.likelihood_ratio.unwrap_or(0.0);
+        (self.refused.iter())
+            .filter(differs)
+            .filter(clearly)
+            .max_by(|a, b| most(a).total_cmp(&most(b)))
+    }
+
     /// Takes over why a round refused candidates. Of each, that is kept which speaks of the most that it explained.
     pub(super) fn refuse(&mut self, refused: Vec<RefusedEffect>) {
         let explained =

@@ -1,11 +1,14 @@
 //! Alias groups: candidates that the data cannot tell apart.
 
+use super::gate::Passed;
 use super::projection::dot;
 use super::report::Member;
-use super::trial::Trial;
 
 /// Twice the difference of two log-likelihoods below which neither of two models is preferred.
-pub(super) const ALIKE: f64 = 6.0;
+const ALIKE: f64 = 6.0;
+
+/// Difference of the gains on flights that were not fitted that chance makes between two such models.
+const CHANCE: f64 = 12.0;
 
 /// Two effects whose directions have a larger cosine are one and the same, but for how they are modelled.
 const PARALLEL: f64 = 0.95;
@@ -14,21 +17,17 @@ const PARALLEL: f64 = 0.95;
 const FAR: f64 = 40.0;
 
 /// The members of the group that `best` leads, itself included, the likeliest first, with their weights.
-pub(super) fn group(best: &Trial, others: &[&Trial]) -> Vec<Member> {
-    let is_alike = |trial: &&&Trial| {
-        let worse = best.merit() - trial.merit();
-        worse < ALIKE || (worse < FAR && cosine(best, trial) > PARALLEL)
-    };
-    let members: Vec<&Trial> = std::iter::once(best)
-        .chain(others.iter().filter(is_alike).copied())
+pub(super) fn group(best: &Passed, others: &[Passed]) -> Vec<Member> {
+    let members: Vec<&Passed> = std::iter::once(best)
+        .chain(others.iter().filter(|other| is_alias(best, other)))
         .collect();
     let shares: Vec<f64> = members
         .iter()
-        .map(|trial| (0.5 * (trial.merit() - best.merit())).exp())
+        .map(|passed| (0.5 * (passed.merit() - best.merit())).exp())
         .collect();
     let whole: f64 = shares.iter().sum();
-    let member = |(trial, share): (&&Trial, &f64)| Member {
-        effect: trial.effect.clone(),
+    let member = |(passed, share): (&&Passed, &f64)| Member {
+        effect: passed.trial.effect.clone(),
         weight: share / whole,
     };
     let mut members: Vec<Member> = members.iter().zip(&shares).map(member).collect();
@@ -36,7 +35,12 @@ pub(super) fn group(best: &Trial, others: &[&Trial]) -> Vec<Member> {
     members
 }
 
-/// Of what two candidates explain of the residual.
-fn cosine(a: &Trial, b: &Trial) -> f64 {
-    dot(&a.explained, &b.explained).abs()
+fn is_alias(best: &Passed, other: &Passed) -> bool {
+    let of_fit =
+        |passed: &Passed| passed.trial.likelihood_ratio - 2.0 * passed.trial.freedom as f64;
+    let held_out = |passed: &Passed| passed.gains.iter().map(|gain| gain.gain).sum::<f64>();
+    let fits_as_well = of_fit(best) - of_fit(other) < ALIKE;
+    let predicts_as_well = held_out(best) - held_out(other) < CHANCE;
+    let explains_the_same = dot(&best.trial.explained, &other.trial.explained).abs() > PARALLEL;
+    (fits_as_well && predicts_as_well) || (explains_the_same && best.merit() - other.merit() < FAR)
 }

@@ -6,42 +6,55 @@
 //! of the data, and that helps to predict flights which were not fitted. What the data cannot tell apart is one alias
 //! group, what they cannot show is reported as invisible. An [`Effect`] is an edit of the model document, so that
 //! what results is a document again.
-//!
-//! Invariant: no decision looks at flights of the role `Final`, and every candidate is accepted or refused with a reason.
 
+mod accepted;
 mod answer;
+mod candidates;
 mod case;
-mod catalogue;
 mod colour;
+mod declared;
 mod difference;
+mod disturbed;
 mod effect;
 mod fitted;
 mod flight;
 mod found;
+mod gate;
 mod group;
-mod needless;
+mod inconclusive;
+mod knowledge;
 mod null_model;
 mod outliers;
+mod plausible;
 mod polish;
+mod predicted;
 mod projection;
 mod refused;
+mod repeats;
 mod report;
 mod residual;
+mod review;
 mod round;
 mod screen;
 mod sentence;
 mod size;
+mod spikes;
 mod stack;
-mod terms;
+mod starts;
+mod threshold;
 mod trial;
+mod verdict;
 mod watch;
 
 pub use answer::Conclusion;
+pub use candidates::{TakenFor, candidates};
 pub use case::{Case, Unfit};
-pub use catalogue::candidates;
 pub use difference::difference;
 pub use effect::{Effect, EffectKind, Treatment};
 pub use flight::Flight;
+pub use inconclusive::Inconclusive;
+pub use knowledge::{Knowledge, KnownSize};
+pub use plausible::Plausible;
 pub use report::{
     Diagnosis, DocumentChange, EffectParameter, Evidence, FitChange, Member, NamedEffect,
     OutputGain, ParameterChange, Refusal, RefusedEffect, Step, Verdict,
@@ -49,114 +62,98 @@ pub use report::{
 pub use residual::{ResidualAnalysis, SpectralLine, analyse};
 pub use watch::Watcher;
 
-use std::ops::ControlFlow;
-
+use accepted::Accepted;
 use answer::answer;
+use declared::Declared;
+use disturbed::disturbed_throughout;
 use fitted::Fitted;
 use found::Found;
+use review::remove_needless;
 use round::round;
-use watch::{Stopped, ask, tell};
-
-use crate::estimate::{TimeHistory, Unusable, estimate};
+use watch::{Stopped, tell};
 
 /// Rounds, and so effects, at most: who lacks more than these has another model.
-const MOST_ROUNDS: usize = 4;
+const MOST_ROUNDS: usize = 6;
 
-/// Why there is no conclusion.
-#[derive(Clone, PartialEq, Debug, thiserror::Error)]
-pub enum Inconclusive {
-    /// A model does not meet the recordings, or comes to nothing.
-    #[error(transparent)]
-    Unfit(#[from] Unfit),
-    /// The start values of the declared model lead nowhere.
-    #[error("the declared model cannot be fitted from its start values: {0}")]
-    NoStart(#[from] Unusable),
-    /// It was asked to stop.
-    #[error("stopped on request")]
-    Stopped,
-}
-
-impl From<Stopped> for Inconclusive {
-    fn from(_: Stopped) -> Self {
-        Self::Stopped
-    }
-}
+/// How often the declared model's fit may turn out to have ended in a false minimum.
+const MOST_RENEWALS: usize = 2;
 
 /// Finds what the declared model of a case lacks.
 ///
 /// # Errors
 /// The declared model cannot be fitted at all, or `watcher` stopped it.
 pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, Inconclusive> {
-    let (declared, fitted) = declared(case, watcher)?;
+    let mut declared = Declared::of(case, watcher)?;
     let mut found = Found::default();
-    let mut base = declared.clone();
-    let mut cleaned = None;
-    if let Some((without, accepted)) = outliers::clean(case, &declared) {
-        for accepted in accepted {
-            let step = Step::Accepted {
-                round: 0,
-                name: accepted.effect.name(),
-                likelihood_ratio: accepted.evidence.likelihood_ratio,
-                sentence: sentence::words(&accepted.effect),
-            };
-            base = accepted.fitted.clone();
-            found.accepted.push(accepted);
-            tell(watcher, &step)?;
-        }
-        cleaned = Some(without);
-    }
+    let mut base = declared.fitted.clone();
+    let cleaned = clean(case, &declared.fitted, &mut base, &mut found, watcher)?;
     let case = cleaned.as_ref().unwrap_or(case);
-    let catalogue = catalogue::candidates(case, &declared.problem.model);
-    for number in 1..=MOST_ROUNDS {
+    let catalogue = candidates::candidates(case, &declared.fitted.problem.model);
+    let mut number = 1;
+    while number <= MOST_ROUNDS {
         let left: Vec<Effect> = (catalogue.iter())
             .filter(|effect| !found.accepted.iter().any(|a| a.effect == **effect))
             .cloned()
             .collect();
-        let round = round(case, &base, left, number, watcher)?;
-        found.refuse(round.refused);
+        let round = round(case, &base, left, &found.added(), number, watcher)?;
         let Some(accepted) = round.accepted else {
+            found.refuse(round.refused);
             break;
         };
-        let step = Step::Accepted {
-            round: number,
-            name: accepted.effect.name(),
-            likelihood_ratio: accepted.evidence.likelihood_ratio,
-            sentence: sentence::of(&accepted.effect, &accepted.fitted.sizes(&accepted.added)),
-        };
-        let last = accepted.effect.is_noise();
+        // what made the difference may be where the fit began, not the effect
+        if found.accepted.is_empty()
+            && !accepted.effect.is_noise()
+            && declared.renewals() < MOST_RENEWALS
+            && let Some(lower) = declared.lower(case, &accepted.fitted, watcher)
+        {
+            base = lower.fitted.clone();
+            declared = lower;
+            continue;
+        }
+        found.refuse(round.refused);
         let calm = std::mem::replace(&mut base, accepted.fitted.clone());
-        found.accepted.push(accepted);
-        tell(watcher, &step)?;
+        let last = accepted.effect.is_noise();
+        accept(accepted, number, &mut found, watcher)?;
         if last {
-            base = trial::disturbed_throughout(case, &calm, base);
+            base = disturbed_throughout(case, &calm, base);
             break;
         }
+        number += 1;
     }
-    needless::remove(case, &declared, &mut base, &mut found);
-    Ok(answer(case, &declared, &fitted, &base, found)?)
+    remove_needless(case, &declared.fitted, &mut base, &mut found);
+    Ok(answer(case, &declared, &base, found)?)
 }
 
-/// The declared model, fitted as the job's options say, and its time histories.
-fn declared(
+/// Leaves out samples that are no measurements; `None` where there are none.
+fn clean(
     case: &Case,
+    declared: &Fitted,
+    base: &mut Fitted,
+    found: &mut Found,
     watcher: &mut Watcher<'_>,
-) -> Result<(Fitted, Vec<TimeHistory>), Inconclusive> {
-    let problem = case.problem(&case.document, &case::Values::new())?;
-    let mut going = Ok(());
-    let solution = estimate(&problem, &mut |_| {
-        going = going.and(ask(watcher));
-        match going {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(Stopped) => ControlFlow::Break(()),
-        }
-    });
-    let solution = solution?;
-    let step = Step::Fitted {
-        round: 0,
-        cost: solution.estimate.cost,
-        iterations: solution.estimate.iterations,
+) -> Result<Option<Case>, Stopped> {
+    let Some((without, outliers)) = outliers::clean(case, declared) else {
+        return Ok(None);
     };
-    going.and(tell(watcher, &step))?;
-    let fitted = Fitted::of(case.document.clone(), problem, &solution);
-    Ok((fitted, solution.histories))
+    for outlying in outliers {
+        *base = outlying.fitted.clone();
+        accept(outlying, 0, found, watcher)?;
+    }
+    Ok(Some(without))
+}
+
+fn accept(
+    accepted: Accepted,
+    round: usize,
+    found: &mut Found,
+    watcher: &mut Watcher<'_>,
+) -> Result<(), Stopped> {
+    let step = Step::Accepted {
+        round,
+        name: accepted.effect.name(),
+        likelihood_ratio: accepted.evidence.likelihood_ratio,
+        sentence: sentence::of(&accepted.effect, &accepted.fitted.sizes(&accepted.added)),
+    };
+    found.accepted.push(accepted);
+    tell(watcher, &step)
 }

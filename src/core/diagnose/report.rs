@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::candidates::TakenFor;
 use super::effect::Effect;
 use super::residual::ResidualAnalysis;
 use crate::estimate::{Estimate, OutputFit, Role};
@@ -51,6 +52,8 @@ pub struct Diagnosis {
     pub effects: Vec<NamedEffect>,
     /// All other candidates, with the reason.
     pub refused: Vec<RefusedEffect>,
+    /// What the quantities of the model, and recorded channels beside it, were taken for.
+    pub quantities: Vec<TakenFor>,
     /// Fit of each output, with the declared model and with the effects added.
     pub fits: Vec<FitChange>,
     /// Declared parameters, with the declared model and with the effects added.

@@ -1,43 +1,56 @@
-//! One round: screen the catalogue, try what is promising, hear what speaks against it, accept one effect or none.
+//! One round: screen the catalogue, try what is promising, hear what speaks against it, choose one effect or none.
 
 use rayon::prelude::*;
 
+use super::accepted::Accepted;
 use super::case::Case;
-use super::colour::Colour;
 use super::effect::{Effect, EffectKind, Treatment};
 use super::fitted::Fitted;
-use super::found::Accepted;
+use super::gate::{Passed, pass};
 use super::group::group;
-use super::null_model::{NullModel, Threshold};
-use super::refused::{after_screen, after_trial, is_visible, refused};
+use super::null_model::NullModel;
+use super::refused::{after_screen, after_trial, not_fitted};
 use super::report::{Refusal, RefusedEffect, Step};
 use super::screen::{Screen, Screened, independent_questions};
-use super::stack::Layout;
-use super::trial::{Trial, is_tried_outright, starts};
+use super::starts::{is_tried_outright, starts};
+use super::threshold::Threshold;
+use super::trial::Trial;
 use super::watch::{Stopped, Watcher, ask, tell};
-use crate::model::EditKind;
+use crate::model::{Added, EditKind};
+
+/// Below this share the declared parameters imitate an effect but for their own curvature: it counts as visible only
+/// where even so a step promises much.
+const INVISIBLE: f64 = 0.01;
+
+/// A promise that curvature alone does not make.
+const MUCH: f64 = 20.0;
+
+/// Below this share what is left of an effect is rounding.
+const ROUNDING: f64 = 1e-4;
 
 /// A linear step must promise this much for a candidate to be fitted.
 const WORTH_A_TRIAL: f64 = 6.0;
-const MOST_TRIALS: usize = 16;
 
-/// Candidates between two occasions to stop.
-const TOGETHER: usize = 8;
+/// Candidates that are tried between two looks at whether the rest can still matter.
+const TOGETHER: usize = 16;
 
-/// The outcome of a round.
-#[derive(Default)]
+/// Once a candidate has passed, one that promises less than this share of what has been reached is not tried.
+const STILL_IN_PLAY: f64 = 0.3;
+
+/// Of what came of a round.
 pub(super) struct Round {
     pub accepted: Option<Accepted>,
     pub refused: Vec<RefusedEffect>,
 }
 
-/// A screened candidate, or why it was not.
-type Seen = (Effect, Result<Screened, String>);
+/// A candidate, and what the screen saw of it.
+struct Seen {
+    effect: Effect,
+    /// `None` of what is tried outright, since it has no derivative at no effect.
+    screened: Option<Screened>,
+}
 
-/// A candidate to be tried, with its screen where it has one.
-type ToTry = (Effect, Option<Screened>);
-
-/// The round of that number, from the fit of the model as it is.
+/// One round with `number`, from the fit of the model as it is; `earlier` are the parameters of the effects in it.
 ///
 /// # Errors
 /// The watcher stopped it.
@@ -45,245 +58,111 @@ pub(super) fn round(
     case: &Case,
     base: &Fitted,
     candidates: Vec<Effect>,
+    earlier: &[Added],
     number: usize,
     watcher: &mut Watcher<'_>,
 ) -> Result<Round, Stopped> {
-    let mut result = Round::default();
-    let layout = Layout::of(&base.problem);
-    let colour = Colour::of_best_order(&layout, &base.residual);
-    let Some(screen) = Screen::new(case, base, &colour) else {
+    let mut result = Round {
+        accepted: None,
+        refused: Vec::new(),
+    };
+    let (Some(screen), Ok(null)) = (Screen::new(case, base), NullModel::new(case, base, earlier))
+    else {
         return Ok(result);
     };
-    let (outright, local): (Vec<Effect>, Vec<Effect>) =
-        (candidates.into_iter()).partition(has_no_derivative);
-    let seen = screen_all(case, base, &screen, &local, watcher)?;
+    let seen = screen_all(&screen, candidates, &mut result.refused, watcher)?;
+    let count = seen.len();
+    let (visible, hidden): (Vec<Seen>, Vec<Seen>) = seen.into_iter().partition(Seen::is_visible);
     let threshold = Threshold {
-        questions: questions(&seen) + outright.len() as f64,
+        questions: questions(&visible),
     };
-    tell(watcher, &screened_step(&seen, outright.len(), number))?;
-
-    let orders = colour.orders();
-    let coloured = orders.iter().any(|&order| order > 0);
-    let outright = outright
-        .into_iter()
-        .filter(|effect| coloured || !effect.is_noise())
-        .map(|effect| (effect, None));
-    let to_try: Vec<ToTry> = promising(&seen).into_iter().chain(outright).collect();
-    let null_model = NullModel::new(case, base, &orders);
-    let trials = try_all(&null_model, &to_try, number, &mut result, watcher)?;
-    let passing = object(
-        &null_model,
-        trials,
-        &threshold,
-        number,
-        &mut result,
-        watcher,
-    )?;
-    let untried = untried(&seen, &passing, &result, &threshold);
-    choose(&null_model, passing, &threshold, &mut result);
-    result.refused.extend(untried);
+    let step = Step::Screened {
+        round: number,
+        candidates: count,
+        visible: visible.len(),
+    };
+    tell(watcher, &step)?;
+    result.refused.extend(hidden.iter().map(|seen| {
+        let why = "the declared parameters imitate it: these data cannot show it, whether it is there or not";
+        seen.refused((Refusal::Invisible, why.into()), threshold)
+    }));
+    let passed = try_promising(&null, visible, threshold, number, &mut result, watcher)?;
+    choose(passed, threshold, &mut result);
     Ok(result)
 }
 
-/// What has no derivative at no effect, so that the screen cannot see it.
-fn has_no_derivative(effect: &Effect) -> bool {
-    is_tried_outright(effect.kind)
-        || matches!(effect.kind, EffectKind::Treatment(Treatment::ProcessNoise))
-}
-
-fn screen_all(
-    case: &Case,
-    base: &Fitted,
-    screen: &Screen<'_>,
-    candidates: &[Effect],
-    watcher: &mut Watcher<'_>,
-) -> Result<Vec<Seen>, Stopped> {
-    let mut seen: Vec<Seen> = Vec::new();
-    for some in candidates.chunks(TOGETHER) {
-        ask(watcher)?;
-        let screened = some.to_vec().into_par_iter().map(|effect| {
-            let screened = screened(case, base, screen, &effect);
-            (effect, screened)
-        });
-        seen.extend(screened.collect::<Vec<Seen>>());
+impl Seen {
+    fn is_visible(&self) -> bool {
+        self.screened
+            .as_ref()
+            .is_none_or(|s| s.visible >= INVISIBLE || (s.visible >= ROUNDING && s.promise > MUCH))
     }
-    Ok(seen)
-}
 
-/// How many independent questions the candidates that can be seen ask.
-fn questions(seen: &[Seen]) -> f64 {
-    let visible = seen.iter().filter(|(_, s)| is_visible(s));
-    let directions: Vec<&[f64]> = visible
-        .filter_map(|(_, s)| Some(&*s.as_ref().ok()?.direction))
-        .collect();
-    independent_questions(&directions)
-}
-
-fn screened_step(seen: &[Seen], outright: usize, round: usize) -> Step {
-    let visible = seen.iter().filter(|(_, s)| is_visible(s)).count();
-    Step::Screened {
-        round,
-        candidates: seen.len() + outright,
-        visible: visible + outright,
-    }
-}
-
-/// The candidates of which a linear step promises most, and all delays that can be seen.
-fn promising(seen: &[Seen]) -> Vec<ToTry> {
-    let mut promising: Vec<&Seen> = (seen.iter())
-        .filter(|(_, s)| is_visible(s))
-        .filter(|(_, s)| {
-            s.as_ref()
-                .is_ok_and(|s| s.promise.max(s.score) > WORTH_A_TRIAL)
+    /// What a linear step promises: of the likelihood with coloured noise, and of plain errors.
+    fn promise(&self) -> (f64, f64) {
+        (self.screened.as_ref()).map_or((f64::INFINITY, f64::INFINITY), |s| {
+            (s.promise.max(s.score), s.plain)
         })
-        .collect();
-    let promise = |seen: &Seen| seen.1.as_ref().map_or(0.0, |s| s.promise);
-    promising.sort_by(|a, b| promise(b).total_cmp(&promise(a)));
-    promising.truncate(MOST_TRIALS);
-    // a delay of some samples is no small change: one linear step says little of it
-    let delays = (seen.iter()).filter(|(effect, s)| is_visible(s) && is_delay(effect));
-    for delay in delays {
-        if !promising.iter().any(|(effect, _)| *effect == delay.0) {
-            promising.push(delay);
+    }
+
+    fn refused(&self, why: (Refusal, String), threshold: Threshold) -> RefusedEffect {
+        match &self.screened {
+            Some(screened) => after_screen(&self.effect, screened, why, threshold),
+            None => not_fitted(self.effect.clone(), why.1),
         }
     }
-    promising
-        .into_iter()
-        .filter_map(|(effect, s)| Some((effect.clone(), Some(s.clone().ok()?))))
-        .collect()
 }
 
-/// Fits the candidates; those that cannot be fitted are refused.
-fn try_all(
-    null_model: &NullModel<'_>,
-    to_try: &[ToTry],
-    number: usize,
-    result: &mut Round,
+/// Screens what has a derivative at no effect; the rest is to be tried outright.
+fn screen_all(
+    screen: &Screen<'_>,
+    candidates: Vec<Effect>,
+    refused: &mut Vec<RefusedEffect>,
     watcher: &mut Watcher<'_>,
-) -> Result<Vec<Trial>, Stopped> {
-    let mut trials: Vec<Trial> = Vec::new();
-    for some in to_try.chunks(TOGETHER) {
+) -> Result<Vec<Seen>, Stopped> {
+    let mut all = Vec::new();
+    for some in candidates.chunks(TOGETHER) {
         ask(watcher)?;
-        let tried: Vec<(Effect, Result<Trial, String>)> = (some.to_vec().into_par_iter())
-            .map(|(effect, screened)| (effect.clone(), null_model.trial(effect, screened)))
-            .collect();
-        for (effect, trial) in tried {
-            match trial {
-                Ok(trial) => {
-                    let step = Step::Tried {
-                        round: number,
-                        name: effect.name(),
-                        likelihood_ratio: trial.likelihood_ratio,
-                    };
-                    trials.push(trial);
-                    tell(watcher, &step)?;
-                }
-                Err(why) => {
-                    let refused = refused(effect, Refusal::NotFitted, why, None, None);
-                    result.refused.push(refused);
-                }
+        let seen = some.par_iter().map(|effect| {
+            let effect = effect.clone();
+            if is_tried_outright(effect.kind)
+                || effect.kind == EffectKind::Treatment(Treatment::ProcessNoise)
+            {
+                return Ok(Seen {
+                    effect,
+                    screened: None,
+                });
+            }
+            match screened(screen, &effect) {
+                Ok(screened) => Ok(Seen {
+                    effect,
+                    screened: Some(screened),
+                }),
+                Err(why) => Err(not_fitted(effect, why)),
+            }
+        });
+        for seen in seen.collect::<Vec<_>>() {
+            match seen {
+                Ok(seen) => all.push(seen),
+                Err(unfit) => refused.push(unfit),
             }
         }
     }
-    Ok(trials)
-}
-
-/// The trials that nothing speaks against; the others are refused.
-fn object(
-    null_model: &NullModel<'_>,
-    trials: Vec<Trial>,
-    threshold: &Threshold,
-    number: usize,
-    result: &mut Round,
-    watcher: &mut Watcher<'_>,
-) -> Result<Vec<Trial>, Stopped> {
-    let mut passing: Vec<Trial> = Vec::new();
-    for trial in trials {
-        let Some((reason, why)) = null_model.objection(&trial, threshold) else {
-            passing.push(trial);
-            continue;
-        };
-        if reason != Refusal::NotSignificant {
-            let step = Step::Refused {
-                round: number,
-                name: trial.effect.name(),
-                reason,
-                sentence: why.clone(),
-            };
-            tell(watcher, &step)?;
-        }
-        let refused = after_trial(&trial, reason, why, threshold);
-        result.refused.push(refused);
-    }
-    passing.sort_by(|a, b| b.merit().total_cmp(&a.merit()));
-    Ok(passing)
-}
-
-/// Candidates that were screened and not tried, refused for what the screen said.
-fn untried(
-    seen: &[Seen],
-    passing: &[Trial],
-    result: &Round,
-    threshold: &Threshold,
-) -> Vec<RefusedEffect> {
-    let tried = |effect: &Effect| {
-        result.refused.iter().any(|r| r.effect == *effect)
-            || passing.iter().any(|t| t.effect == *effect)
-    };
-    (seen.iter())
-        .filter(|(effect, _)| !tried(effect))
-        .map(|(effect, screened)| after_screen(effect, screened, threshold))
-        .collect()
-}
-
-/// Accepts the best of those that passed, with the group that the data cannot tell from it; the others were outdone.
-fn choose(
-    null_model: &NullModel<'_>,
-    passing: Vec<Trial>,
-    threshold: &Threshold,
-    result: &mut Round,
-) {
-    let mut passing = passing.into_iter();
-    let Some(best) = passing.next() else {
-        return;
-    };
-    let others: Vec<Trial> = passing.collect();
-    let others: Vec<&Trial> = others.iter().collect();
-    let group = group(&best, &others);
-    for other in others {
-        let why = format!(
-            "{} explains the data better, by {:.1} in the log-likelihood",
-            best.effect.name(),
-            0.5 * (best.merit() - other.merit())
-        );
-        let refused = after_trial(other, Refusal::Outdone, why, threshold);
-        result.refused.push(refused);
-    }
-    result.accepted = Some(null_model.accepted(best, group, threshold));
-}
-
-fn is_delay(effect: &Effect) -> bool {
-    effect.kind == EffectKind::Edit(EditKind::SensorDelay)
+    Ok(all)
 }
 
 /// The screen of a candidate, from the best of its starts.
-fn screened(
-    case: &Case,
-    base: &Fitted,
-    screen: &Screen<'_>,
-    effect: &Effect,
-) -> Result<Screened, String> {
-    let edited = effect
-        .apply(&base.document)
-        .map_err(|error| error.to_string())?;
+fn screened(screen: &Screen<'_>, effect: &Effect) -> Result<Screened, String> {
+    let base = &screen.base.document;
+    let edited = effect.apply(base).map_err(|error| error.to_string())?;
     let mut best: Option<Screened> = None;
     let mut failure = String::new();
-    let starts = starts(case, effect, &edited);
+    let starts = starts(screen.case, effect, &edited);
     let count = starts.len();
     for start in starts {
         match screen.of(&edited, &start) {
             Ok(seen) if best.as_ref().is_none_or(|best| seen.promise > best.promise) => {
-                best = Some(seen)
+                best = Some(seen);
             }
             Ok(_) => {}
             Err(why) => failure = why,
@@ -292,4 +171,195 @@ fn screened(
     let mut best = best.ok_or(failure)?;
     best.starts = count;
     Ok(best)
+}
+
+/// How many independent questions the visible candidates ask.
+fn questions(visible: &[Seen]) -> f64 {
+    let screened = || visible.iter().filter_map(|seen| seen.screened.as_ref());
+    let directions: Vec<&[f64]> = screened().map(|s| &*s.direction).collect();
+    independent_questions(&directions) + (visible.len() - directions.len()) as f64
+}
+
+/// Tries what is promising, the most promising first, as long as what is left could still matter.
+fn try_promising(
+    null: &NullModel<'_>,
+    visible: Vec<Seen>,
+    threshold: Threshold,
+    number: usize,
+    result: &mut Round,
+    watcher: &mut Watcher<'_>,
+) -> Result<Vec<Passed>, Stopped> {
+    let mut waiting = in_order(visible);
+    let mut passed: Vec<Passed> = Vec::new();
+    while !waiting.is_empty() {
+        let rest = waiting.split_off(waiting.len().min(TOGETHER));
+        let (tried, left): (Vec<Seen>, Vec<Seen>) =
+            waiting.into_iter().partition(|seen| in_play(seen, &passed));
+        result
+            .refused
+            .extend(left.iter().map(|seen| not_tried(seen, &passed, threshold)));
+        ask(watcher)?;
+        let trials: Vec<(Effect, Result<Trial, String>)> = (tried.into_par_iter())
+            .map(|seen| {
+                let effect = seen.effect.clone();
+                (effect, Trial::of(null, seen.effect, seen.screened))
+            })
+            .collect();
+        let judged: Vec<_> = trials
+            .into_par_iter()
+            .map(|(effect, trial)| match trial {
+                Ok(trial) => Ok(pass(null, trial, threshold)),
+                Err(why) => Err(not_fitted(effect, why)),
+            })
+            .collect();
+        for judged in judged {
+            match judged {
+                Err(unfit) => result.refused.push(unfit),
+                Ok(judged) => {
+                    let trial = match &judged {
+                        Ok(passed) => &passed.trial,
+                        Err(refused) => &refused.0,
+                    };
+                    tell(watcher, &tried_step(trial, number))?;
+                    match judged {
+                        Ok(one) => passed.push(one),
+                        Err(refused) => {
+                            let (trial, why) = *refused;
+                            tell_refusal(&trial, &why, number, watcher)?;
+                            let refused = after_trial(&trial, why, None, threshold);
+                            result.refused.push(refused);
+                        }
+                    }
+                }
+            }
+        }
+        waiting = rest;
+    }
+    Ok(passed)
+}
+
+fn tried_step(trial: &Trial, round: usize) -> Step {
+    Step::Tried {
+        round,
+        name: trial.effect.name(),
+        likelihood_ratio: trial.likelihood_ratio,
+    }
+}
+
+fn tell_refusal(
+    trial: &Trial,
+    (reason, sentence): &(Refusal, String),
+    round: usize,
+    watcher: &mut Watcher<'_>,
+) -> Result<(), Stopped> {
+    if *reason == Refusal::NotSignificant {
+        return Ok(());
+    }
+    let step = Step::Refused {
+        round,
+        name: trial.effect.name(),
+        reason: *reason,
+        sentence: sentence.clone(),
+    };
+    tell(watcher, &step)
+}
+
+/// Candidates by what they promise: the likelihood with coloured noise and plain errors take turns, for an effect that
+/// is slow shows in these, and one that is quick in that. What is tried outright comes first.
+fn in_order(visible: Vec<Seen>) -> Vec<Seen> {
+    let ranks = |by: fn(&Seen) -> f64| {
+        let mut order: Vec<usize> = (0..visible.len()).collect();
+        order.sort_by(|&a, &b| by(&visible[b]).total_cmp(&by(&visible[a])));
+        let mut ranks = vec![0; order.len()];
+        order
+            .iter()
+            .enumerate()
+            .for_each(|(rank, &place)| ranks[place] = rank);
+        ranks
+    };
+    let (coloured, plain) = (
+        ranks(|seen| seen.promise().0),
+        ranks(|seen| seen.promise().1),
+    );
+    let mut ranked: Vec<(usize, Seen)> = (visible.into_iter().enumerate())
+        .map(|(place, seen)| (coloured[place].min(plain[place]), seen))
+        .collect();
+    ranked.sort_by_key(|(rank, _)| *rank);
+    ranked.into_iter().map(|(_, seen)| seen).collect()
+}
+
+/// Whether a candidate could still matter.
+fn in_play(seen: &Seen, passed: &[Passed]) -> bool {
+    let (coloured, plain) = seen.promise();
+    // a delay of some samples is no small change: one linear step says little of it
+    if seen.effect.kind == EffectKind::Edit(EditKind::SensorDelay) {
+        return true;
+    }
+    if coloured <= WORTH_A_TRIAL {
+        return false;
+    }
+    // promises against promises: a step from afar may promise far less than it leads to
+    let reached = |of: fn(&Passed) -> (f64, f64)| {
+        passed.iter().map(of).fold((0.0_f64, 0.0_f64), |best, one| {
+            (best.0.max(one.0), best.1.max(one.1))
+        })
+    };
+    let (by_likelihood, by_errors) = reached(Passed::promise);
+    passed.is_empty()
+        || coloured > STILL_IN_PLAY * by_likelihood
+        || plain > STILL_IN_PLAY * by_errors
+}
+
+/// Why a candidate was left untried.
+fn not_tried(seen: &Seen, passed: &[Passed], threshold: Threshold) -> RefusedEffect {
+    let (promise, _) = seen.promise();
+    let best = passed.iter().max_by(|a, b| {
+        a.trial
+            .likelihood_ratio
+            .total_cmp(&b.trial.likelihood_ratio)
+    });
+    let why = match best {
+        Some(best) if promise > WORTH_A_TRIAL => (
+            Refusal::Outdone,
+            format!(
+                "not tried: one linear step promises a likelihood ratio of {promise:.1}, where {} reaches {:.1}",
+                best.trial.effect.name(),
+                best.trial.likelihood_ratio
+            ),
+        ),
+        _ => (
+            Refusal::NotSignificant,
+            format!(
+                "one linear step promises a likelihood ratio of {:.1}, no more than noise gives",
+                promise.max(0.0)
+            ),
+        ),
+    };
+    seen.refused(why, threshold)
+}
+
+/// Accepts the best of those that passed; the others were outdone.
+fn choose(mut passed: Vec<Passed>, threshold: Threshold, result: &mut Round) {
+    passed.sort_by(|a, b| b.merit().total_cmp(&a.merit()));
+    let mut passed = passed.into_iter();
+    let Some(best) = passed.next() else {
+        return;
+    };
+    let others: Vec<Passed> = passed.collect();
+    let group = group(&best, &others);
+    for other in &others {
+        let why = format!(
+            "{} explains the data and predicts the flights that were not fitted better, by {:.1}",
+            best.trial.effect.name(),
+            best.merit() - other.merit()
+        );
+        let held_out: f64 = other.gains.iter().map(|gain| gain.gain).sum();
+        result.refused.push(after_trial(
+            &other.trial,
+            (Refusal::Outdone, why),
+            (!other.gains.is_empty()).then_some(held_out),
+            threshold,
+        ));
+    }
+    result.accepted = Some(Accepted::of(best, group, threshold));
 }

@@ -33,8 +33,8 @@ struct Metric {
 
 /// Everything about the declared model that the screen of each candidate needs.
 pub(super) struct Screen<'c> {
-    case: &'c Case,
-    base: &'c Fitted,
+    pub case: &'c Case,
+    pub base: &'c Fitted,
     layout: Layout,
     metrics: Vec<Metric>,
 }
@@ -53,6 +53,8 @@ pub(super) struct Screened {
     pub score: f64,
     /// Twice the gain of the log-likelihood that one linear step promises.
     pub promise: f64,
+    /// N ln(σ0²/σ1²) over all outputs: what one linear step of plain least squares promises of the errors themselves.
+    pub plain: f64,
     /// One-step sizes, SI, of what has influence.
     sizes: Vec<f64>,
     /// Standard error of the first parameter's one step, SI.
@@ -88,12 +90,11 @@ const AFTER: [f64; 6] = [0.0, 0.1, 0.25, 0.5, 1.0, 2.0];
 /// Below this share of its own an effect is closely imitated.
 const IMITATED: f64 = 0.2;
 
-/// Parts of a lone segment in which an effect must show alike.
-const PARTS: usize = 3;
-
 impl<'c> Screen<'c> {
-    pub(super) fn new(case: &'c Case, base: &'c Fitted, colour: &Colour) -> Option<Self> {
+    /// `None` where the simulation leaves the range of numbers.
+    pub(super) fn new(case: &'c Case, base: &'c Fitted) -> Option<Self> {
         let layout = Layout::of(&base.problem);
+        let colour = Colour::of_best_order(&layout, &base.residual);
         let mut free: Vec<usize> = (0..base.problem.unknowns.len())
             .map(|place| base.problem.unknowns.at(place).parameter)
             .collect();
@@ -182,6 +183,7 @@ impl<'c> Screen<'c> {
             match &mut best {
                 Some(best) if best.promise >= seen.promise => {
                     best.visible = best.visible.max(seen.visible);
+                    best.plain = seen.plain;
                 }
                 Some(best) => {
                     // what is said of the sizes is that of the better step; score and fractions are the whitened ones
@@ -239,6 +241,7 @@ impl<'c> Screen<'c> {
         let colour = Colour::of_orders(layout, &left, &metric.orders);
         let promise = 2.0 * (colour.ln_likelihood(layout, &left) - metric.ln_likelihood);
         let length = norm(&explained).max(f64::MIN_POSITIVE);
+        let plain = plain_gain(layout, &metric.residual, &left);
         Screened {
             start: Values::new(),
             before: Values::new(),
@@ -246,6 +249,7 @@ impl<'c> Screen<'c> {
             visible,
             score,
             promise,
+            plain,
             sizes: (0..count).map(|i| sizes[i] / scale[i]).collect(),
             one_sigma: norm(&clear[0]).max(f64::MIN_POSITIVE).recip(),
             direction: explained.iter().map(|value| value / length).collect(),
@@ -287,56 +291,22 @@ impl<'c> Screen<'c> {
         let seen = self.in_metric(metric, &columns);
         seen.promise.min(seen.score) > critical(probability, 1.0, columns.len())
     }
+}
 
-    /// How far each segment, or part of the only one, would pull one of the model's own parameters, all others
-    /// adjusted, and the standard error of that: SI.
-    pub(super) fn pulls(&self, parameter: &str) -> Option<Vec<(f64, f64)>> {
-        let problem = &self.base.problem;
-        let index = problem
-            .model
-            .parameters
-            .iter()
-            .position(|info| info.name == parameter)?;
-        let mut free: Vec<usize> = (0..problem.unknowns.len())
-            .map(|place| problem.unknowns.at(place).parameter)
-            .filter(|&other| other != index)
-            .collect();
-        free.sort_unstable();
-        free.dedup();
-        let theta = &self.base.theta;
-        let metric = self.metrics.first()?;
-        let whiten = |column: &Vec<f64>| {
-            metric
-                .colour
-                .whiten(&self.layout, &self.base.residual, column)
-        };
-        let others = sensitivities(problem, &self.layout, theta, &free).ok()?;
-        let others = Basis::of(others.iter().map(whiten));
-        let own = sensitivities(problem, &self.layout, theta, &[index]).ok()?;
-        let [own] = own.as_slice() else { return None };
-        let mut clear = whiten(own);
-        others.remove_from(&mut clear);
-        Some(self.folds(&clear, &metric.residual))
-    }
-
-    /// ψ by segment, or by parts of the only one.
-    fn folds(&self, clear: &[f64], residual: &[f64]) -> Vec<(f64, f64)> {
-        let segments = self.base.problem.segments.len();
-        let parts = if segments == 1 { PARTS } else { 1 };
-        let mut sums = vec![(0.0, 0.0); segments * parts];
-        for series in &self.layout.series {
-            let len = series.range.len();
-            for (k, at) in series.range.clone().enumerate() {
-                let fold = &mut sums[series.segment * parts + k * parts / len];
-                fold.0 += clear[at] * residual[at];
-                fold.1 += clear[at] * clear[at];
+/// N ln(Σ e0²/Σ e1²) over all outputs, of samples that there are.
+fn plain_gain(layout: &Layout, before: &[f64], after: &[f64]) -> f64 {
+    let of_output = |output: usize| {
+        let (mut samples, mut ahead, mut behind) = (0.0, 0.0, 0.0);
+        for series in layout.series.iter().filter(|s| s.output == output) {
+            for at in series.range.clone().filter(|&at| after[at].is_finite()) {
+                samples += 1.0;
+                ahead += before[at] * before[at];
+                behind += after[at] * after[at];
             }
         }
-        let known = sums.into_iter().filter(|(_, square)| *square > 0.0);
-        known
-            .map(|(product, square)| (product / square, square.sqrt().recip()))
-            .collect()
-    }
+        samples * (ahead.max(f64::MIN_POSITIVE) / behind.max(f64::MIN_POSITIVE)).ln()
+    };
+    (0..layout.outputs).map(of_output).sum()
 }
 
 /// The column with what is not there marked as such.

@@ -49,6 +49,7 @@ pub(super) fn words(effect: &Effect) -> String {
         EffectKind::Edit(kind) => kind,
     };
     match kind {
+        EditKind::FixedParameter => format!("{target} is not what the model holds it at"),
         EditKind::SensorBias | EditKind::InputBias => format!("{target} is recorded with a bias"),
         EditKind::SensorScale | EditKind::InputScale => {
             format!("{target} is recorded with a wrong scale")

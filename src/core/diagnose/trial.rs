@@ -1,224 +1,124 @@
-//! Trials: the most promising candidates are fitted, from several starts where a linear step cannot tell.
-
-use std::ops::ControlFlow;
+//! Trials: a candidate is fitted from each of its starts, and followed to where it is likeliest.
 
 use super::case::{Case, Unfit, Values};
-use super::effect::{Effect, EffectKind, Treatment};
+use super::disturbed::disturbed;
+use super::effect::Effect;
 use super::fitted::Fitted;
-use super::screen::{Screened, critical};
-use crate::estimate::{Estimator, Outcome, ProcessNoise, Role, filter_error};
-use crate::flight::Unit;
-use crate::model::{Added, AddedRole, EditKind, Edited, ModelDocument, Start};
+use super::null_model::NullModel;
+use super::screen::Screened;
+use super::starts::{starts, starts_of_delay};
+use crate::model::{Added, ModelDocument};
+
+/// Fits whose ln L differ by less ended at the same minimum.
+const SAME: f64 = 1e-3;
+
+/// So many of the minima found are followed to where the likelihood is greatest.
+const BEST: usize = 3;
 
 /// A candidate, fitted.
 #[derive(Clone, Debug)]
 pub(super) struct Trial {
     pub effect: Effect,
-    /// Parameters that it adds.
-    pub added: Vec<Added>,
     /// From how many starts it was looked for.
     pub starts: usize,
     pub screened: Option<Screened>,
-    pub fitted: Fitted,
-    /// The part of the whitened residual that it explains, of length 1.
+    /// The parameters that it adds, its size first.
+    pub added: Vec<Added>,
+    /// Where the likelihood with coloured noise is greatest.
+    pub likeliest: Fitted,
+    /// What it takes off the whitened residual, of length 1.
     pub explained: Vec<f64>,
-    /// Twice the gain of the colour-aware log-likelihood.
+    /// Twice the gain of the colour-aware log-likelihood over the model without it, each with the noise that suits it.
     pub likelihood_ratio: f64,
     /// Unknowns that it adds.
     pub freedom: usize,
-    /// By output, twice the gain on flights that were not fitted; absent where there are none.
-    pub held_out: Option<Vec<f64>>,
-    /// Why the flights that were not fitted could not be predicted.
-    pub unpredictable: Option<String>,
 }
 
 impl Trial {
-    /// Twice the gain on all flights, each parameter of the effect counted as two (Akaike).
-    pub(super) fn merit(&self) -> f64 {
-        let held_out: f64 = self.held_out.iter().flatten().sum();
-        self.likelihood_ratio + held_out - 2.0 * self.freedom as f64
-    }
-}
-
-/// Whether a kind has no derivative at no effect, so that a screen cannot see it.
-pub(super) fn is_tried_outright(kind: EffectKind) -> bool {
-    use EditKind::{
-        ActuatorLag, ActuatorRateLimit, Backlash, InputDelay, SensorLag, StallHysteresis,
-    };
-    matches!(
-        kind,
-        EffectKind::Edit(
-            SensorLag | ActuatorLag | ActuatorRateLimit | Backlash | InputDelay | StallHysteresis
-        )
-    )
-}
-
-/// Start values for what an effect adds, where one start is not enough.
-pub(super) fn starts(case: &Case, effect: &Effect, edited: &Edited) -> Vec<Values> {
-    let EffectKind::Edit(kind) = effect.kind else {
-        return vec![Values::new()];
-    };
-    let factors: &[f64] = match kind {
-        EditKind::Backlash => return backlash_starts(case, effect, &edited.added),
-        EditKind::InputDelay => return delay_starts(case, &edited.added),
-
-        EditKind::SensorLag | EditKind::ActuatorLag => &[0.5, 2.0],
-        EditKind::ActuatorRateLimit => &[0.03, 0.1, 0.3, 1.0],
-        EditKind::UnsteadyAero | EditKind::StallHysteresis => &[0.4, 1.0, 2.5],
-        EditKind::StructuralMode => &[0.6, 0.8, 1.0, 1.3, 1.7, 2.2, 2.9],
-        EditKind::Gust => return gust_starts(case, &edited.added),
-        _ => return vec![Values::new()],
-    };
-    let scaled = |factor: &f64| {
-        let of = |added: &Added| {
-            let parameter = &edited.document.parameters[&added.name];
-            let start = match parameter.start {
-                Start::Value(value) if value != 0.0 && !parameter.fixed => value,
-                _ => return None,
-            };
-            let unit = Unit::parse(&parameter.unit).ok()?;
-            let factor = match added.role {
-                // these are not where the uncertainty is
-                AddedRole::Damping | AddedRole::Steepness => 1.0,
-                _ => *factor,
-            };
-            Some(((added.name.clone(), None), unit.to_si(start * factor)))
-        };
-        edited.added.iter().filter_map(of).collect()
-    };
-    factors.iter().map(scaled).collect()
-}
-
-/// Shares of how far the input moves.
-fn backlash_starts(case: &Case, effect: &Effect, added: &[Added]) -> Vec<Values> {
-    let moved = case
-        .of_role(Role::Estimation)
-        .filter_map(|flight| flight.channels.get(&effect.target));
-    let (least, most) = (moved.flat_map(|(values, _)| values))
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), v| {
-            (least.min(*v), most.max(*v))
-        });
-    let of = |share: f64| at_first(added, share * (most - least));
-    [0.02, 0.1].into_iter().map(of).collect()
-}
-
-/// A recorded input that jumps has no slope at its samples, and so its delay none at whole samples: starts are between.
-fn delay_starts(case: &Case, added: &[Added]) -> Vec<Values> {
-    samples_late(case, added, &[-1.5, -0.5, 0.5, 1.5, 3.5, 6.5])
-}
-
-/// A delay of many samples is far from what one linear step tells: further starts of it.
-pub(super) fn starts_of_delay(case: &Case, effect: &Effect, added: &[Added]) -> Vec<Values> {
-    match effect.kind {
-        EffectKind::Edit(EditKind::SensorDelay) => samples_late(case, added, &[2.0, 5.0]),
-        _ => Vec::new(),
-    }
-}
-
-fn samples_late(case: &Case, added: &[Added], samples: &[f64]) -> Vec<Values> {
-    let step = case
-        .flights
-        .first()
-        .map_or(0.0, super::flight::Flight::step);
-    let of = |samples: &f64| at_first(added, samples * step);
-    samples.iter().map(of).collect()
-}
-
-/// A value, SI, of the parameter that an effect is called after.
-fn at_first(added: &[Added], value: f64) -> Values {
-    let first = added.first();
-    Values::from_iter(first.map(|added| ((added.name.clone(), None), value)))
-}
-
-/// A gust may come at any time: every half length of one, of two lengths.
-fn gust_starts(case: &Case, added: &[Added]) -> Vec<Values> {
-    let of_role = |role: AddedRole| {
-        let found = added.iter().find(|added| added.role == role);
-        found.map(|added| added.name.clone())
-    };
-    let (Some(time), Some(length)) = (of_role(AddedRole::Onset), of_role(AddedRole::Duration))
-    else {
-        return vec![Values::new()];
-    };
-    let flights: Vec<_> = case.of_role(Role::Estimation).collect();
-    let mut starts = Vec::new();
-    for flight in &flights {
-        let duration = flight.step() * flight.time.len() as f64;
-        for seconds in [1.0, 3.0] {
-            let mut at = 0.0;
-            while at + seconds < duration && starts.len() < 200 {
-                // in the other flights it is out of sight, behind the end
-                let of = |other: &&super::flight::Flight| {
-                    let begin = if other.label == flight.label { at } else { 1e6 };
-                    [
-                        ((time.clone(), Some(other.label.clone())), begin),
-                        ((length.clone(), Some(other.label.clone())), seconds),
-                    ]
-                };
-                starts.push(flights.iter().flat_map(of).collect());
-                at += 0.5 * seconds;
+    /// Fits a candidate.
+    ///
+    /// # Errors
+    /// Why it came to nothing.
+    pub(super) fn of(
+        null: &NullModel<'_>,
+        effect: Effect,
+        screened: Option<Screened>,
+    ) -> Result<Self, String> {
+        let (case, base) = (null.case, null.base);
+        let edited = effect
+            .apply(&base.document)
+            .map_err(|error| error.to_string())?;
+        let starts = match &screened {
+            Some(seen) => {
+                let further = starts_of_delay(case, &effect, &edited.added);
+                seen.starts().into_iter().chain(further).collect()
             }
-        }
+            None => starts(case, &effect, &edited),
+        };
+        let tried = screened.as_ref().map_or(starts.len(), |seen| seen.starts);
+        let (ln_evidence, likeliest) = likeliest(
+            fits(case, base, &effect, &edited.document, &starts)?,
+            &effect,
+        );
+        let declared = base.problem.unknowns.len();
+        Ok(Self {
+            added: edited.added,
+            explained: null.explained_by(&likeliest),
+            freedom: (likeliest.problem.unknowns.len().saturating_sub(declared)).max(1),
+            likelihood_ratio: 2.0 * (ln_evidence - null.ln_evidence),
+            effect,
+            starts: tried,
+            screened,
+            likeliest,
+        })
     }
-    starts
 }
 
-/// Fits a candidate.
-///
-/// # Errors
-/// It came to nothing.
-pub(super) fn fit(
+/// Each start's fit with its evidence, the likeliest first, each minimum once.
+fn fits(
     case: &Case,
     base: &Fitted,
     effect: &Effect,
-    document: ModelDocument,
-    start: &Values,
-) -> Result<Fitted, Unfit> {
-    if let EffectKind::Treatment(Treatment::ProcessNoise) = effect.kind {
-        let held = |state: &str| state != effect.target;
-        return filtered(case, base, &held);
-    }
-    Fitted::trial(case, document, &base.values_with(start))
-}
-
-/// Turbulence that disturbs one state disturbs others: the same model with process noise on all of them, where the likelihood says
-/// so. `calm` is the fit without any.
-pub(super) fn disturbed_throughout(case: &Case, calm: &Fitted, one: Fitted) -> Fitted {
-    const ERROR: f64 = 0.01;
-    let Ok(all) = filtered(case, calm, &|_| false) else {
-        return one;
+    document: &ModelDocument,
+    starts: &[Values],
+) -> Result<Vec<(f64, Fitted)>, String> {
+    let mut failure = String::new();
+    let mut fits: Vec<(f64, Fitted)> = Vec::new();
+    let mut keep = |fitted: Result<Fitted, Unfit>| match fitted {
+        Ok(fitted) => fits.push((fitted.ln_evidence(), fitted)),
+        Err(why) => failure = why.to_string(),
     };
-    // both are filters, whose innovations should be white: their costs are their likelihoods
-    let gain = 2.0 * (one.estimate.cost - all.estimate.cost);
-    let others = one.problem.model.states.len() - 1;
-    if gain > critical(ERROR, 1.0, others) {
-        all
+    if effect.is_noise() {
+        keep(disturbed(case, base, &effect.target));
     } else {
-        one
+        for start in starts {
+            let values = base.values_with(start);
+            keep(Fitted::trial(case, document.clone(), &values));
+        }
+        // where noise is coloured, output error may lead away from what is likeliest
+        if let (true, Some(step)) = (base.is_coloured(), starts.first()) {
+            keep(Fitted::at(case, document.clone(), &base.values_with(step)));
+        }
     }
+    fits.retain(|(evidence, _)| !evidence.is_nan());
+    if fits.is_empty() {
+        return Err(failure);
+    }
+    fits.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+    fits.dedup_by(|(a, _), (b, _)| (*a - *b).abs() < SAME);
+    Ok(fits)
 }
 
-/// The declared model fitted by filter error, without process noise on the states that are `held`.
-fn filtered(case: &Case, base: &Fitted, held: &dyn Fn(&str) -> bool) -> Result<Fitted, Unfit> {
-    let mut problem = case.problem(&base.document, &base.values())?;
-    problem.options.estimator = Estimator::FilterError;
-    problem.options.tolerance = problem.options.tolerance.max(1e-3);
-    problem.options.process_noise = (problem.model.states.iter())
-        .filter(|state| held(&state.name))
-        .map(|state| {
-            (
-                state.name.clone(),
-                ProcessNoise {
-                    start: Some(0.0),
-                    fixed: true,
-                },
-            )
-        })
-        .collect();
-    let solution = filter_error(&problem, &mut |_| ControlFlow::Continue(()))
-        .map_err(|why| Unfit(why.to_string()))?;
-    if solution.estimate.outcome == Outcome::Diverged {
-        return Err(Unfit(solution.estimate.reason));
-    }
-    Ok(Fitted::of(base.document.clone(), problem, &solution))
+/// The likeliest of some fits once each has moved to where the likelihood with coloured noise is greatest.
+fn likeliest(fits: Vec<(f64, Fitted)>, effect: &Effect) -> (f64, Fitted) {
+    let moved = fits.into_iter().take(BEST).map(|(evidence, fitted)| {
+        if effect.is_noise() {
+            return (evidence, fitted);
+        }
+        let fitted = fitted.likeliest();
+        (fitted.ln_evidence().max(evidence), fitted)
+    });
+    moved
+        .max_by(|(a, _), (b, _)| a.total_cmp(b))
+        .expect("at least one fit")
 }

@@ -73,8 +73,9 @@ pub fn predict(
                     "with the estimate the simulation leaves the range of numbers at sample {}",
                     sample + 1
                 ),
-                Unusable::Delayed { .. } => {
-                    "with the estimate an input or output is delayed too long".to_string()
+                Unusable::Path { .. } => {
+                    "with the estimate an input or output is delayed too long, or its rate limited to less than nothing"
+                        .to_string()
                 }
                 // it is simulated without a filter, and not regressed
                 Unusable::NotFinite

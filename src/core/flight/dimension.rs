@@ -29,6 +29,11 @@ impl Dimension {
         self == Self::NONE
     }
 
+    /// The exponent of the second, where it is whole.
+    pub fn seconds(self) -> Option<i32> {
+        (self.0[2] % SIXTHS == 0).then(|| i32::from(self.0[2] / SIXTHS))
+    }
+
     /// The dimension of a product.
     #[must_use]
     pub fn times(self, other: Self) -> Self {

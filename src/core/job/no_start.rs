@@ -2,6 +2,7 @@
 
 use crate::estimate::{Estimator, Problem, Unusable};
 use crate::flight::Fault;
+use crate::model::Element;
 use crate::simulate::MOST_DELAY;
 
 /// Why the start values lead nowhere.
@@ -22,21 +23,7 @@ pub(super) fn no_start(problem: &Problem, why: Unusable) -> Fault {
             Fault::new("/parameters", "diverged_at_start", message)
         }
         Unusable::NoSteadyGain { segment } => no_gain(problem, segment),
-        Unusable::Delayed { segment, delay } => {
-            let (model, delays) = (&problem.model, &problem.model.delays);
-            let (what, name) = match delays.inputs.get(delay) {
-                Some(&input) => ("input", &model.inputs[input].name),
-                None => {
-                    let output = delays.outputs[delay - delays.inputs.len()];
-                    ("output", &model.outputs[output].name)
-                }
-            };
-            let message = format!(
-                "with the start values the delay of the {what} '{name}' is more than {MOST_DELAY} samples of segment {}; give other \"start\" values, or \"lower\" and \"upper\" bounds",
-                problem.segments[segment].label
-            );
-            Fault::new("/parameters", "delay_too_long", message)
-        }
+        Unusable::Path { segment, place } => path_fault(problem, segment, place),
         Unusable::SingularNoise => {
             let message = "the residuals of some outputs are not independent, so that their full covariance is singular; use the structure \"diagonal\", or leave one of these outputs out";
             Fault::new("/options/noise", "singular_noise", message)
@@ -62,4 +49,29 @@ pub(super) fn no_measured_state(problem: &Problem) -> Fault {
     };
     let message = "equation error needs an output that measures a state: its equation is the state, possibly with a bias, scale or drift parameter; add such an output, or choose another";
     Fault::new(pointer, "no_measured_state", message)
+}
+
+/// The start values give an element of a path a size that it cannot have.
+fn path_fault(problem: &Problem, segment: usize, place: usize) -> Fault {
+    let (model, passed) = (&problem.model, problem.model.paths.elements()[place]);
+    let (what, signal) = if model.paths.is_of_input(place) {
+        ("input", &model.inputs[passed.signal])
+    } else {
+        ("output", &model.outputs[passed.signal])
+    };
+    let label = &problem.segments[segment].label;
+    let (code, is) = match passed.element {
+        Element::Delay => {
+            let is = format!("more than {MOST_DELAY} samples of segment {label}");
+            ("delay_too_long", is)
+        }
+        Element::RateLimit => ("path_out_of_bounds", "below 0, or no number".to_string()),
+        Element::Play | Element::Lag => ("path_out_of_bounds", "no number".to_string()),
+    };
+    let message = format!(
+        "with the start values the {} of the {what} '{}' is {is}; give other \"start\" values, or \"lower\" and \"upper\" bounds",
+        passed.element.words(),
+        signal.name
+    );
+    Fault::new("/parameters", code, message)
 }

@@ -9,6 +9,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use utoipa::ToSchema;
 
 use super::strict::Strict;
+use crate::diagnose::Knowledge;
 use crate::estimate::{Options, Role};
 use crate::model::{Edit, ModelDocument, Prior, Start};
 
@@ -67,6 +68,9 @@ pub struct JobSpec {
     /// Of a diagnosis: effects of your own, tried beside those of the catalogue.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub candidates: Vec<Candidate>,
+    /// Of a diagnosis: what is known before the data.
+    #[serde(default, skip_serializing_if = "is_nothing")]
+    pub knowledge: Knowledge,
     /// How to estimate; each option has a default.
     #[serde(default)]
     pub options: Options,
@@ -92,6 +96,7 @@ impl JobSpec {
             parameters: IndexMap::new(),
             constants: IndexMap::new(),
             candidates: Vec::new(),
+            knowledge: Default::default(),
             options: Options::default(),
             strict: Strict::default(),
         }
@@ -116,6 +121,10 @@ impl JobSpec {
 
 /// The highest priority that there is; the lowest is its negative.
 pub const HIGHEST_PRIORITY: i32 = 10;
+
+fn is_nothing(knowledge: &Knowledge) -> bool {
+    *knowledge == Knowledge::default()
+}
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
 fn is_zero(priority: &i32) -> bool {

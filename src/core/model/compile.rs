@@ -5,7 +5,6 @@
 use std::sync::Arc;
 
 use super::affine::Affine;
-use super::delays::Delays;
 use super::document::{ModelDocument, Start};
 use super::equations::Equations;
 use super::expression::{self, BinaryOperator, Expression, Function, Kind};
@@ -13,7 +12,9 @@ use super::graph::{Graph, MOST_GRAPH_NODES, NodeId};
 use super::jacobian::Jacobian;
 use super::names::{Meaning, Names};
 use super::operation::{Binary, Unary};
+use super::paths::{Compiled, PathElement, Paths};
 use super::program::{Program, Slots};
+use super::quantities;
 use super::{Model, ParameterInfo, Quantity, limits};
 use crate::flight::{Fault, Faults, Unit, escape};
 
@@ -32,6 +33,7 @@ impl Model {
             faults.push(Fault::new("/outputs", "no_outputs", message));
         }
         let names = Names::collect(document, &mut faults);
+        quantities::check(document, &mut faults);
         let equations = Equations::read(document, &names, &mut faults);
         let parameters = parameters(document, &mut faults);
         if !faults.is_empty() {
@@ -39,8 +41,8 @@ impl Model {
         }
         let slots = Slots {
             states: document.states.len(),
-            // behind the inputs themselves come the rates of those that are delayed
-            inputs: document.inputs.len() + equations.input_delays.len(),
+            // behind the inputs themselves come the ρ of the elements of their paths
+            inputs: document.inputs.len() + equations.input_paths.len(),
             parameters: parameters.len(),
         };
         let mut graph = Graph::default();
@@ -59,7 +61,7 @@ impl Model {
             initial_jacobian: Jacobian::derive(&mut graph, slots, &roots.initial),
             dynamics_jacobian: Jacobian::derive(&mut graph, slots, &roots.dynamics),
             observation_jacobian: Jacobian::derive(&mut graph, slots, &roots.observation),
-            delays: Delays::compile(&mut graph, slots, &roots.input_delays, &roots.output_delays),
+            paths: Paths::compile(&mut graph, slots, &roots.input_paths, &roots.output_paths),
             affine_dynamics: Affine::find(&mut graph, slots, &roots.dynamics),
             inputs: quantities(
                 document
@@ -177,9 +179,8 @@ struct Roots {
     initial: Vec<NodeId>,
     dynamics: Vec<NodeId>,
     observation: Vec<NodeId>,
-    /// By index of what is delayed.
-    input_delays: Vec<(usize, NodeId)>,
-    output_delays: Vec<(usize, NodeId)>,
+    input_paths: Vec<Compiled>,
+    output_paths: Vec<Compiled>,
 }
 
 /// Turns trees into nodes of the graph.
@@ -206,22 +207,22 @@ impl Builder<'_> {
         document: &ModelDocument,
         equations: &Equations,
     ) -> Result<Roots, Vec<Fault>> {
-        let mut delays = |list: &[(usize, Expression)]| -> Vec<(usize, NodeId)> {
+        let mut sizes = |list: &[(PathElement, Expression)]| -> Vec<Compiled> {
             list.iter()
-                .map(|(i, delay)| (*i, self.node(delay)))
+                .map(|(element, size)| (*element, self.node(size)))
                 .collect()
         };
-        let input_delays = delays(&equations.input_delays);
-        let output_delays = delays(&equations.output_delays);
+        let input_paths = sizes(&equations.input_paths);
+        let output_paths = sizes(&equations.output_paths);
         self.inputs = (0..document.inputs.len())
             .map(|i| self.graph.symbol(self.slots.input(i)))
             .collect();
-        for (place, &(i, delay)) in input_delays.iter().enumerate() {
-            let rate = self
-                .graph
-                .symbol(self.slots.input(self.inputs.len() + place));
-            let change = self.graph.multiply(rate, delay);
-            self.inputs[i] = self.graph.add(self.inputs[i], change);
+        for (place, &(element, size)) in input_paths.iter().enumerate() {
+            let slot = self.slots.input(self.inputs.len() + place);
+            let slope = self.graph.symbol(slot);
+            let change = self.graph.multiply(slope, size);
+            let input = &mut self.inputs[element.signal];
+            *input = self.graph.add(*input, change);
         }
         self.definitions = vec![Visit::No; equations.definitions.len()];
         for i in 0..equations.definitions.len() {
@@ -251,8 +252,8 @@ impl Builder<'_> {
             initial: all(&equations.initial),
             dynamics: all(&equations.dynamics),
             observation: all(&equations.observation),
-            input_delays,
-            output_delays,
+            input_paths,
+            output_paths,
         };
         if self.graph.is_too_large() {
             Err(vec![too_large()])
@@ -346,7 +347,7 @@ impl Builder<'_> {
             }
             Function::If => return self.graph.select(arguments[0], arguments[1], arguments[2]),
             // refused by `read_equation`
-            Function::First | Function::Mean | Function::Interpolated => {
+            Function::First | Function::Mean | Function::LargestRate | Function::Interpolated => {
                 return self.graph.constant(f64::NAN);
             }
         };
@@ -357,7 +358,7 @@ impl Builder<'_> {
         let slots = self.slots;
         match self.names.meaning(name) {
             Some(Meaning::Constant(value)) => self.graph.constant(value),
-            // in a delay, which may not depend on inputs, there are none yet: refused by `Equations::read`
+            // in the size of an element, which may not depend on inputs, there are none yet: refused by `Equations::read`
             Some(Meaning::Input(i)) => match self.inputs.get(i) {
                 Some(&node) => node,
                 None => self.graph.constant(f64::NAN),

@@ -57,6 +57,9 @@ pub(super) fn measure(
         },
         Kind::Call(function, arguments) => match (function, arguments.as_slice()) {
             (Function::Abs | Function::First | Function::Interpolated, [value]) => of(value),
+            (Function::LargestRate, [value]) => {
+                Ok(of(value)?.map(|dimension| dimension.over(Dimension::SECOND)))
+            }
             (Function::Sign, [value]) => of(value).map(|_| Some(Dimension::NONE)),
             (Function::Sqrt, [value]) => match of(value)? {
                 None => Ok(None),
@@ -174,6 +177,7 @@ mod tests {
         assert_eq!(measured("sin(alpha)*V"), Ok("m/s".into()));
         assert_eq!(measured("2^alpha"), Ok("-".into()));
         assert_eq!(measured("mean(V, 5)"), Ok("m/s".into()));
+        assert_eq!(measured("0.6*largest_rate(alpha)"), Ok("1/s".into()));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::flight::Unit;
+use crate::flight::{PhysicalQuantity, Unit};
 
 /// States, inputs, outputs and parameters with their units, and equations as text:
 /// dx/dt = f(x, u, θ), x(0) = x0(θ), y = g(x, u, θ).
@@ -84,24 +84,50 @@ pub struct Constant {
     #[serde(default, skip_serializing_if = "String::is_empty")]
     #[schema(example = "m/s^2")]
     pub unit: String,
+    /// Which quantity it is, where its name does not say so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "wind_x")]
+    pub quantity: Option<PhysicalQuantity>,
     /// What it is, in words.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
 }
 
-/// A recorded quantity that drives the model.
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+/// A recorded quantity that drives the model, and the path on which it comes to the equations: play, rate limit, lag,
+/// delay, in this order.
+#[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Input {
     /// A unit of the dimension that its channel must have; absent or `-`: a pure number. Equations see SI.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     #[schema(example = "rad")]
     pub unit: String,
+    /// Half the width of the dead band behind it, in the unit of the input (SI): an expression in parameters and
+    /// constants, 0 for none. What the equations see stays where it is until the recording pushes it. It starts in
+    /// the middle of the band.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "de_play")]
+    pub play: Option<String>,
+    /// The largest rate at which the equations see it change, in the unit of the input (SI) per second: an expression
+    /// in parameters and constants, 0 or more. Above the largest rate of the recording it changes nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "de_rate_limit")]
+    pub rate_limit: Option<String>,
+    /// Time constant of the first-order lag with which the model follows it, s: an expression in parameters and
+    /// constants, 0 for none. Exact for an input that is a straight line between samples (or held, where the job
+    /// says so). Negative: it leads by as much as it would lag.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "de_lag")]
+    pub lag: Option<String>,
     /// By how much the model sees it later than it was recorded, s: an expression in parameters and constants.
     /// Negative: earlier. Between samples the recording is a monotone cubic, beyond its ends the value is held.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "tau_de")]
     pub delay: Option<String>,
+    /// Which quantity it is, where its name does not say so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "elevator")]
+    pub quantity: Option<PhysicalQuantity>,
     /// What it is, in words.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
@@ -121,6 +147,10 @@ pub struct State {
     /// dx/dt.
     #[schema(example = "Za*(alpha - alpha_eq) + Zq*q + Zde*(de - de_eq)")]
     pub derivative: String,
+    /// Which quantity it is, where its name does not say so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "angle_of_attack")]
+    pub quantity: Option<PhysicalQuantity>,
     /// What it is, in words.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
@@ -137,13 +167,18 @@ pub struct Definition {
     /// An expression in everything that has a name.
     #[schema(example = "CL0 + CLalpha*alpha")]
     pub equation: String,
+    /// Which quantity it is, where its name does not say so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "lift_coefficient")]
+    pub quantity: Option<PhysicalQuantity>,
     /// What it is, in words.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
 }
 
-/// An output y, which is compared with the recorded channel of its name.
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+/// An output y, which is compared with the recorded channel of its name, and the path on which it comes to the recorder:
+/// lag, then delay.
+#[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Output {
     /// A unit of the dimension that its equation must give and its channel must have.
@@ -153,11 +188,21 @@ pub struct Output {
     /// An expression in everything that has a name.
     #[schema(example = "q + q_bias")]
     pub equation: String,
+    /// Time constant of the first-order lag with which its sensor follows it, s: an expression in parameters and
+    /// constants, 0 for none. Exact for an output that is a straight line between samples. Negative: it leads by as
+    /// much as it would lag.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "T_alpha")]
+    pub lag: Option<String>,
     /// By how much it is recorded later than it happens, s: an expression in parameters and constants. Negative:
     /// earlier. Between samples the output is a cubic, before the segment its first value, behind it its last.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "tau_alpha")]
     pub delay: Option<String>,
+    /// Which quantity it is, where its name does not say so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "pitch_rate")]
+    pub quantity: Option<PhysicalQuantity>,
     /// What it is, in words.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
@@ -189,6 +234,10 @@ pub struct Parameter {
     /// and in its error bounds. Of a parameter `per = "maneuver"` it holds for each of its values.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prior: Option<Prior>,
+    /// Which quantity it is, where its name does not say so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "airspeed")]
+    pub quantity: Option<PhysicalQuantity>,
     /// What it is, in words.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,

@@ -4,8 +4,10 @@ use indexmap::IndexMap;
 
 use super::dimensions::measure;
 use super::document::ModelDocument;
+use super::element::Element;
 use super::expression::{self, Expression, Function, Kind, Span};
 use super::names::{Meaning, Names};
+use super::paths::PathElement;
 use crate::flight::{Dimension, Fault, Unit, escape};
 
 /// The parsed and checked equations of a document, in its order.
@@ -14,9 +16,9 @@ pub(super) struct Equations {
     pub initial: Vec<Expression>,
     pub dynamics: Vec<Expression>,
     pub observation: Vec<Expression>,
-    /// Delays of inputs and of outputs, by index of what is delayed.
-    pub input_delays: Vec<(usize, Expression)>,
-    pub output_delays: Vec<(usize, Expression)>,
+    /// Sizes of the elements that inputs and outputs pass, in the order of [`super::Paths`].
+    pub input_paths: Vec<(PathElement, Expression)>,
+    pub output_paths: Vec<(PathElement, Expression)>,
 }
 
 impl Equations {
@@ -71,46 +73,67 @@ impl Equations {
                 )
             })
             .collect();
-        let delay = |list: &str, name: &str| format!("/{list}/{}/delay", escape(name));
-        let mut delays = |list: &str, all: &mut dyn Iterator<Item = (&String, &Option<String>)>| {
-            let delayed = |(i, (name, text)): (usize, (&String, &Option<String>))| {
-                let pointer = delay(list, name);
-                let text = text.as_deref()?;
-                Some((i, read(pointer, text, "s", Some(Dimension::SECOND))))
-            };
-            all.enumerate().filter_map(delayed).collect()
-        };
-        let mut inputs = document.inputs.iter().map(|(name, i)| (name, &i.delay));
-        let input_delays = delays("inputs", &mut inputs);
-        let mut outputs = document.outputs.iter().map(|(name, o)| (name, &o.delay));
-        let output_delays = delays("outputs", &mut outputs);
+        let input_paths = document.inputs.iter().map(|(name, i)| Signal {
+            pointer: format!("/inputs/{}", escape(name)),
+            unit: &i.unit,
+            path: i.path(),
+        });
+        let input_paths = sizes(input_paths, names, faults);
+        let output_paths = document.outputs.iter().map(|(name, o)| Signal {
+            pointer: format!("/outputs/{}", escape(name)),
+            unit: &o.unit,
+            path: o.path(),
+        });
+        let output_paths = sizes(output_paths, names, faults);
         for (name, state) in &document.states {
             let pointer = format!("/states/{}/initial", escape(name));
             let remedy = "make a parameter with start = \"first(<channel>)\" where the initial state is to be read off the data";
             let code = "initial_depends_on_data";
             depends_on_parameters_only(&pointer, &state.initial, names, (code, remedy), faults);
         }
-        let inputs = document.inputs.iter().map(|(n, i)| ("inputs", n, &i.delay));
-        let outputs = document
-            .outputs
-            .iter()
-            .map(|(n, o)| ("outputs", n, &o.delay));
-        for (list, name, text) in inputs.chain(outputs) {
-            if let Some(text) = text {
-                let remedy = "a delay is the same all along a maneuver";
-                let code = "delay_depends_on_data";
-                depends_on_parameters_only(&delay(list, name), text, names, (code, remedy), faults);
-            }
-        }
         Self {
             definitions,
             initial,
             dynamics,
             observation,
-            input_delays,
-            output_delays,
+            input_paths,
+            output_paths,
         }
     }
+}
+
+/// An input or output with its path.
+struct Signal<'d> {
+    pointer: String,
+    unit: &'d str,
+    path: Vec<(Element, &'d str)>,
+}
+
+/// Reads the sizes of the elements of all paths.
+fn sizes<'d>(
+    signals: impl Iterator<Item = Signal<'d>>,
+    names: &Names,
+    faults: &mut Vec<Fault>,
+) -> Vec<(PathElement, Expression)> {
+    let mut sizes = Vec::new();
+    for (index, signal) in signals.enumerate() {
+        let unit = Unit::parse(signal.unit).ok();
+        for (element, text) in signal.path {
+            let pointer = format!("{}/{}", signal.pointer, element.field());
+            let wanted = unit.map(|unit| element.measures(unit.dimension));
+            let shown = wanted.map_or(String::new(), |wanted| wanted.to_string());
+            let size = read_equation(&pointer, text, &shown, wanted, names, faults);
+            let remedy = format!("a {} is the same all along a maneuver", element.words());
+            let fault = (element.depends_on_data(), remedy.as_str());
+            depends_on_parameters_only(&pointer, text, names, fault, faults);
+            let at = PathElement {
+                signal: index,
+                element,
+            };
+            sizes.push((at, size));
+        }
+    }
+    sizes
 }
 
 /// Names that are told of one equation: each once, and no more than these.
@@ -197,14 +220,18 @@ fn data_function(expression: &Expression) -> Option<Function> {
         Kind::Number(_) | Kind::Name(_) => None,
         Kind::Negate(inner) => data_function(inner),
         Kind::Binary(_, left, right) => data_function(left).or_else(|| data_function(right)),
-        Kind::Call(function @ (Function::First | Function::Mean | Function::Interpolated), _) => {
-            Some(*function)
-        }
+        Kind::Call(
+            function @ (Function::First
+            | Function::Mean
+            | Function::LargestRate
+            | Function::Interpolated),
+            _,
+        ) => Some(*function),
         Kind::Call(_, arguments) => arguments.iter().find_map(data_function),
     }
 }
 
-/// An initial state and a delay are known before anything is recorded.
+/// An initial state and the size of an element are known before anything is recorded.
 fn depends_on_parameters_only(
     pointer: &str,
     text: &str,

@@ -131,7 +131,7 @@ impl ChannelFormula {
         Ok(evaluate(&self.expression, on).into_values(on.time().len()))
     }
 
-    /// A single number: `first` and `mean` reduce a channel to one.
+    /// A single number: `first`, `mean` and `largest_rate` reduce a channel to one.
     ///
     /// # Errors
     /// As [`Self::dimension`]; or the formula varies with the sample, or gives no finite number.
@@ -147,7 +147,7 @@ impl ChannelFormula {
                 "a value is missing there, or the arithmetic has no result",
             )),
             Value::Each(_) => Err(no_number(
-                "it varies with the sample; use first(channel) or mean(channel, seconds)",
+                "it varies with the sample; use first(channel), mean(channel, seconds) or largest_rate(channel)",
             )),
         }
     }
@@ -264,6 +264,10 @@ fn call_many(function: Function, arguments: Vec<Value>, on: &dyn Recorded) -> Va
             }
             (one, _) => one,
         },
+        Function::LargestRate => match next() {
+            Value::Each(values) => Value::One(largest_rate(on.time(), &values)),
+            Value::One(_) => Value::One(0.0),
+        },
         Function::Interpolated => match next() {
             Value::Each(values) => Value::Each(interpolated(on.time(), values)),
             one @ Value::One(_) => one,
@@ -284,6 +288,14 @@ fn call_many(function: Function, arguments: Vec<Value>, on: &dyn Recorded) -> Va
 /// The values that are there.
 fn present(values: &[f64]) -> impl Iterator<Item = f64> + '_ {
     values.iter().copied().filter(|value| !value.is_nan())
+}
+
+/// The largest rate of change, up or down, from one value that is there to the next.
+fn largest_rate(time: &[f64], values: &[f64]) -> f64 {
+    let known = time.iter().zip(values).filter(|(_, value)| !value.is_nan());
+    let known: Vec<(&f64, &f64)> = known.collect();
+    let rate = |pair: &[(&f64, &f64)]| ((pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0)).abs();
+    known.windows(2).map(rate).fold(f64::NAN, f64::max)
 }
 
 /// Missing values on straight lines in time between their neighbours; before the first and behind the last
@@ -343,6 +355,9 @@ mod tests {
         // missing values do not count, but there must be some
         assert_eq!(number("mean(right, 9)"), Ok(4.0));
         assert_eq!(number("first(sparse)"), Ok(7.0));
+        assert_eq!(number("largest_rate(left^2)"), Ok(7.0));
+        assert_eq!(number("largest_rate(sparse)"), Ok(1.0));
+        assert_eq!(number("largest_rate(2)"), Ok(0.0));
         assert_eq!(
             number("mean(sparse, 1)").unwrap_err().code(),
             "missing_values"

@@ -8,11 +8,11 @@
 mod affine;
 pub mod catalog;
 mod compile;
-mod delays;
 mod derivative;
 mod dimensions;
 mod document;
 mod edit;
+mod element;
 mod equations;
 pub mod expression;
 mod formula;
@@ -23,22 +23,26 @@ mod limits;
 mod names;
 mod native;
 mod operation;
+mod paths;
 mod program;
+mod quantities;
 mod scalar;
 mod trigonometry;
 mod unique;
 
 pub(crate) use affine::{Affine, Coefficient, Factor};
-pub use delays::Delays;
 pub use document::{
     Constant, Definition, Input, ModelDocument, Output, Parameter, Per, Prior, Start, State,
 };
-pub use edit::{Added, AddedRole, Edit, EditError, EditKind, Edited};
+pub use edit::{Added, AddedRole, Edit, EditError, EditKind, Edited, Reference};
+pub use element::Element;
 pub use formula::{ChannelFormula, FormulaError, Recorded};
 pub use jacobian::Jacobian;
 use native::Native;
 pub(crate) use native::{NativeSteps, StepBlock};
+pub use paths::{PathElement, Paths};
 pub use program::{Program, Workspace};
+pub use quantities::{Quantities, Source, Taken};
 pub use scalar::Scalar;
 pub(crate) use scalar::{BLOCK, LANES, Lanes};
 pub(crate) use unique::unique;
@@ -74,8 +78,8 @@ pub struct Model {
     pub dynamics_jacobian: Jacobian,
     /// ∂g/∂x and ∂g/∂θ
     pub observation_jacobian: Jacobian,
-    /// Which inputs and outputs are delayed, and by which functions of θ.
-    pub delays: Delays,
+    /// Play, rate limits, lags and delays of inputs and outputs, by functions of θ.
+    pub paths: Paths,
     /// The steps of `dynamics` as machine code, for all who share the model.
     native: Arc<Native>,
 }
@@ -86,9 +90,9 @@ impl Model {
         self.affine_dynamics.is_some()
     }
 
-    /// What its equations see as inputs: those of the document, then the rates of those that are delayed.
+    /// What its equations see as inputs: those of the document, then the ρ of each element of their paths.
     pub(crate) fn driven_inputs(&self) -> usize {
-        self.inputs.len() + self.delays.inputs.len()
+        self.inputs.len() + self.paths.of_inputs().len()
     }
 
     /// Machine code for `steps` that are about to be taken with so many stages each, where there is some.

@@ -15,6 +15,7 @@
 //! States are kept once a block; those between are worked out again on the way back. The Jacobians of a block
 //! are evaluated side by side, as those of the forward sensitivities are.
 
+use super::checkpoints::Checkpoints;
 use super::method::{InputInterpolation, Integrator, Stage};
 use super::refined::Refined;
 use super::segment::Segment;
@@ -23,25 +24,10 @@ use super::simulation::{Diverged, initial_state};
 use super::stepper::{Stepper, between};
 use crate::model::{LANES, Lanes, Model, Program, Workspace};
 
-/// States on the way forward, one for each block, from which the way back starts anew.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Checkpoints {
-    elapsed: Vec<f64>,
-    /// By block, then state.
-    states: Vec<f64>,
-}
-
-impl Checkpoints {
-    /// Bytes held.
-    pub(crate) fn bytes(&self) -> usize {
-        size_of_val(self.elapsed.as_slice()) + size_of_val(self.states.as_slice())
-    }
-}
-
 /// The machinery for one model, reusable for any segment, θ and ȳ.
 pub(crate) struct Adjoint<'m> {
-    model: &'m Model,
-    interpolation: InputInterpolation,
+    pub(super) model: &'m Model,
+    pub(super) interpolation: InputInterpolation,
     stages: &'static [Stage],
     stepper: Stepper<'m, f64>,
     dynamics: SideBySide<'m>,
@@ -94,11 +80,8 @@ impl<'m> Adjoint<'m> {
         }
     }
 
-    /// The way forward: outputs of each sample to `sink`, checkpoints for the way back.
-    ///
-    /// # Errors
-    /// The state left the range of numbers; samples up to the end of a block before that were handed over.
-    pub(crate) fn forward(
+    /// The way forward along a driven segment, outputs before their paths.
+    pub(super) fn advance(
         &mut self,
         segment: &Segment,
         parameters: &[f64],
@@ -135,9 +118,8 @@ impl<'m> Adjoint<'m> {
         Ok(kept)
     }
 
-    /// The way back. `seed` is given each sample with its outputs and answers with ȳ; `gradient`, of all
-    /// parameters of the model, is added to. `checkpoints` are those of the way forward with the same θ.
-    pub(crate) fn reverse(
+    /// The way back along a driven segment, from outputs before their paths.
+    pub(super) fn step_back_along(
         &mut self,
         segment: &Segment,
         parameters: &[f64],

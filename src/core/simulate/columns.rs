@@ -25,7 +25,7 @@ impl Columns {
         let row = |output: usize| -> Vec<usize> {
             let own = |p: &&usize| {
                 observation.by_parameter.contains(&(output, **p))
-                    || model.delays.output_depends_on(output, **p)
+                    || model.paths.output_depends_on(output, **p)
             };
             let sees_states = observation.by_state.iter().any(|&(row, _)| row == output);
             if sees_states {

@@ -76,6 +76,19 @@ impl Axis {
         self.last
     }
 
+    /// Length of the step from sample `k` to the next, s.
+    pub(super) fn length(&self, k: usize) -> f64 {
+        self.steps.length(k)
+    }
+
+    /// The length that all steps have, where they are even, s.
+    pub(super) fn even_step(&self) -> Option<f64> {
+        match self.steps {
+            Steps::Even(step) => Some(step),
+            Steps::Uneven(_) => None,
+        }
+    }
+
     /// Mean length of a step, s.
     pub(super) fn mean_step(&self) -> f64 {
         match &self.steps {
@@ -122,18 +135,7 @@ impl Axis {
             At::Behind => return (samples[self.last], 0.0),
             At::Between { sample, share } => (sample, share),
         };
-        let secant = |k: usize| (samples[k + 1] - samples[k]) / self.steps.length(k);
-        let slope = |k: usize| {
-            if k == 0 || k == self.last {
-                return 0.0;
-            }
-            let (before, behind) = (secant(k - 1), secant(k));
-            if before * behind <= 0.0 {
-                return 0.0;
-            }
-            let (a, b) = (self.steps.length(k - 1), self.steps.length(k));
-            3.0 * (a + b) / ((2.0 * b + a) / before + (b + 2.0 * a) / behind)
-        };
+        let slope = |k: usize| self.monotone(samples, k).map_or(0.0, |of| of.slope);
         let parts = [
             samples[sample],
             samples[sample + 1],
@@ -144,6 +146,57 @@ impl Axis {
         let sum = |weights: [f64; 4]| weights.iter().zip(parts).map(|(w, p)| w * p).sum();
         (sum(value), sum(rate))
     }
+
+    /// The change of [`Self::recorded`]'s value with a change of the samples, per unit of it.
+    pub(super) fn recorded_change(&self, samples: &[f64], changes: &[f64], at: At) -> f64 {
+        let (sample, share) = match at {
+            At::Before => return changes[0],
+            At::Behind => return changes[self.last],
+            At::Between { sample, share } => (sample, share),
+        };
+        let secant = |k: usize| (changes[k + 1] - changes[k]) / self.steps.length(k);
+        let slope = |k: usize| {
+            (self.monotone(samples, k)).map_or(0.0, |of| {
+                of.by_before * secant(k - 1) + of.by_behind * secant(k)
+            })
+        };
+        let parts = [
+            changes[sample],
+            changes[sample + 1],
+            slope(sample),
+            slope(sample + 1),
+        ];
+        let (value, _) = hermite(share, self.steps.length(sample));
+        value.iter().zip(parts).map(|(w, p)| w * p).sum()
+    }
+
+    /// The slope at a sample of the monotone cubic through recorded ones; `None` where it is 0 whatever they are.
+    fn monotone(&self, samples: &[f64], k: usize) -> Option<MonotoneSlope> {
+        if k == 0 || k == self.last {
+            return None;
+        }
+        let secant = |k: usize| (samples[k + 1] - samples[k]) / self.steps.length(k);
+        let (before, behind) = (secant(k - 1), secant(k));
+        if before * behind <= 0.0 {
+            return None;
+        }
+        let (a, b) = (self.steps.length(k - 1), self.steps.length(k));
+        let (p, q) = (2.0 * b + a, b + 2.0 * a);
+        let slope = 3.0 * (a + b) / (p / before + q / behind);
+        let by = |weight: f64, secant: f64| weight * (slope / secant).powi(2) / (3.0 * (a + b));
+        Some(MonotoneSlope {
+            slope,
+            by_before: by(p, before),
+            by_behind: by(q, behind),
+        })
+    }
+}
+
+/// The slope at a sample, and its derivatives by those of the straight lines to both sides.
+struct MonotoneSlope {
+    slope: f64,
+    by_before: f64,
+    by_behind: f64,
 }
 
 /// A value and its rate of change as sums over samples.

@@ -1,14 +1,17 @@
-//! A simulation taken along a segment stretch by stretch, for any kind of number.
+//! A simulation taken along a segment stretch by stretch, for any kind of number. Where inputs or outputs have paths
+//! the whole segment is one stretch: a delay looks back and ahead.
 
 use super::method::{InputInterpolation, Integrator};
 use super::segment::Segment;
-use super::simulation::initial_state;
+use super::simulation::{initial_state, simulate};
 use super::stepper::Stepper;
 use crate::model::{Model, Scalar, Workspace};
 
 /// The machinery, shared by any number of simulations that go along side by side.
 pub(crate) struct March<'m, T> {
     model: &'m Model,
+    integrator: Integrator,
+    interpolation: InputInterpolation,
     stepper: Stepper<'m, T>,
     observation: Workspace<T>,
     outputs: Vec<T>,
@@ -36,9 +39,20 @@ impl<'m, T: Scalar> March<'m, T> {
     ) -> Self {
         Self {
             model,
+            integrator,
+            interpolation,
             stepper: Stepper::new(model, integrator, interpolation),
             observation: model.observation.workspace(),
             outputs: vec![T::from_f64(0.0); model.outputs.len()],
+        }
+    }
+
+    /// How many samples of a segment to go on by: `samples`, where that may be chosen.
+    pub(crate) fn stretch(model: &Model, segment: &Segment, samples: usize) -> usize {
+        if model.paths.is_empty() {
+            samples
+        } else {
+            segment.len().max(1)
         }
     }
 
@@ -52,7 +66,7 @@ impl<'m, T: Scalar> March<'m, T> {
     }
 
     /// Goes on to sample `until` (not included) and hands the outputs of each sample to `sink`.
-    /// `parameters` are those that the simulation was started with.
+    /// `parameters` are those that the simulation was started with; stretches are as [`Self::stretch`] says.
     pub(crate) fn advance(
         &mut self,
         standing: &mut Standing<T>,
@@ -61,6 +75,19 @@ impl<'m, T: Scalar> March<'m, T> {
         until: usize,
         mut sink: impl FnMut(usize, &[T]),
     ) {
+        if !self.model.paths.is_empty() {
+            let (integrator, interpolation) = (self.integrator, self.interpolation);
+            simulate(
+                self.model,
+                integrator,
+                interpolation,
+                segment,
+                parameters,
+                sink,
+            );
+            standing.next = segment.len();
+            return;
+        }
         self.stepper.set_parameters(parameters);
         let program = &self.model.observation;
         program.set_parameters(&mut self.observation, parameters);

@@ -1,18 +1,19 @@
 //! Outputs alone, along the same trajectory as [`super::Sensitivities`]: the same numbers, for less work.
 
+use super::input_path::driven;
+use super::interpolation::Axis;
 use super::linearised::Linearised;
 use super::method::{InputInterpolation, Integrator};
+use super::output_path;
 use super::refined::Refined;
 use super::segment::Segment;
-use super::simulation::{Diverged, simulate};
+use super::simulation::Diverged;
 use super::trajectory::Trajectory;
 use crate::model::{BLOCK, Model};
 
 /// The machinery for one model, reusable for any segment and θ.
 pub struct Outputs<'m> {
     model: &'m Model,
-    integrator: Integrator,
-    interpolation: InputInterpolation,
     trajectory: Trajectory<'m>,
     outputs: Linearised<'m>,
     /// See [`Self::passed`].
@@ -28,8 +29,6 @@ impl<'m> Outputs<'m> {
     ) -> Self {
         Self {
             model,
-            integrator,
-            interpolation,
             trajectory: Trajectory::new(model, integrator, interpolation),
             outputs: Linearised::new(&model.observation, 1),
             passed: Vec::new(),
@@ -48,13 +47,35 @@ impl<'m> Outputs<'m> {
         mut sink: impl FnMut(usize, &[&[f64]]),
     ) -> Result<(), Diverged> {
         self.passed.clear();
-        if !self.model.delays.is_empty() {
-            self.run_delayed(segment, parameters, sink);
-            return Ok(());
+        let model = self.model;
+        let sizes = model.paths.at(parameters);
+        let segment = &*driven(model, self.trajectory.interpolation(), segment, &sizes);
+        if model.paths.of_outputs().is_empty() {
+            return self.advance(segment, parameters, sink);
         }
+        // a delayed output looks back and ahead: the whole segment is one block
+        let mut outputs = vec![Vec::with_capacity(segment.len()); model.outputs.len()];
+        self.advance(segment, parameters, |_, y| {
+            let series = outputs.iter_mut().zip(y);
+            series.for_each(|(series, y)| series.extend_from_slice(y));
+        })?;
+        let sizes = &sizes[model.paths.of_inputs().len()..];
+        output_path::pass(model, &Axis::new(segment), sizes, &mut outputs);
+        let outputs: Vec<&[f64]> = outputs.iter().map(Vec::as_slice).collect();
+        sink(0, &outputs);
+        Ok(())
+    }
+
+    /// Along a driven segment, outputs before their paths.
+    fn advance(
+        &mut self,
+        segment: &Segment,
+        parameters: &[f64],
+        mut sink: impl FnMut(usize, &[&[f64]]),
+    ) -> Result<(), Diverged> {
         let refined = match self.trajectory.stride_of(segment) {
             Some(_) => None,
-            None => Refined::of(segment, self.interpolation),
+            None => Refined::of(segment, self.trajectory.interpolation()),
         };
         let samples = segment.len();
         let segment = refined.as_ref().map_or(segment, |refined| &refined.segment);
@@ -97,31 +118,5 @@ impl<'m> Outputs<'m> {
     /// States that the last run went through, each with the sample it was at or came to next: one for some dozen steps.
     pub(crate) fn passed(&self) -> &[(usize, Vec<f64>)] {
         &self.passed
-    }
-
-    /// Delayed outputs look back and ahead: the whole segment is one block.
-    fn run_delayed(
-        &self,
-        segment: &Segment,
-        parameters: &[f64],
-        mut sink: impl FnMut(usize, &[&[f64]]),
-    ) {
-        let mut outputs = vec![Vec::with_capacity(segment.len()); self.outputs.results()];
-        let keep = |_, y: &[f64]| {
-            outputs
-                .iter_mut()
-                .zip(y)
-                .for_each(|(series, &y)| series.push(y));
-        };
-        simulate(
-            self.model,
-            self.integrator,
-            self.interpolation,
-            segment,
-            parameters,
-            keep,
-        );
-        let outputs: Vec<&[f64]> = outputs.iter().map(Vec::as_slice).collect();
-        sink(0, &outputs);
     }
 }

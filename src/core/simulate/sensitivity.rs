@@ -16,10 +16,10 @@
 
 use super::block::Block;
 use super::columns::Columns;
-use super::delay_line::DelayLine;
-use super::delayed_inputs::driven;
+use super::input_path::driven;
 use super::linearised::Linearised;
 use super::method::{InputInterpolation, Integrator};
+use super::output_line::OutputLine;
 use super::output_rows::OutputRows;
 use super::pack::Pack;
 use super::refined::{Refined, Thinning};
@@ -39,8 +39,8 @@ pub struct Sensitivities<'m> {
     outputs: Linearised<'m>,
     states: StateSensitivities,
     rows: OutputRows,
-    /// Where outputs are delayed.
-    delay_line: Option<DelayLine<'m>>,
+    /// Where outputs have paths.
+    line: Option<OutputLine<'m>>,
 }
 
 impl<'m> Sensitivities<'m> {
@@ -62,7 +62,7 @@ impl<'m> Sensitivities<'m> {
             outputs: Linearised::new(&model.observation, 1),
             states: StateSensitivities::new(model, columns, stages),
             rows: OutputRows::new(model, columns),
-            delay_line: DelayLine::new(model, columns),
+            line: OutputLine::new(model, columns),
         }
     }
 
@@ -76,11 +76,12 @@ impl<'m> Sensitivities<'m> {
         parameters: &[f64],
         mut sink: impl FnMut(&Block<'_>),
     ) -> Result<(), Diverged> {
-        let delays = self.model.delays.at(parameters);
-        let driven = driven(self.model, segment, &delays);
+        let sizes = self.model.paths.at(parameters);
+        let interpolation = self.trajectory.interpolation();
+        let driven = driven(self.model, interpolation, segment, &sizes);
         let segment = &*driven;
-        if let Some(line) = &mut self.delay_line {
-            line.start(segment, parameters, &delays);
+        if let Some(line) = &mut self.line {
+            line.start(segment, parameters, &sizes);
         }
         let refined = match self.trajectory.stride_of(segment) {
             Some(_) => None,
@@ -134,7 +135,7 @@ impl<'m> Sensitivities<'m> {
                 columns: self.columns,
                 rows: &rows,
             };
-            let mut hand_on = |block: &Block<'_>| match &mut self.delay_line {
+            let mut hand_on = |block: &Block<'_>| match &mut self.line {
                 Some(line) => line.pass(block, &mut sink),
                 None => sink(block),
             };

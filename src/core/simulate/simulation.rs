@@ -1,8 +1,9 @@
 //! Simulation of a segment for any kind of number.
 
-use super::delayed_inputs::driven;
+use super::input_path::driven;
 use super::interpolation::Axis;
 use super::method::{InputInterpolation, Integrator};
+use super::output_path;
 use super::refined::Refined;
 use super::segment::Segment;
 use super::stepper::Stepper;
@@ -56,13 +57,13 @@ pub(super) fn simulate_disturbed<T: Scalar>(
     segment: &Segment,
     parameters: &[T],
     disturb: impl FnMut(&mut [T]),
-    mut sink: impl FnMut(usize, &[T]),
+    sink: impl FnMut(usize, &[T]),
 ) {
-    let delays = model.delays.at(parameters);
-    let at_hand: Vec<f64> = delays.iter().map(|delay| delay.real()).collect();
-    let segment = &*driven(model, segment, &at_hand);
-    let delays = &delays[model.delays.inputs.len()..];
-    if delays.is_empty() {
+    let sizes = model.paths.at(parameters);
+    let at_hand: Vec<f64> = sizes.iter().map(|size| size.real()).collect();
+    let segment = &*driven(model, interpolation, segment, &at_hand);
+    let sizes = &sizes[model.paths.of_inputs().len()..];
+    if sizes.is_empty() {
         run(
             model,
             integrator,
@@ -74,9 +75,8 @@ pub(super) fn simulate_disturbed<T: Scalar>(
         );
         return;
     }
-    let outputs = model.outputs.len();
-    let mut prompt = Vec::with_capacity(segment.len() * outputs);
-    let keep = |_, y: &[T]| prompt.extend_from_slice(y);
+    let mut outputs = vec![Vec::with_capacity(segment.len()); model.outputs.len()];
+    let keep = |_, y: &[T]| output_path::push(&mut outputs, y);
     run(
         model,
         integrator,
@@ -86,26 +86,11 @@ pub(super) fn simulate_disturbed<T: Scalar>(
         disturb,
         keep,
     );
-    let axis = Axis::new(segment);
-    for (k, prompt_now) in prompt.chunks_exact(outputs.max(1)).enumerate() {
-        let mut y = prompt_now.to_vec();
-        for (&output, &delay) in model.delays.outputs.iter().zip(delays) {
-            let stencil = axis.stencil(axis.before(k, delay.real()));
-            let sum = |weights: [f64; 4]| {
-                let terms = weights.into_iter().zip(stencil.samples);
-                let terms = terms.filter(|&(weight, _)| weight != 0.0);
-                terms.fold(T::from_f64(0.0), |sum, (weight, sample)| {
-                    sum + T::from_f64(weight) * prompt[sample * outputs + output]
-                })
-            };
-            let rest = T::from_f64(delay.real()) - delay;
-            y[output] = sum(stencil.weights) + sum(stencil.rates) * rest;
-        }
-        sink(k, &y);
-    }
+    output_path::pass(model, &Axis::new(segment), sizes, &mut outputs);
+    output_path::samples(&outputs, sink);
 }
 
-/// Simulates a driven segment, outputs without their delays.
+/// Simulates a driven segment, outputs before their paths.
 fn run<T: Scalar>(
     model: &Model,
     integrator: Integrator,

@@ -184,6 +184,8 @@ impl Aircraft {
             flights,
             options: Options::default(),
             candidates: Vec::new(),
+            knowledge: Default::default(),
+            consumed: Vec::new(),
         };
         Some(Flown { case, truth })
     }
@@ -196,6 +198,8 @@ impl Aircraft {
             term: None,
             parameter: None,
             unit: None,
+            channels: IndexMap::new(),
+            about: IndexMap::new(),
             value,
             values,
         };

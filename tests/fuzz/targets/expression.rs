@@ -43,10 +43,8 @@ fn document(equation: &str) -> ModelDocument {
     document.outputs = IndexMap::from([(
         "y".to_string(),
         Output {
-            unit: String::new(),
             equation,
-            delay: None,
-            description: String::new(),
+            ..Default::default()
         },
     )]);
     document

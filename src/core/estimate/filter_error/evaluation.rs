@@ -1,5 +1,7 @@
 //! One look at the data for some unknowns: innovations, and with sensitivities the sums that a step is made of.
 
+use std::borrow::Cow;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::gain::{Gain, Setting};
@@ -10,8 +12,9 @@ use crate::estimate::likelihood::priors;
 use crate::estimate::likelihood::sums::{Product, ResidualSums, Sums, mirror, pair, pairs};
 use crate::estimate::likelihood::weighting::Weighting;
 use crate::estimate::options::{Noise, NoiseStructure};
-use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
+use crate::estimate::problem::{Problem, set_parameters};
+use crate::simulate::driven;
 
 /// The likelihood of the innovations and its gradient, for a fixed covariance R in the gain.
 pub struct FilterEquations {
@@ -90,21 +93,27 @@ impl<'p> FilterEvaluator<'p> {
     }
 
     /// Calls `each` with the setting of each segment.
-    fn settings<E>(
+    fn settings(
         &mut self,
         xi: &[f64],
         weight: &DMatrix<f64>,
-        mut each: impl FnMut(&mut Self, usize, &Setting<'_>) -> Result<(), E>,
-    ) -> Result<(), E> {
+        mut each: impl FnMut(&mut Self, usize, &Setting<'_>) -> Result<(), Unusable>,
+    ) -> Result<(), Unusable> {
         let problem = self.problem;
         let intensities = self.layout.intensities(xi);
         let theta = &xi[..self.layout.parameters];
         for (index, segment) in problem.segments.iter().enumerate() {
             let mut parameters = std::mem::take(&mut self.parameters);
-            problem.unknowns.parameters(index, theta, &mut parameters);
+            set_parameters(problem, index, theta, &mut parameters)?;
+            let sizes = problem.model.paths.at(&parameters);
+            let interpolation = problem.options.input_interpolation;
+            let mut driven = driven(&problem.model, interpolation, segment, &sizes);
+            if let Cow::Owned(driven) = &mut driven {
+                driven.measured.clone_from(&segment.measured);
+            }
             let setting = Setting {
                 model: &problem.model,
-                segment,
+                segment: &driven,
                 parameters: &parameters,
                 intensities: &intensities,
                 weight,

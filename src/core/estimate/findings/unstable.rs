@@ -55,7 +55,7 @@ pub(super) fn finding(problem: &Problem, found: &Estimate) -> Option<Finding> {
 /// What filter error finds from the same start values.
 fn offer(problem: &Problem) -> Option<String> {
     let even = |steps: &Steps| matches!(steps, Steps::Even(_));
-    let possible = problem.model.delays.is_empty()
+    let possible = problem.model.paths.of_outputs().is_empty()
         && problem.segments.iter().all(|segment| even(&segment.steps));
     if !possible {
         return None;

@@ -8,7 +8,7 @@ pub(super) mod unusable;
 use crate::estimate::options::Options;
 use crate::flight::Unit;
 use crate::model::{Model, ParameterInfo};
-use crate::simulate::{Columns, Segment, delay_out_of_bounds};
+use crate::simulate::{Columns, Segment, path_out_of_bounds};
 use missing::counts;
 use substeps::TooStiff;
 use unknowns::Unknowns;
@@ -113,7 +113,7 @@ impl Problem {
 /// All parameters of the model for a segment, SI.
 ///
 /// # Errors
-/// A delay is longer than any may be.
+/// An element of a path has a size that it cannot have.
 pub(crate) fn set_parameters(
     problem: &Problem,
     segment: usize,
@@ -121,8 +121,8 @@ pub(crate) fn set_parameters(
     parameters: &mut Vec<f64>,
 ) -> Result<(), Unusable> {
     (problem.unknowns).parameters(segment, theta, parameters);
-    match delay_out_of_bounds(&problem.model, &problem.segments[segment], parameters) {
-        Some(delay) => Err(Unusable::Delayed { segment, delay }),
+    match path_out_of_bounds(&problem.model, &problem.segments[segment], parameters) {
+        Some(place) => Err(Unusable::Path { segment, place }),
         None => Ok(()),
     }
 }

@@ -22,14 +22,14 @@ pub enum Unusable {
         /// Index of the segment.
         segment: usize,
     },
-    /// An input or output is delayed by more than [`MOST_DELAY`] samples, or by no number; by its
-    /// place in [`crate::model::Delays::at`].
-    #[error("an input or output is delayed by more than {MOST_DELAY} samples of segment {}", segment + 1)]
-    Delayed {
+    /// An element of a path has a size that it cannot have: no number, a rate limit below 0, or a delay of more than
+    /// [`MOST_DELAY`] samples.
+    #[error("in segment {} an input or output is delayed by more than {MOST_DELAY} samples, or its rate limited to less than nothing", segment + 1)]
+    Path {
         /// Index of the segment.
         segment: usize,
-        /// Which delay.
-        delay: usize,
+        /// Which element, by its place in [`crate::model::Paths::at`].
+        place: usize,
     },
     /// The covariance of the residuals is singular: some outputs' residuals are not independent.
     #[error("the residuals of some outputs are not independent: their covariance is singular")]

@@ -120,14 +120,15 @@ fn edited(model: &Model, measured: &[MeasuredState]) -> ModelDocument {
         let output = Output {
             unit: unit.over(Dimension::SECOND).to_string(),
             equation: state.derivative,
-            delay: None,
             description: format!("derivative of the measured {name}"),
+            ..Default::default()
         };
         document.outputs.insert(format!("d_{name}_dt"), output);
         let input = Input {
             unit: state.unit,
-            delay: None,
+            quantity: state.quantity,
             description: state.description,
+            ..Default::default()
         };
         document.inputs.insert(name.clone(), input);
     }

@@ -4,6 +4,7 @@ use super::report::{FormulaOperations, ProblemSize};
 use crate::estimate::evaluation::derivatives::perturbation::STRETCH;
 use crate::estimate::options::technique::Derivatives;
 use crate::estimate::problem::Problem;
+use crate::simulate::{March, Segment};
 
 /// Operations on real numbers that one on complex numbers takes: two for a sum, six for a product.
 const COMPLEX: u64 = 4;
@@ -146,7 +147,9 @@ pub(super) fn perturbation_bytes(problem: &Problem, technique: &Derivatives) -> 
         _ => (1, 8),
     };
     let unknowns = problem.unknowns.len();
-    let samples = STRETCH.min(problem.samples());
+    let segments = problem.segments.iter();
+    let stretch = |s: &Segment| March::<f64>::stretch(&problem.model, s, STRETCH).min(s.len());
+    let samples = segments.map(stretch).max().unwrap_or(0);
     let columns = 8 * samples * outputs * (unknowns + 1) + number * runs * samples * outputs;
     columns + number * runs * unknowns * problem.model.states.len()
 }

@@ -6,7 +6,8 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use crate::flight::{Finding, FindingCode, is_control};
+use crate::flight::convention::is_control;
+use crate::flight::{Finding, FindingCode};
 
 use super::record::Series;
 

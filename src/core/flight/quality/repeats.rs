@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use crate::flight::{Finding, FindingCode, Severity, is_control};
+use crate::flight::convention::is_control;
+use crate::flight::{Finding, FindingCode, Severity};
 
 use super::rows::RepeatedRows;
 use super::statistics::{percentile, sorted};

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::flight::{Fault, Finding, ManeuverError, FindingCode};
+use crate::flight::{Fault, Finding, FindingCode, ManeuverError};
 
 use super::super::{
     axis::code_of,

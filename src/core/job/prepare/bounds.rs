@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::stretch::Stretch;
-use crate::estimate::{Noise, NoiseStructure, Options, Unknowns};
+use crate::estimate::{Derivatives, Noise, NoiseStructure, Options, Unknowns};
 use crate::flight::Fault;
 use crate::model::Model;
 use crate::simulate::Segment;
@@ -128,6 +128,18 @@ pub(super) fn check_unknowns(
             if full { "pairs of outputs" } else { "outputs" }
         );
         return fault("/parameters", JOB_TOO_LARGE, message);
+    }
+    let perturbs = !matches!(
+        options.derivatives,
+        Derivatives::ForwardSensitivities {} | Derivatives::Adjoint { .. }
+    );
+    let longest = segments.iter().map(Segment::len).max().unwrap_or(0);
+    if perturbs && !model.paths.is_empty() && longest * outputs * count > MOST_ENTRIES {
+        let message = format!(
+            "{longest} samples of a segment, {outputs} outputs and {count} unknowns: where inputs or outputs have a play, rate limit, lag or delay, the technique \"{}\" keeps them all, at most {MOST_ENTRIES}; choose \"forward_sensitivities\"",
+            options.derivatives.name()
+        );
+        return fault("/options/derivatives", JOB_TOO_LARGE, message);
     }
     Ok(())
 }

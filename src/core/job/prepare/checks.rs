@@ -1,9 +1,7 @@
 //! What a spec's options and names must be, beyond their types.
 
 use super::unknown_name::unknown_name;
-use crate::estimate::{
-    Derivatives, Estimator, Noise, Options, Problem, Role, StartMethod, has_equation_error,
-};
+use crate::estimate::{Estimator, Noise, Options, Problem, Role, StartMethod, has_equation_error};
 use crate::flight::Fault;
 use crate::job::no_start::no_measured_state;
 use crate::job::spec::{JobKind, JobSpec, ManeuverUse, ModelSource};
@@ -87,10 +85,6 @@ pub(super) fn check_options(options: &Options, model: &Model, faults: &mut Vec<F
     if let Some(message) = options.derivatives.fault() {
         let pointer = "/options/derivatives/step";
         faults.push(Fault::new(pointer, "bad_option", message));
-    }
-    if !model.delays.is_empty() && options.derivatives != Derivatives::default() {
-        let message = "only the technique \"forward_sensitivities\" handles delays; choose it, or leave the delays out of the model";
-        faults.push(Fault::new("/options/derivatives", "bad_option", message));
     }
     if let Some((field, message)) = options.start.unfit() {
         faults.push(Fault::new(

@@ -1,7 +1,10 @@
 //! What a diagnosis asks for beyond an estimation, and what it is made from.
 
+use indexmap::IndexMap;
+
 use super::bounds::JOB_TOO_LARGE;
 use super::checks::{MOST_EDITS, too_many_edits};
+use super::knowledge;
 use super::stretch::Stretch;
 use crate::diagnose::{Case, Effect, Flight};
 use crate::estimate::{Derivatives, Estimator, Problem, Role};
@@ -14,9 +17,8 @@ use crate::simulate::Segment;
 const MOST_VALUES: usize = 500_000;
 const MOST_CANDIDATES: usize = 100;
 
-/// A stretch with everything that was recorded along it, but for what the job's formulas have used already.
+/// A stretch with everything that was recorded along it, and what the job's formulas made of it under the model's names.
 pub(super) fn flight(
-    spec: &JobSpec,
     model: &Model,
     segment: &Segment,
     stretch: &Stretch<'_>,
@@ -24,7 +26,7 @@ pub(super) fn flight(
 ) -> Flight {
     let inputs = model.inputs.iter().zip(&segment.inputs);
     let of_model = inputs.chain(model.outputs.iter().zip(&segment.measured));
-    let mut channels: indexmap::IndexMap<String, _> = of_model
+    let mut channels: IndexMap<String, _> = of_model
         .map(|(quantity, values)| {
             (
                 quantity.name.clone(),
@@ -32,22 +34,7 @@ pub(super) fn flight(
             )
         })
         .collect();
-    let own = &spec.maneuvers[stretch.index].channels;
-    let formulas = (spec.channels.values().chain(own.values()))
-        .filter_map(|text| expression::parse(text).ok());
-    let used: Vec<String> = formulas
-        .flat_map(|tree| {
-            tree.names()
-                .into_iter()
-                .map(|(name, _)| name.to_string())
-                .collect::<Vec<_>>()
-        })
-        .collect();
-    for name in stretch
-        .names()
-        .into_iter()
-        .filter(|name| !used.contains(name))
-    {
+    for name in stretch.names() {
         if let (false, Some((values, dimension))) =
             (channels.contains_key(&name), stretch.channel(&name))
         {
@@ -61,6 +48,17 @@ pub(super) fn flight(
         steps: segment.steps.clone(),
         channels,
     }
+}
+
+/// Recorded channels that the job's formulas use.
+fn consumed(spec: &JobSpec) -> Vec<String> {
+    let formulas = spec.channels.values();
+    let formulas = formulas.filter_map(|text| expression::parse(text).ok());
+    let names = formulas.flat_map(|tree| {
+        let names = tree.names().into_iter().map(|(name, _)| name.to_string());
+        names.collect::<Vec<_>>()
+    });
+    names.collect()
 }
 
 /// The case of a job, checked.
@@ -116,15 +114,19 @@ pub(super) fn case(
             faults.push(Fault::new(pointer, error.code(), error.to_string()));
         }
     }
-    if !faults.is_empty() {
-        return Err(faults);
-    }
-    Ok(Case {
+    let case = Case {
         document: document.clone(),
         flights,
         options: spec.options.clone(),
         candidates: (spec.candidates.iter())
             .map(|candidate| Effect::own(&candidate.name, candidate.edits.clone()))
             .collect(),
-    })
+        knowledge: spec.knowledge.clone(),
+        consumed: consumed(spec),
+    };
+    knowledge::check(&case, &problem.model, &mut faults);
+    match faults.is_empty() {
+        true => Ok(case),
+        false => Err(faults),
+    }
 }

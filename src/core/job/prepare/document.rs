@@ -71,6 +71,7 @@ fn of_each_maneuver(
             fixed: true,
             per: Per::Maneuver,
             prior: None,
+            quantity: constant.quantity,
             description: constant.description,
         };
         document.parameters.insert(name.to_string(), parameter);

@@ -25,8 +25,8 @@ pub(super) fn check_options(options: &Options, model: &Model, faults: &mut Vec<F
         }
         return;
     }
-    if !model.delays.is_empty() {
-        let message = "the filter-error estimator does not handle delays; fix each delay by leaving it out of the model, or use the estimator \"output_error\"";
+    if !model.paths.of_outputs().is_empty() {
+        let message = "the filter-error estimator does not handle a lag or delay of an output; leave them out of the model, or use the estimator \"output_error\"";
         faults.push(fault("/options/estimator", message.to_string()));
     }
     if model.states.is_empty() {

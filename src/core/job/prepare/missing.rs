@@ -105,13 +105,13 @@ pub(super) fn check_counts(
     model.outputs.iter().enumerate().filter_map(fault).collect()
 }
 
-/// Whether nothing but the equation or the delay of this output contains the parameter.
+/// Whether nothing but the equation or the path of this output contains the parameter.
 fn only_in(model: &Model, parameter: usize, output: usize) -> bool {
     let has = |jacobian: &Jacobian| jacobian.by_parameter.iter().any(|&(_, p)| p == parameter);
     let seen_by = |output: usize| {
         let entry = (output, parameter);
         model.observation_jacobian.by_parameter.contains(&entry)
-            || model.delays.output_depends_on(output, parameter)
+            || model.paths.output_depends_on(output, parameter)
     };
     !has(&model.dynamics_jacobian)
         && !has(&model.initial_jacobian)

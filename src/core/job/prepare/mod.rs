@@ -8,6 +8,7 @@ mod document;
 mod filter;
 mod gaps;
 mod initial;
+mod knowledge;
 mod missing;
 mod plausible;
 mod recorded;
@@ -179,7 +180,7 @@ impl<'s, 'm> Resolved<'s, 'm> {
             for stretch in stretches {
                 let segment = resolve::segment(spec, model, stretch, index, faults);
                 if spec.kind == JobKind::Diagnose {
-                    let flight = diagnosis::flight(spec, model, &segment, stretch, role);
+                    let flight = diagnosis::flight(model, &segment, stretch, role);
                     resolved.flights.push(flight);
                 }
                 match role {

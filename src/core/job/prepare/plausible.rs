@@ -3,8 +3,8 @@
 
 use std::f64::consts::TAU;
 
-use crate::flight::{Finding, FindingCode, is_control, is_flow_angle};
-use crate::model::{Model, Quantity};
+use crate::flight::{Finding, FindingCode, PhysicalQuantity};
+use crate::model::{Model, Quantities, Quantity};
 use crate::simulate::Segment;
 
 /// rad: 69 deg. Neither control surfaces nor vanes get there.
@@ -20,16 +20,23 @@ const MOST_RATE: f64 = 20.0;
 const REACHED: f64 = 0.98;
 
 pub(super) fn findings(model: &Model, segments: &[Segment]) -> Vec<Finding> {
-    let inputs = (model.inputs.iter().enumerate())
-        .map(|(i, input)| (input, range(segments.iter().map(|s| &s.inputs[i]))));
-    let outputs = (model.outputs.iter().enumerate())
-        .map(|(i, output)| (output, range(segments.iter().map(|s| &s.measured[i]))));
-    let inputs: Vec<(&Quantity, Range)> = inputs.collect();
+    let known = Quantities::of(&model.document);
+    let inputs = (model.inputs.iter().enumerate()).map(|(i, input)| Recorded {
+        quantity: input,
+        is: known.get(&input.name),
+        range: range(segments.iter().map(|s| &s.inputs[i])),
+    });
+    let outputs = (model.outputs.iter().enumerate()).map(|(i, output)| Recorded {
+        quantity: output,
+        is: known.output(&output.name),
+        range: range(segments.iter().map(|s| &s.measured[i])),
+    });
+    let inputs: Vec<Recorded> = inputs.collect();
     let idle = (inputs.iter())
-        .filter(|(input, _)| input.si == "rad" && is_control(&input.name))
-        .all(|(_, range)| range.moved < LEAST_DEFLECTION);
+        .filter(|input| input.quantity.si == "rad" && input.is_control())
+        .all(|input| input.range.moved < LEAST_DEFLECTION);
     (inputs.into_iter().chain(outputs))
-        .filter_map(|(quantity, range)| finding(quantity, range, idle))
+        .filter_map(|recorded| finding(&recorded, idle))
         .collect()
 }
 
@@ -40,6 +47,23 @@ struct Range {
     reach: f64,
     /// From the least to the most.
     moved: f64,
+}
+
+/// An input or output as it was recorded.
+struct Recorded<'m> {
+    quantity: &'m Quantity,
+    is: Option<PhysicalQuantity>,
+    range: Range,
+}
+
+impl Recorded<'_> {
+    fn is_control(&self) -> bool {
+        self.is.is_some_and(PhysicalQuantity::is_control)
+    }
+
+    fn deflects(&self) -> bool {
+        self.is_control() || self.is.is_some_and(PhysicalQuantity::is_flow_angle)
+    }
 }
 
 fn range<'s>(values: impl Iterator<Item = &'s Vec<f64>>) -> Range {
@@ -62,9 +86,9 @@ fn range<'s>(values: impl Iterator<Item = &'s Vec<f64>>) -> Range {
     }
 }
 
-fn finding(quantity: &Quantity, range: Range, idle: bool) -> Option<Finding> {
-    let (seen, slip) = odd(quantity, range, idle)?;
-    let name = &quantity.name;
+fn finding(recorded: &Recorded, idle: bool) -> Option<Finding> {
+    let (seen, slip) = odd(recorded, idle)?;
+    let name = &recorded.quantity.name;
     let (looks, formula) = match slip {
         Slip::DegreesAsRadians => ("degrees declared as radians", "pi/180"),
         Slip::RadiansAsDegrees => ("radians declared as degrees", "180/pi"),
@@ -82,20 +106,18 @@ enum Slip {
 }
 
 /// What is odd about the range of a quantity, and what it looks like; `idle`: no control of the model moves much.
-fn odd(quantity: &Quantity, range: Range, idle: bool) -> Option<(String, Slip)> {
-    let name = &quantity.name;
-    let Range { reach, moved } = range;
-    let deflects = is_control(name) || is_flow_angle(name);
+fn odd(recorded: &Recorded, idle: bool) -> Option<(String, Slip)> {
+    let Range { reach, moved } = recorded.range;
     let reaches = |unit: &str| format!("reaches {:.0} {unit}", reach.to_degrees());
-    match quantity.si.as_str() {
-        "rad" if deflects && reach > MOST_DEFLECTION => {
+    match recorded.quantity.si.as_str() {
+        "rad" if recorded.deflects() && reach > MOST_DEFLECTION => {
             let seen = format!(
                 "{}, further than control surfaces and vanes go",
                 reaches("deg")
             );
             Some((seen, Slip::DegreesAsRadians))
         }
-        "rad" if is_control(name) && idle && moved > 0.0 => {
+        "rad" if recorded.is_control() && idle && moved > 0.0 => {
             let seen = format!("moves by {:.4} deg in all", moved.to_degrees());
             Some((seen, Slip::RadiansAsDegrees))
         }

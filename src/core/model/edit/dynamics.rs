@@ -4,7 +4,7 @@ use super::edited::AddedRole;
 use super::error::EditError;
 use super::sheet::{Sheet, dimension, unknown};
 use super::text::{names, replace};
-use super::written::Edit;
+use super::written::{Edit, Reference};
 use crate::flight::{Dimension, Unit};
 use crate::model::dimensions::measure;
 use crate::model::document::{Parameter, Per};
@@ -20,34 +20,80 @@ pub(super) fn missing_term(sheet: &mut Sheet) -> Result<(), EditError> {
         term: term.clone(),
         source,
     })?;
-    let names = Names::collect(&sheet.document, &mut Vec::new());
-    let measured = measure(&parsed, &|name| names.dimension(name));
+    for name in names(&term) {
+        if let Some(told) = sheet.edit.channels.get(&name) {
+            add_channel(sheet, &name, &told.unit)?;
+        }
+    }
+    let measured = {
+        let names = Names::collect(&sheet.document, &mut Vec::new());
+        measure(&parsed, &|name| names.dimension(name))
+    };
     let measured = measured.map_err(|mismatch| EditError::Units {
         term: term.clone(),
         message: mismatch.message,
     })?;
     let name = sheet.name(&format!("{target}_term"))?;
-    let target_dimension = if let Ok((equation, dimension)) = sheet.law(target) {
-        *equation = format!("{equation} + {name}*({parsed})");
-        dimension
-    } else if let Some(output) = sheet.document.outputs.get_mut(target) {
-        output.equation = format!("{} + {name}*({parsed})", output.equation);
-        dimension(&output.unit)
-    } else {
-        let document = &sheet.document;
-        let known = (document.states.keys())
-            .chain(document.definitions.keys())
-            .chain(document.outputs.keys());
-        return Err(sheet.no_target("state, definition or output", target, known));
-    };
-    let unit = target_dimension.over(measured.unwrap_or(Dimension::NONE));
+    let (_, measures) = sheet.equation(target)?;
+    let unit = measures.over(measured.unwrap_or(Dimension::NONE));
     let words = format!("missing term of {target}");
     sheet.add(
         &name,
         AddedRole::Size,
         unknown(unit.to_string(), 0.0, None, words),
     );
+    let term = about(sheet, &parsed.to_string())?;
+    let (equation, _) = sheet.equation(target)?;
+    *equation = format!("{equation} + {name}*({term})");
     Ok(())
+}
+
+fn add_channel(sheet: &mut Sheet, name: &str, unit: &str) -> Result<String, EditError> {
+    if let Err(error) = Unit::parse(unit) {
+        return Err(sheet.edit.bad_term(error.to_string()));
+    }
+    if !expression::is_name(name) {
+        return Err(sheet.edit.bad_term("it is not the name of a channel"));
+    }
+    sheet.channel(name, unit, "recorded")
+}
+
+/// A term with differences in the place of the names that the edit takes so.
+fn about(sheet: &mut Sheet, term: &str) -> Result<String, EditError> {
+    let mut differences = Vec::new();
+    for (name, reference) in &sheet.edit.about {
+        if !names(term).contains(name) {
+            let message = format!("\"about\" has '{name}', which does not stand in it");
+            return Err(sheet.edit.bad_term(message));
+        }
+        let from = match reference {
+            Reference::Expression(text) => match expression::parse(text) {
+                Ok(parsed) if expression::is_name(text) => parsed.to_string(),
+                Ok(parsed) => format!("({parsed})"),
+                Err(source) => {
+                    let term = text.clone();
+                    return Err(EditError::Syntax { term, source });
+                }
+            },
+            Reference::Value(value) => {
+                let unit = sheet.unit_of(name).unwrap_or_default();
+                let held = sheet.free(&format!("{name}_about"));
+                let words = format!("{name} from which differences are taken");
+                let fixed = Parameter {
+                    fixed: true,
+                    ..unknown(unit, *value, None, words)
+                };
+                sheet.add(&held, AddedRole::Reference, fixed);
+                held
+            }
+        };
+        differences.push((name, format!("({name} - {from})")));
+    }
+    let difference = |name: &str| {
+        let found = differences.iter().find(|(of, _)| *of == name);
+        found.map(|(_, text)| text.clone())
+    };
+    Ok(replace(term, difference))
 }
 
 /// A term with the derivatives of states written out.
@@ -90,27 +136,22 @@ pub(super) fn reads(sheet: &Sheet, text: &str, name: &str) -> bool {
 pub(super) fn unrecorded_input(sheet: &mut Sheet) -> Result<(), EditError> {
     let target = sheet.target();
     let (channel, unit) = channel_of(sheet.edit)?;
-    sheet.law(target)?;
+    sheet.equation(target)?;
     let known = sheet.document.inputs.get(channel);
-    let unit = match (known, unit) {
-        (Some(input), _) => input.unit.clone(),
-        (None, Some(unit)) => unit.to_string(),
-        (None, None) => {
+    let told = sheet.edit.channels.get(channel).map(|told| &told.unit);
+    let unit = match (known, unit, told) {
+        (Some(input), ..) => input.unit.clone(),
+        (None, Some(unit), _) => unit.to_string(),
+        (None, None, Some(unit)) => unit.clone(),
+        (None, None, None) => {
             let message =
                 "say in which unit the model is to have it: \"dt[rad]\", or \"unit\": \"rad\"";
             return Err(sheet.edit.bad_term(message));
         }
     };
-    if let Err(error) = Unit::parse(&unit) {
-        return Err(sheet.edit.bad_term(error.to_string()));
-    }
-    if !expression::is_name(channel) {
-        return Err(sheet.edit.bad_term("it is not the name of a channel"));
-    }
-    let channel = sheet.channel(channel, &unit, "recorded")?;
+    let channel = add_channel(sheet, channel, &unit)?;
     let name = sheet.name(&format!("{target}_{channel}"))?;
-    let (equation, measures) = sheet.law(target)?;
-    *equation = format!("{equation} + {name}*{channel}");
+    let (_, measures) = sheet.equation(target)?;
     let unit = measures.over(dimension(&unit));
     let words = format!("{channel} in the equation of {target}");
     sheet.add(
@@ -118,6 +159,9 @@ pub(super) fn unrecorded_input(sheet: &mut Sheet) -> Result<(), EditError> {
         AddedRole::Size,
         unknown(unit.to_string(), 0.0, None, words),
     );
+    let term = about(sheet, &channel)?;
+    let (equation, _) = sheet.equation(target)?;
+    *equation = format!("{equation} + {name}*{term}");
     Ok(())
 }
 
@@ -196,4 +240,20 @@ pub(super) fn initial_state(sheet: &mut Sheet) -> Result<(), EditError> {
     };
     sheet.add(&name, AddedRole::Size, parameter);
     Ok(())
+}
+
+/// A parameter that was fixed, at what would be no effect, is to be estimated.
+pub(super) fn freed(sheet: &mut Sheet) -> Result<(), EditError> {
+    let target = sheet.target();
+    let is_fixed = |(_, parameter): &(&String, &Parameter)| parameter.fixed;
+    let known = sheet.document.parameters.iter().filter(is_fixed);
+    let missing = sheet.no_target("fixed parameter", target, known.map(|(name, _)| name));
+    match sheet.document.parameters.get_mut(target) {
+        Some(parameter) if parameter.fixed => {
+            parameter.fixed = false;
+            sheet.note(target, AddedRole::Size);
+            Ok(())
+        }
+        _ => Err(missing),
+    }
 }

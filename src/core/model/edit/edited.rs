@@ -1,6 +1,8 @@
 //! A document that was edited, and the role of each parameter that was added.
 
-use crate::model::document::ModelDocument;
+use indexmap::IndexMap;
+
+use crate::model::document::{ModelDocument, Start};
 
 /// A document with an effect in it.
 #[derive(Clone, PartialEq, Debug)]
@@ -11,6 +13,23 @@ pub struct Edited {
     pub added: Vec<Added>,
     /// Channels that a recording must have besides.
     pub inputs: Vec<String>,
+}
+
+impl Edited {
+    /// Values of what was added, in the parameters' units, at which the document is the model before: limits are then
+    /// beyond reach, at their upper bounds, all else is at its start. Of what is read off the data any value will do.
+    pub fn absence(&self) -> IndexMap<String, f64> {
+        let of = |added: &Added| {
+            let parameter = self.document.parameters.get(&added.name)?;
+            let value = match (added.role, &parameter.start) {
+                (AddedRole::Limit, _) => parameter.upper?,
+                (_, Start::Value(value)) => *value,
+                (_, Start::FromData(_)) => return None,
+            };
+            Some((added.name.clone(), value))
+        };
+        self.added.iter().filter_map(of).collect()
+    }
 }
 
 /// A parameter that an edit added.

@@ -2,9 +2,12 @@
 
 use super::edited::AddedRole;
 use super::error::EditError;
-use super::sensors::{DELAY, LAG, LAGS, SCALE, later};
-use super::sheet::{Sheet, dimension, of_a_difference, per_second, unknown};
-use crate::model::document::Parameter;
+use super::sensors::{DELAY, LAG, SCALE, add_to};
+use super::sheet::{Sheet, of_a_difference, per_second, unknown};
+use crate::model::document::{Parameter, Start};
+
+/// Bounds of a rate limit, SI: above what any recorder shows from one sample to the next, of forces too.
+const RATE_LIMIT: (f64, f64) = (1e-3, 1e9);
 
 pub(super) fn bias(sheet: &mut Sheet) -> Result<(), EditError> {
     let target = sheet.target();
@@ -33,14 +36,16 @@ pub(super) fn scale(sheet: &mut Sheet) -> Result<(), EditError> {
     Ok(())
 }
 
+/// One delay for all targets, which share a clock.
 pub(super) fn delay(sheet: &mut Sheet) -> Result<(), EditError> {
-    let target = sheet.target();
-    sheet.input(target)?;
-    let name = sheet.name(&format!("{target}_delay"))?;
-    if let Some(input) = sheet.document.inputs.get_mut(target) {
-        later(&mut input.delay, &name);
+    let name = sheet.name(&format!("{}_delay", sheet.stem()))?;
+    for target in sheet.edit.target.split('+').map(str::trim) {
+        sheet.input(target)?;
+        if let Some(input) = sheet.document.inputs.get_mut(target) {
+            add_to(&mut input.delay, &name);
+        }
     }
-    let words = format!("time delay of {target}");
+    let words = format!("time delay of {}", sheet.edit.target);
     sheet.add(
         &name,
         AddedRole::Delay,
@@ -49,80 +54,57 @@ pub(super) fn delay(sheet: &mut Sheet) -> Result<(), EditError> {
     Ok(())
 }
 
-/// Puts a state in the place of an input in all equations; it starts at the input's first sample.
-fn actuator(sheet: &mut Sheet, derivative: impl Fn(&str) -> String) -> Result<(), EditError> {
-    let target = sheet.target();
-    let unit = sheet.input(target)?;
-    let state = sheet.free(&format!("{target}_actual"));
-    sheet.document.substitute(target, &state);
-    let initial = sheet.first_of(target);
-    let words = format!("{target} behind its actuator");
-    sheet.add_state(&state, &unit, initial, derivative(&state), words);
-    Ok(())
-}
-
+/// Joins a lag that is there already: two in a row are, but for their second order, one of the sum of both times.
 pub(super) fn lag(sheet: &mut Sheet) -> Result<(), EditError> {
     let target = sheet.target();
     sheet.input(target)?;
     let name = sheet.name(&format!("{target}_lag"))?;
+    if let Some(input) = sheet.document.inputs.get_mut(target) {
+        add_to(&mut input.lag, &name);
+    }
     let words = format!("time constant of the actuator of {target}");
     sheet.add(
         &name,
         AddedRole::TimeConstant,
-        unknown("s", LAG, Some(LAGS), words),
+        unknown("s", 0.0, Some(LAG), words),
     );
-    actuator(sheet, |state| format!("({target} - {state})/{name}"))
+    Ok(())
 }
 
-/// A short fixed time constant: how fast a surface follows where nothing holds it back.
-fn following(sheet: &mut Sheet) -> String {
-    let name = sheet.free(&format!("{}_following", sheet.target()));
-    let words = "time constant with which the surface follows where it is free".to_string();
-    let fixed = Parameter {
-        fixed: true,
-        ..unknown("s", LAG, Some(LAGS), words)
-    };
-    sheet.add(&name, AddedRole::TimeConstant, fixed);
-    name
-}
-
-/// The limit starts at half a unit per second (29 deg/s of an angle), within 0.001 to 20.
+/// Without effect at its upper bound, which is beyond what can be recorded; it starts below the largest rate that is:
+/// above it nothing would tell which way to go. Of two limits in a row the lower one counts.
 pub(super) fn rate_limit(sheet: &mut Sheet) -> Result<(), EditError> {
     let target = sheet.target();
-    let unit = sheet.input(target)?;
+    let unit = per_second(&sheet.input(target)?);
     let name = sheet.name(&format!("{target}_rate_limit"))?;
+    if let Some(input) = sheet.document.inputs.get_mut(target) {
+        input.rate_limit = Some(match &input.rate_limit {
+            Some(before) => format!("min({before}, {name})"),
+            None => name.clone(),
+        });
+    }
     let words = format!("largest rate of {target}");
-    let bounds = if dimension(&unit).is_none() {
-        (0.5, Some((1e-3, 20.0)))
-    } else {
-        (0.5, Some((1e-3, 1e6)))
+    let parameter = Parameter {
+        start: Start::FromData(format!("0.6*largest_rate({target})")),
+        ..unknown(unit, 0.0, Some(RATE_LIMIT), words)
     };
-    sheet.add(
-        &name,
-        AddedRole::Limit,
-        unknown(per_second(&unit), bounds.0, bounds.1, words),
-    );
-    let time = following(sheet);
-    actuator(sheet, |state| {
-        format!("{name}*tanh(({target} - {state})/({name}*{time}))")
-    })
+    sheet.add(&name, AddedRole::Limit, parameter);
+    Ok(())
 }
 
-/// Half the width of the dead band starts at 0.
+/// Half the width of the dead band. Two in a row are one of the sum of both.
 pub(super) fn backlash(sheet: &mut Sheet) -> Result<(), EditError> {
     let target = sheet.target();
     let unit = of_a_difference(&sheet.input(target)?);
     let name = sheet.name(&format!("{target}_backlash"))?;
+    if let Some(input) = sheet.document.inputs.get_mut(target) {
+        add_to(&mut input.play, &name);
+    }
     let words = format!("half the width of the dead band of {target}");
     let parameter = Parameter {
         lower: Some(0.0),
         ..unknown(unit, 0.0, None, words)
     };
     sheet.add(&name, AddedRole::Size, parameter);
-    let time = following(sheet);
-    actuator(sheet, |state| {
-        format!(
-            "(max(0, {target} - {name} - {state}) + min(0, {target} + {name} - {state}))/{time}"
-        )
-    })
+    Ok(())
 }

@@ -1,16 +1,16 @@
 //! Edits: an effect is a function from a model document to a model document with a few parameters more,
 //! which at their values of no effect is the model before.
 //!
-//! The added parameters carry units, start values and their physical range. At its start a bias, scale, drift, delay,
-//! missing term, gust, wind, initial state or structural mode is without effect; a lag, a rate limit, a backlash
-//! or a stall starts at a usual value and tends to the model before with its time to 0, its limit or its angle to
-//! the largest. A time constant must stay above about 0.4 of the time between samples: what is faster than that
-//! an explicit integrator cannot follow.
+//! The added parameters carry units, start values and their physical range. Every effect contains its own absence:
+//! [`Edited::absence`] says at which values the edited model is the model before. Lags, rate limits, play and delays are
+//! elements in the path of a signal (see [`super::Element`]). The time constants of the effects that are states must
+//! stay above about 0.4 of the time between samples: what is faster than that an explicit integrator cannot follow.
 
 mod dynamics;
 mod edited;
 mod error;
 mod inputs;
+mod lookup;
 mod position;
 mod pressure;
 mod sensors;
@@ -22,7 +22,7 @@ mod written;
 
 pub use edited::{Added, AddedRole, Edited};
 pub use error::EditError;
-pub use written::{Edit, EditKind};
+pub use written::{Edit, EditKind, Reference};
 
 use super::document::ModelDocument;
 use sheet::Sheet;
@@ -37,6 +37,7 @@ impl Edit {
         self.check_lengths()?;
         let mut sheet = Sheet::new(self, document);
         match self.kind {
+            EditKind::FixedParameter => dynamics::freed(&mut sheet),
             EditKind::SensorBias => sensors::bias(&mut sheet),
             EditKind::SensorScale => sensors::scale(&mut sheet),
             EditKind::SensorDrift => sensors::drift(&mut sheet),

@@ -2,9 +2,10 @@
 
 use super::edited::AddedRole;
 use super::error::EditError;
+use super::lookup::Speed;
 use super::sensors::{Sensor, arm};
-use super::sheet::{Sheet, Speed, dimension};
-use crate::flight::Dimension;
+use super::sheet::{Sheet, dimension};
+use crate::flight::{Dimension, PhysicalQuantity};
 
 /// Which quantity a sensor measures.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -17,24 +18,20 @@ enum Quantity {
 }
 
 impl Quantity {
-    /// By the name, up to a suffix (`alpha_vane`, `az_cg`), and by the dimension.
-    fn of(name: &str, unit: &str) -> Option<Self> {
-        let name = name.to_lowercase();
-        let word = name.split('_').next().unwrap_or_default();
-        let word = word.trim_end_matches(|c: char| c.is_ascii_digit());
+    fn of(quantity: Option<PhysicalQuantity>, unit: &str) -> Option<Self> {
         let acceleration = Dimension::METRE.over(Dimension::SECOND.times(Dimension::SECOND));
-        let (found, measures) = match word {
-            "alpha" | "aoa" | "alfa" | "alpham" | "alphav" => (Self::Alpha, Dimension::NONE),
-            "beta" | "aos" | "sideslip" | "betam" | "betav" => (Self::Beta, Dimension::NONE),
-            "ax" | "axm" | "axcg" => (Self::Ax, acceleration),
-            "ay" | "aym" | "aycg" => (Self::Ay, acceleration),
-            "az" | "azm" | "azcg" => (Self::Az, acceleration),
+        let (found, measures) = match quantity? {
+            PhysicalQuantity::AngleOfAttack => (Self::Alpha, Dimension::NONE),
+            PhysicalQuantity::AngleOfSideslip => (Self::Beta, Dimension::NONE),
+            PhysicalQuantity::AccelerationX => (Self::Ax, acceleration),
+            PhysicalQuantity::AccelerationY => (Self::Ay, acceleration),
+            PhysicalQuantity::AccelerationZ => (Self::Az, acceleration),
             _ => return None,
         };
         (dimension(unit) == measures).then_some(found)
     }
 
-    /// The contribution of one metre of the arm, as terms: a sign and the rates that are multiplied. `V` divides all.
+    /// What one metre of the arm adds, as terms: a sign and the rates that are multiplied. `V` divides all.
     fn terms(self, axis: Axis) -> &'static [(&'static str, &'static [&'static str])] {
         match (self, axis) {
             (Self::Alpha, Axis::X) => &[("-", &["q"])],
@@ -73,10 +70,11 @@ pub(super) fn lever_arm(sheet: &mut Sheet) -> Result<(), EditError> {
         Some("z") => (Axis::Z, "z"),
         Some(_) => return Err(sheet.edit.bad_term("an arm is \"x\", \"y\" or \"z\"")),
     };
-    let Some(quantity) = Quantity::of(target, sensor.unit()) else {
+    let measured = sensor.quantity(sheet, target);
+    let Some(quantity) = Quantity::of(measured, sensor.unit()) else {
         let message = format!(
             "only a flow angle (alpha, beta) or a specific force (ax, ay, az, in m/s^2) depends on a position by these \
-             equations, and '{target}' in '{}' is none by its name and unit",
+             equations, and '{target}' in '{}' is none as far as its name, unit and equation tell; say its \"quantity\"",
             sensor.unit()
         );
         return Err(sheet.unfit(message));
@@ -126,23 +124,30 @@ pub(super) fn lever_arm(sheet: &mut Sheet) -> Result<(), EditError> {
 
 /// A rate or a rotational acceleration for an equation. Where a rate is recorded only, so is its derivative.
 fn rate_in(sheet: &mut Sheet, name: &str) -> Result<Option<String>, EditError> {
-    let per_second = Dimension::NONE.over(Dimension::SECOND);
-    let Some(rate) = name.strip_suffix("dot") else {
-        let candidates = [format!("{name}_true"), name.to_string()];
-        let candidates: Vec<&str> = candidates.iter().map(String::as_str).collect();
-        return Ok(sheet.quantity(&candidates, per_second));
+    use PhysicalQuantity::{
+        PitchAcceleration, PitchRate, RollAcceleration, RollRate, YawAcceleration, YawRate,
     };
-    let acceleration = per_second.over(Dimension::SECOND);
-    if let Some(found) = sheet.quantity(&[name], acceleration) {
+    let (rate, acceleration) = match name.chars().next() {
+        Some('p') => (RollRate, RollAcceleration),
+        Some('q') => (PitchRate, PitchAcceleration),
+        _ => (YawRate, YawAcceleration),
+    };
+    if !name.ends_with("dot") {
+        return Ok(sheet.quantity(rate));
+    }
+    if let Some(found) = sheet.quantity(acceleration) {
         return Ok(Some(found));
     }
-    if let Some(state) = sheet.document.states.get(rate) {
+    let quantities = sheet.quantities();
+    let mut rates = quantities.all_of(rate);
+    let document = &sheet.document;
+    if let Some(state) = rates.find_map(|rate| document.states.get(rate)) {
         return Ok(Some(format!("({})", state.derivative)));
     }
-    if sheet.document.inputs.contains_key(rate) {
-        return sheet
-            .channel(name, "rad/s^2", &format!("derivative of {rate}"))
-            .map(Some);
-    }
-    Ok(None)
+    let mut rates = quantities.all_of(rate);
+    let Some(rate) = rates.find(|rate| document.inputs.contains_key(*rate)) else {
+        return Ok(None);
+    };
+    let (usual, words) = (format!("{rate}dot"), format!("derivative of {rate}"));
+    (sheet.recorded(acceleration, &usual, "rad/s^2", &words)).map(Some)
 }

@@ -1,18 +1,24 @@
 //! Derivatives that scale with dynamic pressure, in a model of constant speed.
+//!
+//! A derivative is made of the density, a power of the speed, and lengths and masses: no time but that of the speed. The
+//! exponent of the second in its unit is therefore that power: Mα (1/s²) grows with V², the damping Mq (1/s) with V.
+
+use std::collections::BTreeMap;
 
 use super::edited::AddedRole;
 use super::error::EditError;
-use super::sheet::{Sheet, Speed, unknown};
+use super::lookup::Speed;
+use super::sheet::{Sheet, unknown};
 use super::text::laws;
-use crate::flight::{Dimension, Unit};
+use crate::flight::{PhysicalQuantity, Unit};
 use crate::model::document::{Definition, ModelDocument, Parameter, Per, Start};
 use crate::model::expression::{self, BinaryOperator, Expression, Kind, Span};
 
-/// Every aerodynamic derivative p becomes p (1 + k ((V/V_ref)² - 1)).
+/// Every aerodynamic derivative p becomes p (1 + k ((V/V_ref)ⁿ - 1)), n by its unit.
 ///
 /// A derivative is a free parameter of the whole job that multiplies something in the equation of a state or definition
-/// and has a dimension: one without (`1 + Zq/V`, a coefficient's derivative) is kinematic, or multiplied by the dynamic
-/// pressure already. Where it multiplies something in an output, it is scaled there too.
+/// and whose unit holds the second: one without (`1 + Zq/V`, a coefficient's derivative) is kinematic, or multiplied by the
+/// dynamic pressure already. Where it multiplies something in an output, it is scaled there too.
 pub(super) fn scaled(sheet: &mut Sheet) -> Result<(), EditError> {
     let term = (sheet.edit).needed_term("\"qbar\" is the one that the target \"all\" knows")?;
     if term != "qbar" {
@@ -21,7 +27,7 @@ pub(super) fn scaled(sheet: &mut Sheet) -> Result<(), EditError> {
     }
     let derivatives = derivatives(&mut sheet.document);
     if derivatives.is_empty() {
-        let message = "no free parameter with a dimension multiplies anything in the equations of this model's states";
+        let message = "no free parameter that grows with the speed multiplies anything in the equations of this model's states";
         return Err(sheet.unfit(message));
     }
     let reference = sheet.steady_speed();
@@ -35,7 +41,7 @@ pub(super) fn scaled(sheet: &mut Sheet) -> Result<(), EditError> {
     );
     let reference = reference.unwrap_or_else(|| {
         let name = sheet.free("V_ref");
-        let start = Start::FromData(format!("mean({}, 5)", speed_channel(&speed)));
+        let start = Start::FromData(format!("mean({}, 5)", speed_channel(sheet, &speed)));
         let parameter = Parameter {
             start,
             fixed: true,
@@ -45,19 +51,39 @@ pub(super) fn scaled(sheet: &mut Sheet) -> Result<(), EditError> {
         sheet.add(&name, AddedRole::Reference, parameter);
         name
     });
-    let ratio = sheet.free("qbar_ratio");
+    let mut ratios: BTreeMap<i32, String> = BTreeMap::new();
+    for power in derivatives.values() {
+        if !ratios.contains_key(power) {
+            let base = if *power == 2 {
+                "qbar_ratio".to_string()
+            } else {
+                format!("speed_ratio_{power}")
+            };
+            let ratio = sheet.free(&base);
+            let definition = Definition {
+                unit: "-".to_string(),
+                equation: format!("1 + {name}*(({speed}/{reference})^{power} - 1)"),
+                quantity: Some(PhysicalQuantity::Other),
+                description: format!(
+                    "what derivatives that grow with the speed to the power {power} are multiplied by"
+                ),
+            };
+            sheet.document.definitions.insert(ratio.clone(), definition);
+            ratios.insert(*power, ratio);
+        }
+    }
     let scale = |text: &mut String| {
         let Ok(parsed) = expression::parse(text) else {
             return;
         };
         let mut places = Vec::new();
         factors(&parsed, &mut |name, span| {
-            if derivatives.iter().any(|derivative| derivative == name) {
-                places.push(span);
+            if let Some(power) = derivatives.get(name) {
+                places.push((span, &ratios[power]));
             }
         });
-        places.sort_by_key(|span| std::cmp::Reverse(span.start));
-        for span in places {
+        places.sort_by_key(|(span, _)| std::cmp::Reverse(span.start));
+        for (span, ratio) in places {
             text.insert_str(span.end, &format!("*{ratio})"));
             text.insert(span.start, '(');
         }
@@ -65,41 +91,32 @@ pub(super) fn scaled(sheet: &mut Sheet) -> Result<(), EditError> {
     laws(&mut sheet.document).for_each(scale);
     let outputs = sheet.document.outputs.values_mut();
     outputs.for_each(|output| scale(&mut output.equation));
-    let definition = Definition {
-        unit: "-".to_string(),
-        equation: format!("1 + {name}*(({speed}/{reference})^2 - 1)"),
-        description: "what the derivatives are multiplied by".to_string(),
-    };
-    sheet.document.definitions.insert(ratio, definition);
     Ok(())
 }
 
-/// A speed that is written out is recorded under its usual name.
-fn speed_channel(speed: &str) -> &str {
-    if expression::is_name(speed) {
-        speed
-    } else {
-        "V"
-    }
+/// The channel that a speed is recorded in.
+fn speed_channel(sheet: &Sheet, speed: &str) -> String {
+    let quantities = sheet.quantities();
+    let output = quantities.outputs_of(PhysicalQuantity::Airspeed).next();
+    output.unwrap_or(speed).to_string()
 }
 
-fn derivatives(document: &mut ModelDocument) -> Vec<String> {
-    let mut found = Vec::new();
+/// Derivatives by name, with the power of the speed that they grow with.
+fn derivatives(document: &mut ModelDocument) -> BTreeMap<String, i32> {
+    let mut names = Vec::new();
     for text in laws(document) {
         if let Ok(parsed) = expression::parse(text) {
-            factors(&parsed, &mut |name, _| found.push(name.to_string()));
+            factors(&parsed, &mut |name, _| names.push(name.to_string()));
         }
     }
-    found.retain(|name| {
-        (document.parameters.get(name)).is_some_and(|parameter| {
-            !parameter.fixed
-                && parameter.per == Per::Job
-                && Unit::parse(&parameter.unit).is_ok_and(|unit| unit.dimension != Dimension::NONE)
-        })
-    });
-    found.sort();
-    found.dedup();
-    found
+    let power = |name: String| {
+        let parameter = document.parameters.get(&name)?;
+        let unit = Unit::parse(&parameter.unit).ok()?;
+        let power = -unit.dimension.seconds()?;
+        let grows = !parameter.fixed && parameter.per == Per::Job && power > 0;
+        grows.then_some((name, power))
+    };
+    names.into_iter().filter_map(power).collect()
 }
 
 /// Calls back for each name that is a factor of a product, and for its place.

@@ -5,15 +5,13 @@
 use super::edited::AddedRole;
 use super::error::EditError;
 use super::sheet::{Sheet, dimension, of_a_difference, per_second, unknown};
-use crate::flight::Dimension;
+use crate::flight::{Dimension, PhysicalQuantity};
 use crate::model::document::Parameter;
 
-/// Usual bounds of a scale factor, less one, and of a delay, s.
+/// Usual bounds of a scale factor, less one, of a delay and of the time constant of a lag, s.
 pub(super) const SCALE: (f64, f64) = (-0.9, 2.0);
 pub(super) const DELAY: (f64, f64) = (-0.2, 0.5);
-/// Start and bounds of a first-order lag, s.
-pub(super) const LAG: f64 = 0.05;
-pub(super) const LAGS: (f64, f64) = (0.005, 2.0);
+pub(super) const LAG: (f64, f64) = (0.0, 2.0);
 
 /// A sensor: how a document has it.
 pub(super) enum Sensor {
@@ -39,6 +37,14 @@ impl Sensor {
     pub(super) fn unit(&self) -> &str {
         match self {
             Self::Output { unit } | Self::Input { unit } => unit,
+        }
+    }
+
+    pub(super) fn quantity(&self, sheet: &Sheet, target: &str) -> Option<PhysicalQuantity> {
+        let quantities = sheet.quantities();
+        match self {
+            Self::Output { .. } => quantities.output(target),
+            Self::Input { .. } => quantities.get(target),
         }
     }
 
@@ -113,13 +119,13 @@ pub(super) fn delay(sheet: &mut Sheet) -> Result<(), EditError> {
         match Sensor::find(sheet, target)? {
             Sensor::Output { .. } => {
                 if let Some(output) = sheet.document.outputs.get_mut(target) {
-                    later(&mut output.delay, &name);
+                    add_to(&mut output.delay, &name);
                 }
             }
             // the value that was recorded late is the one to be used earlier
             Sensor::Input { .. } => {
                 if let Some(input) = sheet.document.inputs.get_mut(target) {
-                    later(&mut input.delay, &format!("-{name}"));
+                    add_to(&mut input.delay, &format!("-{name}"));
                 }
             }
         }
@@ -133,33 +139,31 @@ pub(super) fn delay(sheet: &mut Sheet) -> Result<(), EditError> {
     Ok(())
 }
 
-/// Adds a term to a delay.
-pub(super) fn later(delay: &mut Option<String>, term: &str) {
-    *delay = Some(match delay {
+/// Adds a term to the size of an element of a path.
+pub(super) fn add_to(size: &mut Option<String>, term: &str) {
+    *size = Some(match size {
         Some(before) => format!("{before} + ({term})"),
         None => term.to_string(),
     });
 }
 
+/// Joins a lag that is there already, as that of an actuator does. Of a measured input it would have to be undone, which
+/// the noise of the recording does not allow: only outputs have one.
 pub(super) fn lag(sheet: &mut Sheet) -> Result<(), EditError> {
     let target = sheet.target();
-    let Some(output) = sheet.document.outputs.get(target) else {
+    if !sheet.document.outputs.contains_key(target) {
         return Err(sheet.no_target("output", target, sheet.document.outputs.keys()));
-    };
-    let (equation, unit) = (output.equation.clone(), output.unit.clone());
+    }
     let name = sheet.name(&format!("{target}_lag"))?;
+    if let Some(output) = sheet.document.outputs.get_mut(target) {
+        add_to(&mut output.lag, &name);
+    }
     let words = format!("time constant of the sensor of {target}");
     sheet.add(
         &name,
         AddedRole::TimeConstant,
-        unknown("s", LAG, Some(LAGS), words),
+        unknown("s", 0.0, Some(LAG), words),
     );
-    let state = sheet.free(&format!("{target}_lagged"));
-    let initial = sheet.at_start(&equation, &unit, target);
-    let derivative = format!("({equation} - {state})/{name}");
-    let words = format!("{target} behind its sensor's lag");
-    sheet.add_state(&state, &unit, initial, derivative, words);
-    observe(sheet, target, |_| state.clone());
     Ok(())
 }
 

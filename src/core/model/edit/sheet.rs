@@ -4,8 +4,8 @@ use super::edited::{Added, AddedRole};
 use super::error::EditError;
 use super::text::{names, replace};
 use super::written::Edit;
-use crate::flight::{Dimension, Unit};
-use crate::model::document::{Input, ModelDocument, Parameter, Per, Start, State};
+use crate::flight::{Dimension, PhysicalQuantity, Unit};
+use crate::model::document::{ModelDocument, Parameter, Per, Start, State};
 use crate::model::expression::{self, Function};
 use crate::model::names::Names;
 
@@ -15,22 +15,6 @@ pub(super) struct Sheet<'a> {
     /// Parameters and inputs that the document did not have.
     pub added: Vec<Added>,
     pub inputs: Vec<String>,
-}
-
-/// Names of a speed that varies, and of one that is held.
-const SPEEDS: [&str; 9] = [
-    "V", "V_true", "Vt", "V_t", "TAS", "V_TAS", "tas", "airspeed", "Va",
-];
-const STEADY_SPEEDS: [&str; 10] = [
-    "V_e", "V_ref", "Vbar", "V_bar", "V_0", "V0", "V_trim", "Ve", "U_0", "U0",
-];
-
-/// The quantities that a speed may be read from.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Speed {
-    /// A quantity that varies, or the steady flight's.
-    Any,
-    Varying,
 }
 
 impl<'a> Sheet<'a> {
@@ -84,6 +68,11 @@ impl<'a> Sheet<'a> {
 
     pub(super) fn add(&mut self, name: &str, role: AddedRole, parameter: Parameter) {
         self.document.parameters.insert(name.to_string(), parameter);
+        self.note(name, role);
+    }
+
+    /// A parameter that is free now and was not.
+    pub(super) fn note(&mut self, name: &str, role: AddedRole) {
         self.added.push(Added {
             name: name.to_string(),
             role,
@@ -102,6 +91,7 @@ impl<'a> Sheet<'a> {
             unit: unit.to_string(),
             initial,
             derivative,
+            quantity: Some(PhysicalQuantity::Other),
             description,
         };
         self.document.states.insert(name.to_string(), state);
@@ -143,6 +133,31 @@ impl<'a> Sheet<'a> {
         }
     }
 
+    /// As [`Self::law`], or the equation of an output.
+    pub(super) fn equation(&mut self, target: &str) -> Result<(&mut String, Dimension), EditError> {
+        let document = &self.document;
+        let is_law =
+            document.states.contains_key(target) || document.definitions.contains_key(target);
+        if is_law || !document.outputs.contains_key(target) {
+            let known = (document.states.keys())
+                .chain(document.definitions.keys())
+                .chain(document.outputs.keys());
+            let missing = self.no_target("state, definition or output", target, known);
+            return self.law(target).map_err(|_| missing);
+        }
+        let output = &mut self.document.outputs[target];
+        Ok((&mut output.equation, dimension(&output.unit)))
+    }
+
+    /// The unit of an input, state or definition.
+    pub(super) fn unit_of(&self, name: &str) -> Option<String> {
+        let document = &self.document;
+        let unit = (document.inputs.get(name).map(|input| &input.unit))
+            .or_else(|| document.states.get(name).map(|state| &state.unit))
+            .or_else(|| document.definitions.get(name).map(|x| &x.unit));
+        unit.cloned()
+    }
+
     /// The unit of an input.
     pub(super) fn input(&self, target: &str) -> Result<String, EditError> {
         match self.document.inputs.get(target) {
@@ -154,80 +169,6 @@ impl<'a> Sheet<'a> {
     /// The dimension of a name that an equation may use.
     pub(super) fn measures(&self, name: &str) -> Option<Dimension> {
         Names::collect(&self.document, &mut Vec::new()).dimension(name)
-    }
-
-    /// A quantity that varies with time under one of its names: a state, definition or input, or what an output says.
-    pub(super) fn quantity(&self, candidates: &[&str], measures: Dimension) -> Option<String> {
-        let document = &self.document;
-        let drives = |name: &str| {
-            document.states.contains_key(name)
-                || document.definitions.contains_key(name)
-                || document.inputs.contains_key(name)
-        };
-        let fits = |name: &&&str| drives(name) && self.measures(name) == Some(measures);
-        if let Some(name) = candidates.iter().find(fits) {
-            return Some((*name).to_string());
-        }
-        let outputs = candidates
-            .iter()
-            .filter_map(|&name| document.outputs.get(name));
-        let mut outputs = outputs.filter(|output| dimension(&output.unit) == measures);
-        outputs
-            .next()
-            .map(|output| format!("({})", output.equation))
-    }
-
-    /// An airspeed for an equation. A speed that the document does not have becomes a recorded input `V`.
-    pub(super) fn speed(&mut self, speed: Speed) -> Result<String, EditError> {
-        let measures = Dimension::METRE.over(Dimension::SECOND);
-        if let Some(found) = self.quantity(&SPEEDS, measures) {
-            return Ok(found);
-        }
-        if speed == Speed::Any
-            && let Some(steady) = self.steady_speed()
-        {
-            return Ok(steady);
-        }
-        self.channel("V", "m/s", "true airspeed")
-    }
-
-    /// The speed of the steady flight, a parameter or a constant.
-    pub(super) fn steady_speed(&self) -> Option<String> {
-        let document = &self.document;
-        let held = |name: &str| {
-            document.parameters.contains_key(name) || document.constants.contains_key(name)
-        };
-        let measures = Some(Dimension::METRE.over(Dimension::SECOND));
-        let mut candidates = STEADY_SPEEDS.iter().chain(&SPEEDS);
-        candidates
-            .find(|&&name| held(name) && self.measures(name) == measures)
-            .map(|&name| name.to_string())
-    }
-
-    /// A recorded channel as an input, new where the document does not have it.
-    pub(super) fn channel(
-        &mut self,
-        name: &str,
-        unit: &str,
-        description: &str,
-    ) -> Result<String, EditError> {
-        if self.document.inputs.contains_key(name) {
-            return Ok(name.to_string());
-        }
-        if self.is_taken(name) || self.document.outputs.contains_key(name) {
-            let message = format!(
-                "'{name}' is wanted as a recorded input, and is something else in this model"
-            );
-            return Err(self.unfit(message));
-        }
-        let input = Input {
-            unit: unit.to_string(),
-            delay: None,
-            description: description.to_string(),
-        };
-        self.document.inputs.insert(name.to_string(), input);
-        self.inputs.push(name.to_string());
-        Ok(name.to_string())
     }
 
     /// An expression at the start of a segment, in parameters and constants: states are replaced by their
@@ -329,6 +270,7 @@ pub(super) fn unknown(
         fixed: false,
         per: Per::Job,
         prior: None,
+        quantity: None,
         description,
     }
 }

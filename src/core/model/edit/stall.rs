@@ -5,24 +5,25 @@ use super::edited::AddedRole;
 use super::error::EditError;
 use super::sheet::{Sheet, dimension, unknown};
 use super::text::replace_name;
-use crate::flight::Dimension;
+use crate::flight::{Dimension, PhysicalQuantity};
 
 /// τ1 Ẋ = ½ (1 - tanh a1 (α - τ2 α̇ - α*)) - X; in a lift α becomes ((1 + √X)/2)² α, to a moment or a drag C (1 - X) is
 /// added.
 ///
-/// A moment is a coefficient `Cm...` or the equation of a rate, a drag a coefficient `CD...`; all other targets are lifts,
-/// and must read α. α̇ is the derivative of the state α, or a definition or input `alphadot`; without these, τ2 is left
-/// out.
+/// A moment is a pitching moment coefficient or the equation of a rate, a drag a drag coefficient; all other targets are
+/// lifts, and must read α. α̇ is a definition or input that is this rate, or the derivative of the state α; without these,
+/// τ2 is left out.
 pub(super) fn hysteresis(sheet: &mut Sheet) -> Result<(), EditError> {
     let (angle, unit) = angle(sheet)?;
     let targets: Vec<&str> = sheet.edit.target.split('+').map(str::trim).collect();
     let separation = sheet.free("X");
     let name = sheet.name(&format!("{angle}_stall"))?;
     let words = format!("{angle} at which half the flow has separated");
+    // at the upper bound none has, whatever the angle that is flown: the separation is 1 to the last bit
     sheet.add(
         &name,
         AddedRole::Limit,
-        unknown("deg", 15.0, Some((5.0, 25.0)), words),
+        unknown("deg", 15.0, Some((5.0, 90.0)), words),
     );
     let steepness = sheet.free(&format!("{angle}_stall_steepness"));
     let words = "steepness of the separation, a1".to_string();
@@ -38,17 +39,16 @@ pub(super) fn hysteresis(sheet: &mut Sheet) -> Result<(), EditError> {
         AddedRole::TimeConstant,
         unknown("s", 0.2, Some((0.01, 2.0)), words),
     );
-    let rate = match (sheet.document.states.get(angle), format!("{angle}dot")) {
-        (_, name) if sheet.document.definitions.contains_key(&name) => Some(name),
-        (_, name) if sheet.document.inputs.contains_key(&name) => Some(name),
-        (Some(_), _) => Some(String::new()),
-        (None, _) => None,
-    };
+    let quantities = sheet.quantities();
+    let rate = sheet.varying(&quantities, PhysicalQuantity::AngleOfAttackRate);
     for target in targets {
         let is_rate = (sheet.document.states.get(target))
             .is_some_and(|state| dimension(&state.unit) == Dimension::NONE.over(Dimension::SECOND));
-        let is = |coefficient: &str| target.to_lowercase().starts_with(coefficient);
-        if is_rate || is("cm") || is("cd") {
+        let is_added = matches!(
+            quantities.get(target),
+            Some(PhysicalQuantity::PitchingMomentCoefficient | PhysicalQuantity::DragCoefficient)
+        );
+        if is_rate || is_added {
             let (_, measures) = sheet.law(target)?;
             let share = sheet.free(&format!("{target}_{separation}"));
             let words = format!("effect on {target} of the separation of the flow");
@@ -74,18 +74,10 @@ pub(super) fn hysteresis(sheet: &mut Sheet) -> Result<(), EditError> {
     let initial = sheet.at_start(angle, &unit, angle);
     let initial = format!("0.5*(1 - tanh({steepness}*({initial} - {name})))");
     // the rate of a state is explicit in the states, of which the separation is one: it closes no circle
-    let late = match rate {
+    let state = sheet.document.states.get(angle);
+    let late = match rate.or_else(|| state.map(|state| format!("({})", state.derivative))) {
         None => String::new(),
-        Some(definition) => {
-            let rate = if definition.is_empty() {
-                let state = sheet.document.states.get(angle);
-                state.map_or_else(
-                    || "0".to_string(),
-                    |state| format!("({})", state.derivative),
-                )
-            } else {
-                definition
-            };
+        Some(rate) => {
             let memory = sheet.free(&format!("{angle}_stall_delay"));
             let words = "delay of the stall in pitching up, tau2".to_string();
             sheet.add(

@@ -1,10 +1,10 @@
-//! Moving air: a gust, and wind that is not the constant the model has.
+//! Moving air: a gust, and wind that the model does not have, or has as a constant.
 
 use super::edited::AddedRole;
 use super::error::EditError;
-use super::sheet::{Sheet, dimension, unknown};
+use super::sheet::{Sheet, unknown};
 use super::text::{laws, names, replace_name};
-use crate::flight::Dimension;
+use crate::flight::{Dimension, PhysicalQuantity, wind as by_name};
 use crate::model::document::{Definition, Parameter, Per};
 
 /// One 1 - cos gust on an angle, a state or a definition, wherever the equations of states and definitions read it.
@@ -53,44 +53,100 @@ pub(super) fn gust(sheet: &mut Sheet) -> Result<(), EditError> {
     let added = Definition {
         unit,
         equation,
+        quantity: Some(PhysicalQuantity::Other),
         description: format!("{target} with the gust"),
     };
     sheet.document.definitions.insert(definition, added);
     Ok(())
 }
 
-/// Which way a wind blows, of a name such as `W_x`, `Wx`, `wind_x`.
-fn axis(name: &str) -> Option<char> {
-    let plain = name.to_lowercase().replace('_', "");
-    ["wx", "wy", "wz", "windx", "windy", "windz"]
-        .contains(&plain.as_str())
-        .then(|| plain.chars().last())
-        .flatten()
+/// A component of the wind, and where the document has it or would feel it.
+struct Component {
+    axis: PhysicalQuantity,
+    place: Place,
 }
 
-/// Wind that changes with time or height. Where the document has u, v, w and the attitude, what the change of the wind adds to
-/// their derivatives is added too: they are velocities through the air.
-pub(super) fn wind(sheet: &mut Sheet) -> Result<(), EditError> {
-    let document = &sheet.document;
-    let of_wind = || {
-        let constants = document.constants.keys().chain(document.parameters.keys());
-        let varying = document.definitions.keys().chain(document.inputs.keys());
-        constants.chain(varying).filter(|name| axis(name).is_some())
-    };
-    let wanted = sheet.target();
-    let same = |name: &&String| axis(wanted).is_some() && axis(name) == axis(wanted);
-    let found = of_wind()
-        .find(|name| *name == wanted)
-        .or_else(|| of_wind().find(same));
-    let Some(target) = found.cloned() else {
-        return Err(sheet.no_target("wind", wanted, of_wind()));
-    };
-    let speed = Dimension::METRE.over(Dimension::SECOND);
-    if sheet.measures(&target) != Some(speed) {
-        return Err(sheet.unfit("a wind is a speed"));
+enum Place {
+    /// A wind of the model's own.
+    Wind(String),
+    /// The state of a position that the wind carries along, and the sign with which it does.
+    Position(String, &'static str),
+}
+
+impl Component {
+    fn find(sheet: &Sheet, wanted: &str) -> Result<Self, EditError> {
+        use PhysicalQuantity::{Altitude, PositionX, PositionY, PositionZ, WindX, WindY, WindZ};
+        let document = &sheet.document;
+        let quantities = sheet.quantities();
+        let known = || {
+            let winds = [WindX, WindY, WindZ].into_iter();
+            let names: Vec<String> = winds
+                .flat_map(|axis| quantities.all_of(axis).map(ToString::to_string))
+                .collect();
+            names
+        };
+        let is_wind = |axis: &PhysicalQuantity| [WindX, WindY, WindZ].contains(axis);
+        let speed = Dimension::METRE.over(Dimension::SECOND);
+        let axis = (quantities.get(wanted).filter(is_wind)).or_else(|| by_name(wanted, speed));
+        let Some(axis) = axis else {
+            return Err(sheet.no_target("wind", wanted, known().iter()));
+        };
+        let own = quantities.all_of(axis).find(|name| *name == wanted);
+        if let Some(name) = own.or_else(|| quantities.all_of(axis).next()) {
+            let place = Place::Wind(name.to_string());
+            return Ok(Self { axis, place });
+        }
+        let positions: &[(PhysicalQuantity, &str)] = match axis {
+            WindX => &[(PositionX, "+")],
+            WindY => &[(PositionY, "+")],
+            _ => &[(PositionZ, "+"), (Altitude, "-")],
+        };
+        let mut carried = positions.iter().filter_map(|(position, sign)| {
+            let mut names = quantities.all_of(*position);
+            let state = names.find(|name| document.states.contains_key(*name))?;
+            Some(Place::Position(state.to_string(), sign))
+        });
+        match carried.next() {
+            Some(place) => Ok(Self { axis, place }),
+            None => Err(sheet.no_target(
+                "wind or position that it carries along",
+                wanted,
+                known().iter(),
+            )),
+        }
     }
+
+    fn name(&self) -> &str {
+        match (&self.place, self.axis) {
+            (Place::Wind(name), _) => name,
+            (_, PhysicalQuantity::WindX) => "W_x",
+            (_, PhysicalQuantity::WindY) => "W_y",
+            _ => "W_z",
+        }
+    }
+}
+
+/// Wind that is constant, or changes with time or height; one component, or several joined by `+`. Where the document
+/// has velocities through the air in body axes and the attitude, what the change of the wind adds to their derivatives is
+/// added too.
+pub(super) fn wind(sheet: &mut Sheet) -> Result<(), EditError> {
+    let targets = sheet.target().split('+').map(str::trim);
+    let components = targets.map(|target| Component::find(sheet, target));
+    let components: Vec<Component> = components.collect::<Result<_, _>>()?;
+    for (number, component) in components.iter().enumerate() {
+        blow(sheet, component, number == 0)?;
+    }
+    Ok(())
+}
+
+fn blow(sheet: &mut Sheet, component: &Component, is_first: bool) -> Result<(), EditError> {
+    let wind = component.name();
     let term = (sheet.edit).needed_term("\"constant\", \"ramp\" or \"shear\"")?;
-    let name = sheet.name(&format!("{target}_{term}"))?;
+    let base = format!("{wind}_{term}");
+    let name = match is_first {
+        true => sheet.name(&base)?,
+        false => sheet.free(&base),
+    };
     let (change, rate, unit, bounds) = match term {
         "constant" => (name.clone(), None, "m/s", (-60.0, 60.0)),
         "ramp" => (
@@ -110,10 +166,24 @@ pub(super) fn wind(sheet: &mut Sheet) -> Result<(), EditError> {
         }
     };
     if let Some(rate) = rate {
-        accelerate(sheet, &target, &rate);
+        accelerate(sheet, component, &rate);
     }
-    (sheet.document).substitute(&target, &format!("({target} + {change})"));
-    let words = format!("{term} of the wind beyond {target}");
+    match &component.place {
+        Place::Wind(wind) => {
+            if !sheet.is_speed(wind) {
+                return Err(sheet.unfit("a wind is a speed"));
+            }
+            (sheet.document).substitute(wind, &format!("({wind} + {change})"));
+        }
+        Place::Position(state, sign) => {
+            let (derivative, _) = sheet.law(state)?;
+            *derivative = format!("{derivative} {sign} {change}");
+        }
+    }
+    let words = match component.place {
+        Place::Wind(_) => format!("{term} of the wind beyond {wind}"),
+        Place::Position(..) => format!("{term} of the wind, component {wind}"),
+    };
     let parameter = Parameter {
         per: Per::Maneuver,
         ..unknown(unit, 0.0, Some(bounds), words)
@@ -124,49 +194,65 @@ pub(super) fn wind(sheet: &mut Sheet) -> Result<(), EditError> {
 
 /// Height above the start of the maneuver, and its rate.
 fn height(sheet: &Sheet) -> Result<(String, String), EditError> {
-    let states = &sheet.document.states;
-    for (name, sign) in [("h", ""), ("height", ""), ("altitude", ""), ("z", "-")] {
-        if let Some(state) = states.get(name)
-            && dimension(&state.unit) == Dimension::METRE
-        {
+    use PhysicalQuantity::{Altitude, PositionZ};
+    let quantities = sheet.quantities();
+    for (quantity, sign) in [(Altitude, ""), (PositionZ, "-")] {
+        let mut states = (quantities.all_of(quantity))
+            .filter_map(|name| Some((name, sheet.document.states.get(name)?)));
+        if let Some((name, state)) = states.next() {
             let above = format!("({sign}({name} - ({})))", state.initial);
             return Ok((above, format!("({sign}({}))", state.derivative)));
         }
     }
-    Err(sheet.unfit("a shear needs a state 'h' (height) or 'z' (down), in m"))
+    Err(sheet.unfit("a shear needs a state that is an altitude or a position down, in m"))
 }
 
 /// u̇, v̇, ẇ less the wind's rate of change in body axes.
-fn accelerate(sheet: &mut Sheet, wind: &str, rate: &str) {
+fn accelerate(sheet: &mut Sheet, component: &Component, rate: &str) {
+    use PhysicalQuantity::{
+        HeadingAngle, PitchAngle, RollAngle, VelocityX, VelocityY, VelocityZ, WindX, WindY,
+    };
+    let quantities = sheet.quantities();
     let states = &sheet.document.states;
-    let body = ["u", "v", "w"];
-    let is_there = body
-        .iter()
-        .chain(&["phi", "theta", "psi"])
-        .all(|name| states.contains_key(*name));
-    let reads_wind = |name: &&str| names(&states[*name].derivative).iter().any(|n| n == wind);
-    if !is_there || body.iter().any(reads_wind) {
+    let state = |quantity| {
+        let mut names = quantities.all_of(quantity);
+        names
+            .find(|name| states.contains_key(*name))
+            .map(ToString::to_string)
+    };
+    let body = [VelocityX, VelocityY, VelocityZ].map(state);
+    let attitude = [RollAngle, PitchAngle, HeadingAngle].map(state);
+    let ([Some(u), Some(v), Some(w)], [Some(phi), Some(theta), Some(psi)]) = (body, attitude)
+    else {
+        return;
+    };
+    let reads_wind = |name: &String| {
+        names(&states[name].derivative)
+            .iter()
+            .any(|n| n == component.name())
+    };
+    if [&u, &v, &w].into_iter().any(reads_wind) {
         return;
     }
-    let shares = match axis(wind) {
-        Some('x') => [
-            "cos(theta)*cos(psi)",
-            "(sin(phi)*sin(theta)*cos(psi) - cos(phi)*sin(psi))",
-            "(cos(phi)*sin(theta)*cos(psi) + sin(phi)*sin(psi))",
+    let shares = match component.axis {
+        WindX => [
+            format!("cos({theta})*cos({psi})"),
+            format!("(sin({phi})*sin({theta})*cos({psi}) - cos({phi})*sin({psi}))"),
+            format!("(cos({phi})*sin({theta})*cos({psi}) + sin({phi})*sin({psi}))"),
         ],
-        Some('y') => [
-            "cos(theta)*sin(psi)",
-            "(sin(phi)*sin(theta)*sin(psi) + cos(phi)*cos(psi))",
-            "(cos(phi)*sin(theta)*sin(psi) - sin(phi)*cos(psi))",
+        WindY => [
+            format!("cos({theta})*sin({psi})"),
+            format!("(sin({phi})*sin({theta})*sin({psi}) + cos({phi})*cos({psi}))"),
+            format!("(cos({phi})*sin({theta})*sin({psi}) - sin({phi})*cos({psi}))"),
         ],
         _ => [
-            "(-sin(theta))",
-            "sin(phi)*cos(theta)",
-            "cos(phi)*cos(theta)",
+            format!("(-sin({theta}))"),
+            format!("sin({phi})*cos({theta})"),
+            format!("cos({phi})*cos({theta})"),
         ],
     };
-    for (name, share) in body.iter().zip(shares) {
-        if let Some(state) = sheet.document.states.get_mut(*name) {
+    for (name, share) in [u, v, w].iter().zip(shares) {
+        if let Some(state) = sheet.document.states.get_mut(name) {
             state.derivative = format!("{} - {rate}*{share}", state.derivative);
         }
     }

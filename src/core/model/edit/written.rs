@@ -1,9 +1,11 @@
 //! One edit as it is written: kind, target, term.
 
+use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::error::EditError;
+use crate::model::document::Input;
 use crate::model::expression::{LONGEST, LONGEST_NAME};
 
 /// Longest target, in bytes: the names of some outputs.
@@ -15,8 +17,8 @@ const LONGEST_TARGET: usize = 1024;
 pub struct Edit {
     /// What is changed, and how.
     pub kind: EditKind,
-    /// An output for `sensor_*` (or an input that is measured, as the accelerometers of a reconstruction), an input
-    /// for `input_*`, `actuator_*` and `backlash`, a state or definition (its equation) for the others. Several
+    /// A fixed parameter for `fixed_parameter`, an output for `sensor_*` (or an input that is measured, as the
+    /// accelerometers of a reconstruction), an input for `input_*`, `actuator_*` and `backlash`, a state or definition (its equation) for the others. Several
     /// joined by `+` for `sensor_delay` and `stall_hysteresis`; `all` for the `missing_term` `qbar`.
     #[schema(example = "q")]
     pub target: String,
@@ -35,12 +37,34 @@ pub struct Edit {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "rad")]
     pub unit: Option<String>,
+    /// Recorded channels that a `missing_term` may name though the model does not use them, and from which other effects
+    /// take a speed or a rotational acceleration that the model does not have: as the model's inputs would be written.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schema(example = json!({"TAS": {"unit": "m/s", "quantity": "airspeed"}}))]
+    pub channels: IndexMap<String, Input>,
+    /// Names in a `missing_term` that are taken as differences, and from what: a number in the unit of the name, or an
+    /// expression in parameters and constants.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schema(example = json!({"alpha": "alpha_eq"}))]
+    pub about: IndexMap<String, Reference>,
+}
+
+/// From what a difference is taken.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(untagged)]
+pub enum Reference {
+    /// A number, in the unit of the name.
+    Value(f64),
+    /// An expression in parameters and constants.
+    Expression(String),
 }
 
 /// The effects that equations express; y is an output, u an input, x a state, ψ a parameter that is added.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum EditKind {
+    /// A parameter that the document holds fixed becomes free
+    FixedParameter,
     /// y + b
     SensorBias,
     /// (1 + k) y
@@ -49,7 +73,7 @@ pub enum EditKind {
     SensorDrift,
     /// y(t - τ)
     SensorDelay,
-    /// T ẏ_m = y - y_m
+    /// T ẏ_m = y - y_m, y_m what is recorded
     SensorLag,
     /// The lever arm of a vane or an accelerometer: α - x q/V + y p/V, β + x r/V - z p/V, a + ω̇ × r + ω × (ω × r)
     SensorPosition,
@@ -61,9 +85,9 @@ pub enum EditKind {
     InputDelay,
     /// T δ̇ = u - δ
     ActuatorLag,
-    /// δ̇ = r tanh((u - δ)/(r T))
+    /// δ goes to u, but abs(δ̇) ≤ r
     ActuatorRateLimit,
-    /// T δ̇ = max(0, u - b - δ) + min(0, u + b - δ)
+    /// δ stays where it is, but u - b ≤ δ ≤ u + b
     Backlash,
     /// ψ u2, a recorded channel that the model does not use
     UnrecordedInput,
@@ -85,7 +109,8 @@ pub enum EditKind {
 
 impl EditKind {
     /// All of them, in the order of the catalogue.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
+        Self::FixedParameter,
         Self::SensorBias,
         Self::SensorScale,
         Self::SensorDrift,
@@ -111,6 +136,7 @@ impl EditKind {
     /// The word of the catalogue.
     pub fn name(self) -> &'static str {
         match self {
+            Self::FixedParameter => "fixed_parameter",
             Self::SensorBias => "sensor_bias",
             Self::SensorScale => "sensor_scale",
             Self::SensorDrift => "sensor_drift",
@@ -149,6 +175,8 @@ impl Edit {
             term: None,
             parameter: None,
             unit: None,
+            channels: IndexMap::new(),
+            about: IndexMap::new(),
         }
     }
 
@@ -172,9 +200,21 @@ impl Edit {
             ("parameter", parameter, LONGEST_NAME),
             ("unit", unit, LONGEST_NAME),
         ];
-        match bounds.iter().find(|(_, text, most)| text.len() > *most) {
+        let channels = (self.channels.keys()).map(|name| ("channels", name.as_str(), LONGEST_NAME));
+        let about = (self.about.iter()).flat_map(|(name, from)| {
+            let from = match from {
+                Reference::Value(_) => "",
+                Reference::Expression(text) => text,
+            };
+            [
+                ("about", name.as_str(), LONGEST_NAME),
+                ("about", from, LONGEST),
+            ]
+        });
+        let mut bounds = bounds.into_iter().chain(channels).chain(about);
+        match bounds.find(|(_, text, most)| text.len() > *most) {
             None => Ok(()),
-            Some(&(field, text, most)) => Err(EditError::TooLong {
+            Some((field, text, most)) => Err(EditError::TooLong {
                 field,
                 length: text.len(),
                 most,

@@ -1,6 +1,6 @@
 //! The functions that equations may call.
 
-/// A function by name. `first`, `mean` and `interpolated` look at a whole recording: they are allowed only in
+/// A function by name. `first`, `mean`, `largest_rate` and `interpolated` look at a whole recording: they are allowed only in
 /// channel formulas and where a parameter's start value is worked out.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Function {
@@ -40,11 +40,13 @@ pub enum Function {
     First,
     /// `mean(channel, seconds)`: the mean over the first seconds.
     Mean,
+    /// `largest_rate(channel)`: the largest rate of change from one sample to the next, up or down.
+    LargestRate,
     /// `interpolated(channel)`: missing samples filled linearly from their neighbours.
     Interpolated,
 }
 
-const ALL: [(&str, Function, usize); 19] = [
+const ALL: [(&str, Function, usize); 20] = [
     ("sin", Function::Sin, 1),
     ("cos", Function::Cos, 1),
     ("tan", Function::Tan, 1),
@@ -63,6 +65,7 @@ const ALL: [(&str, Function, usize); 19] = [
     ("if", Function::If, 3),
     ("first", Function::First, 1),
     ("mean", Function::Mean, 2),
+    ("largest_rate", Function::LargestRate, 1),
     ("interpolated", Function::Interpolated, 1),
 ];
 

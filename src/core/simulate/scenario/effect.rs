@@ -3,7 +3,7 @@
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Edit, EditKind};
+use crate::model::{Edit, EditKind, Input, Reference};
 
 /// One effect, by the words of the catalogue. Either an edit of the model, or of the data:
 ///
@@ -46,6 +46,12 @@ pub struct ScenarioEffect {
     /// As of an [`Edit`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
+    /// As of an [`Edit`](crate::model::Edit).
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub channels: IndexMap<String, Input>,
+    /// As of an [`Edit`](crate::model::Edit).
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub about: IndexMap<String, Reference>,
     /// Of the first parameter that is added; the share of spikes, or the intensity of process noise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
@@ -62,6 +68,8 @@ impl From<&Edit> for ScenarioEffect {
             term: edit.term.clone(),
             parameter: edit.parameter.clone(),
             unit: edit.unit.clone(),
+            channels: edit.channels.clone(),
+            about: edit.about.clone(),
             value: None,
             values: IndexMap::new(),
         }
@@ -84,6 +92,8 @@ impl ScenarioEffect {
             term: parts.next(),
             parameter: None,
             unit: None,
+            channels: IndexMap::new(),
+            about: IndexMap::new(),
             value: Some(value),
             values: IndexMap::new(),
         })
@@ -97,6 +107,8 @@ impl ScenarioEffect {
             term: self.term.clone(),
             parameter: self.parameter.clone(),
             unit: self.unit.clone(),
+            channels: self.channels.clone(),
+            about: self.about.clone(),
         })
     }
 }

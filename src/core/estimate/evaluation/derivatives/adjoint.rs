@@ -9,9 +9,9 @@ use nalgebra::{DMatrix, DVector};
 use crate::estimate::likelihood::priors;
 use crate::estimate::likelihood::sums::mirror;
 use crate::estimate::likelihood::weighting::Weighting;
-use crate::estimate::problem::Problem;
 use crate::estimate::problem::missing::present;
 use crate::estimate::problem::unusable::{Unusable, left_range};
+use crate::estimate::problem::{Problem, set_parameters};
 use crate::simulate::{Adjoint, Checkpoints};
 
 /// Evaluates cost and gradient of a problem at any θ; buffers are kept.
@@ -67,7 +67,7 @@ impl<'p> CostAndGradient<'p> {
         let (mut residual, mut parameters) = (vec![0.0; outputs], Vec::new());
         self.checkpoints.clear();
         for (index, segment) in problem.segments.iter().enumerate() {
-            problem.unknowns.parameters(index, theta, &mut parameters);
+            set_parameters(problem, index, theta, &mut parameters)?;
             let add = |k: usize, y: &[f64]| {
                 for i in 0..outputs {
                     residual[i] = present(segment.measured[i][k] - y[i], segment.measured[i][k]);

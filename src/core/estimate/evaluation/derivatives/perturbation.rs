@@ -1,14 +1,14 @@
 //! ∂y/∂θ column by column: each parameter is perturbed in turn and the segment simulated again.
 //!
 //! All simulations go along the segment together, a stretch at a time, so that memory does not grow with the
-//! length of the recording.
+//! length of the recording, but for models whose inputs or outputs have paths.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::estimate::likelihood::sums::{Product, Sums, mirror, pairs};
-use crate::estimate::problem::Problem;
 use crate::estimate::problem::missing::present;
 use crate::estimate::problem::unusable::Unusable;
+use crate::estimate::problem::{Problem, set_parameters};
 use crate::model::Scalar;
 use crate::simulate::{March, Standing};
 
@@ -58,7 +58,7 @@ pub(crate) fn columns<P: Perturbation>(
     let (model, options) = (&problem.model, &problem.options);
     let (segment, outputs) = (&problem.segments[index], model.outputs.len());
     let mut values = Vec::new();
-    problem.unknowns.parameters(index, theta, &mut values);
+    set_parameters(problem, index, theta, &mut values)?;
     let parameter = |place: usize| problem.unknowns.at(place).parameter;
     let own = |place: &usize| problem.unknowns.place(index, parameter(*place)) == Some(*place);
     let own: Vec<usize> = places.iter().copied().filter(own).collect();
@@ -77,8 +77,9 @@ pub(crate) fn columns<P: Perturbation>(
         changed[at] = Scalar::from_f64(value);
     }
 
-    for first in (0..segment.len()).step_by(STRETCH) {
-        let until = (first + STRETCH).min(segment.len());
+    let stretch = March::<f64>::stretch(model, segment, STRETCH);
+    for first in (0..segment.len()).step_by(stretch) {
+        let until = (first + stretch).min(segment.len());
         let len = until - first;
         let mut y = vec![DVector::zeros(len); outputs];
         plain.advance(&mut base, segment, &values, until, |k, sample| {

@@ -319,6 +319,7 @@ fn edited(document: &ModelDocument) -> ModelDocument {
         fixed: false,
         per: Per::Job,
         prior: None,
+        quantity: None,
         description: String::new(),
     };
     for (index, (name, state)) in document.states.iter().enumerate() {
@@ -330,8 +331,7 @@ fn edited(document: &ModelDocument) -> ModelDocument {
         let output = Output {
             unit: state.unit.clone(),
             equation: name.clone(),
-            delay: None,
-            description: String::new(),
+            ..Default::default()
         };
         edited
             .outputs

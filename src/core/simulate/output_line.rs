@@ -1,24 +1,27 @@
-//! Delayed outputs: y(t_k - D) and its row of sensitivities S(t_k - D) - dy/dt ∂D/∂θ, from a window of samples.
+//! Outputs on their paths to the recorder with their rows of sensitivities, block by block: lagged, and then from a
+//! window of samples delayed, y(t_k - D) and S(t_k - D) - dy/dt ∂D/∂θ.
 //!
 //! The window slides along with the blocks; it holds no more samples than the longest delay and a few blocks.
 
 use super::block::Block;
 use super::columns::Columns;
 use super::interpolation::{At, Axis};
+use super::lag::Lag;
 use super::pack::{Pack, multiply_add, packs};
 use super::segment::Segment;
-use crate::model::{BLOCK, Model};
+use crate::model::{BLOCK, Element, Model, PathElement};
 
 /// Samples behind the window are dropped when there are as many as this: now and then, not block by block.
 const DROPPED_AT_ONCE: usize = 8 * BLOCK;
 
-pub(super) struct DelayLine<'m> {
+pub(super) struct OutputLine<'m> {
     model: &'m Model,
     columns: &'m Columns,
     /// By output: packs of a row.
     strides: Vec<usize>,
     axis: Option<Axis>,
-    /// By output: its delay, s, where it has one.
+    /// By output: its lag and its delay, s, where it has them.
+    lags: Vec<Option<RowLag>>,
     delays: Vec<Option<f64>>,
     /// By output: ∂D/∂θ as a row.
     derivatives: Vec<Vec<Pack>>,
@@ -33,10 +36,10 @@ pub(super) struct DelayLine<'m> {
     delayed_rows: Vec<Vec<Pack>>,
 }
 
-impl<'m> DelayLine<'m> {
-    /// `None` for a model without delayed outputs.
+impl<'m> OutputLine<'m> {
+    /// `None` for a model whose outputs have no paths.
     pub(super) fn new(model: &'m Model, columns: &'m Columns) -> Option<Self> {
-        if model.delays.outputs.is_empty() {
+        if model.paths.of_outputs().is_empty() {
             return None;
         }
         let outputs = model.outputs.len();
@@ -48,6 +51,7 @@ impl<'m> DelayLine<'m> {
             model,
             columns,
             axis: None,
+            lags: vec![None; outputs],
             delays: vec![None; outputs],
             derivatives: Vec::new(),
             first: 0,
@@ -61,24 +65,41 @@ impl<'m> DelayLine<'m> {
         })
     }
 
-    /// Begins a run. `delays` are those of [`crate::model::Delays::at`].
-    pub(super) fn start(&mut self, segment: &Segment, parameters: &[f64], delays: &[f64]) {
-        let model = &self.model.delays;
-        self.axis = Some(Axis::new(segment));
+    /// Begins a run. `sizes` are those of [`crate::model::Paths::at`].
+    pub(super) fn start(&mut self, segment: &Segment, parameters: &[f64], sizes: &[f64]) {
+        let paths = &self.model.paths;
+        let axis = Axis::new(segment);
         (self.first, self.end, self.next) = (0, 0, 0);
         self.values.iter_mut().for_each(Vec::clear);
         self.rows.iter_mut().for_each(Vec::clear);
-        for (&output, &delay) in model.outputs.iter().zip(&delays[model.inputs.len()..]) {
-            self.delays[output] = Some(delay);
-        }
         let row = |stride: &usize| vec![Pack::default(); *stride];
         self.derivatives = self.strides.iter().map(row).collect();
-        for (output, parameter, value) in model.output_derivatives(parameters) {
-            let mut columns = self.columns.of_output(output).iter();
-            if let Some(column) = columns.position(|&p| p == parameter) {
-                self.derivatives[output].as_flattened_mut()[column] = value;
+        let sizes = &sizes[paths.of_inputs().len()..];
+        for (passed, &size) in paths.of_outputs().iter().zip(sizes) {
+            let output = passed.signal;
+            match passed.element {
+                Element::Lag => {
+                    let lag = Lag::new(size, &axis);
+                    self.lags[output] = Some(RowLag::new(lag, self.strides[output]));
+                }
+                Element::Delay => self.delays[output] = Some(size),
+                // of inputs alone
+                Element::Play | Element::RateLimit => {}
             }
         }
+        for (place, parameter, value) in paths.output_derivatives(parameters) {
+            let PathElement { signal, element } = paths.of_outputs()[place];
+            let mut columns = self.columns.of_output(signal).iter();
+            let Some(column) = columns.position(|&p| p == parameter) else {
+                continue;
+            };
+            let row = match (element, &mut self.lags[signal]) {
+                (Element::Lag, Some(lag)) => &mut lag.derivative,
+                _ => &mut self.derivatives[signal],
+            };
+            row.as_flattened_mut()[column] = value;
+        }
+        self.axis = Some(axis);
     }
 
     /// Takes the next block, and hands on those that are now known.
@@ -87,6 +108,11 @@ impl<'m> DelayLine<'m> {
         for output in 0..self.values.len() {
             self.values[output].extend_from_slice(block.output(output));
             self.rows[output].extend_from_slice(block.packed_rows(output));
+            if let Some(lag) = &mut self.lags[output] {
+                let new = self.end - self.first;
+                let rows = &mut self.rows[output][new * self.strides[output]..];
+                lag.pass(&axis, self.end, &mut self.values[output][new..], rows);
+            }
         }
         self.end += block.len;
         while self.next <= axis.last() {
@@ -177,6 +203,56 @@ impl<'m> DelayLine<'m> {
             rows.drain(..dropped * stride);
         }
         self.first += dropped;
+    }
+}
+
+/// A lag that goes along an output and its rows: w and ∂w/∂θ, see [`Lag`].
+#[derive(Clone)]
+struct RowLag {
+    lag: Lag,
+    /// ∂T/∂θ as a row.
+    derivative: Vec<Pack>,
+    off: f64,
+    off_row: Vec<Pack>,
+    /// The sample before, as it was before the lag.
+    before: f64,
+    before_row: Vec<Pack>,
+}
+
+impl RowLag {
+    fn new(lag: Lag, stride: usize) -> Self {
+        let row = vec![Pack::default(); stride];
+        Self {
+            lag,
+            derivative: row.clone(),
+            off: 0.0,
+            off_row: row.clone(),
+            before: 0.0,
+            before_row: row,
+        }
+    }
+
+    /// Passes samples, the first of which is that at `first`.
+    fn pass(&mut self, axis: &Axis, first: usize, values: &mut [f64], rows: &mut [Pack]) {
+        let (sign, stride) = (self.lag.sign, self.derivative.len());
+        for (i, value) in values.iter_mut().enumerate() {
+            let row = &mut rows[i * stride..(i + 1) * stride];
+            if first + i > 0 {
+                let step = self.lag.step(axis, first + i - 1);
+                let change = *value - self.before;
+                let by_time = step.decay_slope * self.off - step.gain_slope * change;
+                let off = self.off_row.as_flattened_mut().iter_mut();
+                off.for_each(|off| *off *= step.decay);
+                add_scaled(&mut self.off_row, -step.gain, row);
+                add_scaled(&mut self.off_row, step.gain, &self.before_row);
+                add_scaled(&mut self.off_row, sign * by_time, &self.derivative);
+                self.off = step.decay * self.off - step.gain * change;
+            }
+            self.before = *value;
+            self.before_row.copy_from_slice(row);
+            *value += sign * self.off;
+            add_scaled(row, sign, &self.off_row);
+        }
     }
 }
 

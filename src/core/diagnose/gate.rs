@@ -1,0 +1,299 @@
+//! The gate: what speaks against accepting a candidate that was tried.
+//!
+//! Whether an effect is there at all is asked of the likelihood with coloured noise. What an engineer is then shown, its
+//! size, its bound and the errors, is the estimate by output error: it must say the same.
+
+use super::case::Case;
+use super::effect::{Effect, EffectKind};
+use super::fitted::Fitted;
+use super::null_model::NullModel;
+use super::predicted::Predicted;
+use super::repeats::disagreement;
+use super::report::{OutputGain, Refusal};
+use super::threshold::Threshold;
+use super::trial::Trial;
+use crate::estimate::Role;
+use crate::model::{Added, AddedRole, EditKind};
+
+/// A size within so many standard errors of nothing is nothing that one can tell an engineer of.
+const LEAST_ERRORS: f64 = 2.0;
+
+/// Two sizes of a larger correlation are one.
+const TIED: f64 = 0.97;
+
+/// Flights that were not fitted speak of an effect where it should change their likelihood by at least this.
+const HEARD: f64 = 8.0;
+
+/// The least gain there: a fixed part, and a share of what the effect should bring.
+const LEAST_GAIN: f64 = 2.0;
+const LEAST_SHARE: f64 = 0.1;
+
+/// Where flights that were not fitted say nothing of an effect, those that were must say this much more.
+const UNHEARD: f64 = 2.0;
+
+/// The price of a size of which nothing is known,
+const UNKNOWN: f64 = 4.0;
+
+/// and the most that a known one may cost: the data have the last word.
+const SURPRISING: f64 = 12.0;
+
+/// A candidate with nothing against it.
+#[derive(Clone, Debug)]
+pub(super) struct Passed {
+    pub trial: Trial,
+    /// What is reported of it: converged, by output error.
+    pub settled: Fitted,
+    /// By output, N ln(σ0²/σ1²) on flights that were not fitted; empty where there are none.
+    pub gains: Vec<OutputGain>,
+}
+
+impl Passed {
+    /// By what candidates are chosen: twice the gain of the likelihood on the flights that were fitted, and the gain of
+    /// plain errors on those that were not, less the price of its parameters (Schwarz) and of a size that is not usual.
+    pub(super) fn merit(&self) -> f64 {
+        let samples = self.settled.problem.samples().max(1) as f64;
+        let held_out: f64 = self.gains.iter().map(|gain| gain.gain).sum();
+        let price = self.trial.freedom as f64 * samples.ln();
+        self.trial.likelihood_ratio + held_out - price - self.surprise()
+    }
+
+    /// Twice the logarithm of how usual its size is, where that is known of its instrument: of candidates that the data
+    /// cannot tell apart the more usual one comes first.
+    fn surprise(&self) -> f64 {
+        let Some(plausible) = self.trial.effect.plausible else {
+            return UNKNOWN;
+        };
+        let size = (self.trial.added.first())
+            .map(|size| self.settled.sizes(std::slice::from_ref(size)))
+            .and_then(|sizes| sizes.first().map(|size| size.value));
+        match size {
+            Some(size) if plausible.sd > 0.0 && vanishes_at_zero(&self.trial.effect) => {
+                (size / plausible.sd).powi(2).min(SURPRISING)
+            }
+            _ => UNKNOWN,
+        }
+    }
+
+    /// What a linear step promised of it: of the likelihood, and of plain errors. What was tried outright has kept it.
+    pub(super) fn promise(&self) -> (f64, f64) {
+        let held_out: f64 = self.gains.iter().map(|gain| gain.gain).sum();
+        let reached = (
+            self.trial.likelihood_ratio,
+            held_out.max(self.trial.likelihood_ratio),
+        );
+        (self.trial.screened.as_ref()).map_or(reached, |seen| {
+            let promised = (seen.promise.max(seen.score), seen.plain);
+            (promised.0.min(reached.0), promised.1.min(reached.1))
+        })
+    }
+}
+
+type Objection = (Refusal, String);
+
+/// Lets a candidate pass, or says what speaks against it.
+///
+/// # Errors
+/// The first objection.
+pub(super) fn pass(
+    null: &NullModel<'_>,
+    trial: Trial,
+    threshold: Threshold,
+) -> Result<Passed, Box<(Trial, Objection)>> {
+    match judge(null, &trial, threshold) {
+        Ok((settled, gains)) => Ok(Passed {
+            trial,
+            settled,
+            gains,
+        }),
+        Err(objection) => Err(Box::new((trial, objection))),
+    }
+}
+
+fn judge(
+    null: &NullModel<'_>,
+    trial: &Trial,
+    threshold: Threshold,
+) -> Result<(Fitted, Vec<OutputGain>), Objection> {
+    let least = threshold.of(trial.freedom, trial.starts);
+    significant(trial, least)?;
+    within_range(trial, &trial.likeliest)?;
+    let settled = settle(null.case, trial)?;
+    within_range(trial, &settled)?;
+    told_from_nothing(&trial.effect, &settled, &trial.added)?;
+    told_from_earlier(null, &settled, &trial.added)?;
+    if let Some(size) = (trial.added.first()).filter(|_| !is_local_in_time(&trial.effect))
+        && let Some(why) = disagreement(&settled, &size.name)
+    {
+        return Err((Refusal::NotRepeatable, why));
+    }
+    let gains = predictive(null, trial, &settled, least)?;
+    Ok((settled, gains))
+}
+
+fn significant(trial: &Trial, least: f64) -> Result<(), Objection> {
+    let ratio = trial.likelihood_ratio;
+    if ratio >= least {
+        return Ok(());
+    }
+    let why = format!(
+        "a likelihood ratio of {ratio:.1} is no more than noise gives among so many candidates (critical value {least:.1})"
+    );
+    Err((Refusal::NotSignificant, why))
+}
+
+fn within_range(trial: &Trial, fitted: &Fitted) -> Result<(), Objection> {
+    let mut at_bound = fitted.at_bound(&trial.added);
+    at_bound.retain(|added| decides(&trial.effect, added.role));
+    match at_bound.first() {
+        None => Ok(()),
+        Some(added) => Err((
+            Refusal::OutOfRange,
+            format!(
+                "its estimate ends at a bound of its physical range ({})",
+                added.name
+            ),
+        )),
+    }
+}
+
+/// The fit that is reported: converged, by output error.
+fn settle(case: &Case, trial: &Trial) -> Result<Fitted, Objection> {
+    if trial.effect.is_noise() {
+        return Ok(trial.likeliest.clone());
+    }
+    let document = trial.likeliest.document.clone();
+    let settled = Fitted::settled(case, document, &trial.likeliest.values());
+    let settled = settled.map_err(|why| (Refusal::NotFitted, why.to_string()))?;
+    if settled.estimate.outcome.is_minimum() {
+        Ok(settled)
+    } else {
+        let why = format!(
+            "the fit with it does not converge: {}",
+            settled.estimate.reason
+        );
+        Err((Refusal::NotFitted, why))
+    }
+}
+
+/// Some size that it adds is clearly not nothing.
+fn told_from_nothing(effect: &Effect, fitted: &Fitted, added: &[Added]) -> Result<(), Objection> {
+    if !vanishes_at_zero(effect) {
+        return Ok(());
+    }
+    let Some(size) = added.first() else {
+        return Ok(());
+    };
+    let sizes = fitted.sizes(std::slice::from_ref(size));
+    let told = sizes.iter().any(|size| {
+        size.standard_error
+            .is_none_or(|error| size.own_units().abs() > LEAST_ERRORS * error)
+    });
+    match sizes.first() {
+        Some(size) if !told => {
+            let error = size.standard_error.unwrap_or(f64::NAN);
+            let why = format!(
+                "its size is within {LEAST_ERRORS} standard errors of nothing: {:.2e} ± {error:.1e} {}",
+                size.own_units(),
+                size.unit
+            );
+            Err((Refusal::NotSignificant, why))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Its size is not tied to that of an effect that is in the model already: two that nearly cancel (all outputs late, and
+/// the input early) are each significant, and together next to nothing.
+fn told_from_earlier(
+    null: &NullModel<'_>,
+    fitted: &Fitted,
+    added: &[Added],
+) -> Result<(), Objection> {
+    let names: Vec<&str> = (fitted.estimate.parameters.iter())
+        .filter(|row| !row.fixed)
+        .map(|row| row.name.as_str())
+        .collect();
+    let places = |of: &[Added]| -> Vec<usize> {
+        (0..names.len())
+            .filter(|&place| of.iter().any(|added| added.name == names[place]))
+            .collect()
+    };
+    let (new, earlier) = (places(added), places(null.earlier));
+    let correlation = &fitted.estimate.correlation;
+    for &i in &new {
+        for &j in &earlier {
+            let tied = correlation.get(i).and_then(|row| row.get(j));
+            if tied.is_some_and(|r| r.abs() > TIED) {
+                let why = format!(
+                    "the data cannot tell it from {}, which is in the model already (correlation {:.3})",
+                    names[j], correlation[i][j]
+                );
+                return Err((Refusal::Outdone, why));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whether flights that were not fitted are predicted better with it; gains by output.
+fn predictive(
+    null: &NullModel<'_>,
+    trial: &Trial,
+    settled: &Fitted,
+    least: f64,
+) -> Result<Vec<OutputGain>, Objection> {
+    let repeats = !trial.effect.is_noise() && !is_local_in_time(&trial.effect);
+    let (Some(before), true) = (&null.predicted, repeats) else {
+        return Ok(Vec::new());
+    };
+    let predicted = Predicted::of(settled, null.case, Role::Validation)
+        .map_err(|why| (Refusal::NotPredictive, why.to_string()))?;
+    let Some(after) = predicted else {
+        return Ok(Vec::new());
+    };
+    let gains = after.gains_over(before);
+    let gain: f64 = gains.iter().map(|gain| gain.gain).sum();
+    let expected = after.distance_from(before);
+    if expected < HEARD && trial.likelihood_ratio < UNHEARD * least {
+        let why = format!(
+            "flights that were not fitted hardly show it (their likelihood changes by {expected:.1}), and those that were do not show it clearly enough alone"
+        );
+        return Err((Refusal::NotPredictive, why));
+    }
+    if expected >= HEARD && gain < LEAST_GAIN + LEAST_SHARE * expected {
+        let why = format!(
+            "it differs between maneuvers: flights that were not fitted are not predicted better with it (gain {gain:.1}, where {expected:.1} is expected)"
+        );
+        return Err((Refusal::NotPredictive, why));
+    }
+    if let Some((output, ratio)) = after.clearly_worse_than(before) {
+        let why = format!(
+            "{output} of flights that were not fitted is predicted worse with it: RMS error {ratio:.2} times as large"
+        );
+        return Err((Refusal::NotPredictive, why));
+    }
+    Ok(gains)
+}
+
+/// Whether a parameter at its bound speaks against the effect: how steeply and how late the flow separates is hardly seen
+/// in many a stall, at which angle it does is.
+fn decides(effect: &Effect, role: AddedRole) -> bool {
+    use AddedRole::{Delay, Steepness, TimeConstant};
+    let is_stall = effect.kind == EffectKind::Edit(EditKind::StallHysteresis);
+    !(is_stall && matches!(role, Steepness | TimeConstant | Delay))
+}
+
+/// Whether a size of zero is no effect; a rate limit or a stall is absent at the other end of its range.
+fn vanishes_at_zero(effect: &Effect) -> bool {
+    use EditKind::{ActuatorRateLimit, StallHysteresis};
+    !matches!(
+        effect.kind,
+        EffectKind::Edit(ActuatorRateLimit | StallHysteresis)
+    )
+}
+
+/// Effects that stand at one place in time repeat in no other part.
+pub(super) fn is_local_in_time(effect: &Effect) -> bool {
+    use EditKind::{Gust, InitialState};
+    matches!(effect.kind, EffectKind::Edit(Gust | InitialState))
+}
