@@ -66,7 +66,7 @@ async fn every_result_has_its_forms() {
     let lines: Vec<String> = csv.text().lines().map(str::to_string).collect();
     assert_eq!(
         lines[0],
-        "name,segment,unit,start,estimate,standard_error,fixed,at_bound,conventional_standard_error"
+        "name,segment,unit,start,estimate,standard_error,fixed,at_bound,conventional_standard_error,provisional"
     );
     assert_eq!(lines.len(), 1 + estimate.parameters.len());
     assert_eq!(

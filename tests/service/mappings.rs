@@ -62,7 +62,21 @@ async fn a_mapping_is_kept_once_and_named_by_uploads() {
         .collect();
     assert_eq!(
         names,
-        ["fvsysid-attas", "fvsysid-hfb320", "sidpac", "logger-3"]
+        [
+            "fvsysid-attas",
+            "fvsysid-hfb320",
+            "sidpac",
+            "betaflight-blackbox",
+            "dynon-skyview",
+            "garmin-g1000",
+            "garmin-g3x",
+            "jsbsim",
+            "labview",
+            "px4-ulog2csv",
+            "rostopic",
+            "x-plane",
+            "logger-3"
+        ]
     );
     // a bundled one can be read, changed and kept by another name
     let bundled = server.get("/v1/mappings/sidpac").await.json();

@@ -178,13 +178,14 @@ async fn a_recording_is_corrected_before_it_is_stored() {
         let server = idle().await;
         let file = server.directory.path().join("first flight.csv");
         let csv = elevator();
-        assert!(csv.lines().next().unwrap().contains("q[rad/s]"));
-        std::fs::write(&file, csv.replacen("q[rad/s]", "q[rda/s]", 1)).unwrap();
+        // without its time no recording is one
+        assert!(csv.starts_with("t[s]"));
+        std::fs::write(&file, csv.replacen("t[s]", "t[sx]", 1)).unwrap();
         go(browser, &server, "/maneuvers").await;
         browser.fill("#choose", file.to_str().unwrap()).await;
-        let row = "document.querySelector('section.file tbody tr:nth-child(4)')";
+        let row = "document.querySelector('section.file tbody tr:nth-child(1)')";
         browser
-            .until(&format!("{row}?.textContent.includes('rda/s')"))
+            .until(&format!("{row}?.textContent.includes('sx')"))
             .await;
         browser.expect_error("422");
         browser.click("section.file [data-part=send]").await;
@@ -195,8 +196,8 @@ async fn a_recording_is_corrected_before_it_is_stored() {
             server.get("/v1/maneuvers").await.json()["maneuvers"],
             json!([])
         );
-        let unit = "section.file tbody tr:nth-child(4) input[list=units]";
-        browser.correct(unit, "rad/s").await;
+        let unit = "section.file tbody tr:nth-child(1) input[list=units]";
+        browser.correct(unit, "s").await;
         browser.click("section.file [data-part=send]").await;
         browser.says("section.file", "Stored as").await;
         browser.picture("stored").await;

@@ -5,6 +5,11 @@ use crate::estimate::options::{Method, Options};
 /// Fewer iterations than this are not divided between the methods.
 const LEAST_SHARED: usize = 20;
 
+/// Whether both methods have a share of the budget.
+pub(crate) fn is_divided(options: &Options) -> bool {
+    options.max_iterations >= LEAST_SHARED
+}
+
 pub(crate) struct Fallback {
     method: Method,
     asked: Method,
@@ -18,7 +23,7 @@ impl Fallback {
         Self {
             method: options.method,
             asked: options.method,
-            half: (budget >= LEAST_SHARED).then_some(budget / 2),
+            half: is_divided(options).then_some(budget / 2),
         }
     }
 

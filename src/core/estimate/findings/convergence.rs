@@ -7,7 +7,8 @@ use crate::flight::{Finding, FindingCode, Severity};
 pub(super) fn findings(estimate: &Estimate, estimated: bool) -> Vec<Finding> {
     let mut findings = Vec::new();
     // what is reproduced to rounding has no lower cost to step to
-    let is_exact = estimate.outcome == Outcome::Stalled && estimate.error_bounds.is_none();
+    let is_exact = matches!(estimate.outcome, Outcome::Stalled | Outcome::Budget)
+        && estimate.error_bounds.is_none();
     if estimated && estimate.outcome.is_short() && !is_exact {
         findings.push(not_converged(estimate));
     }

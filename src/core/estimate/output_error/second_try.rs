@@ -4,6 +4,7 @@
 use std::ops::ControlFlow;
 
 use crate::estimate::answer::Solution;
+use crate::estimate::descent::fallback::is_divided;
 use crate::estimate::options::start::INTERVAL;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
@@ -75,6 +76,8 @@ pub(super) struct Run {
     pub solution: Solution,
     /// Slope of the cost at the end, [`Iteration::gradient_norm`].
     slope: f64,
+    /// The budget was large enough for both methods.
+    divided: bool,
 }
 
 impl Run {
@@ -102,13 +105,19 @@ impl Run {
         let theta = start.theta.clone();
         let mut solution = super::from(problem, theta, &mut observer)?;
         solution.estimate.iterations += number;
-        Ok(Self { solution, slope })
+        Ok(Self {
+            solution,
+            slope,
+            divided: is_divided(&problem.options),
+        })
     }
 
     fn ended_short(&self) -> bool {
         match self.solution.estimate.outcome {
             Outcome::Diverged => true,
             Outcome::Stalled => !self.slope.is_finite() || self.slope > FLAT,
+            // both methods have had their share of it
+            Outcome::Budget => self.divided,
             _ => false,
         }
     }

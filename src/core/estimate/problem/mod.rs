@@ -65,7 +65,7 @@ impl Problem {
 
     /// What is too fast, at the start values, for the integration steps that are left to us to choose.
     pub fn too_stiff(&self) -> Option<TooStiff> {
-        substeps::too_stiff(self)
+        substeps::too_stiff(&self.model, &self.segments, &self.unknowns, &self.options)
     }
 
     /// Samples over all segments.

@@ -1,6 +1,6 @@
 //! How many integration steps lie between two samples: as many as are asked for, or as the fastest motion needs.
 
-use super::Problem;
+use super::unknowns::Unknowns;
 use crate::estimate::options::Options;
 use crate::estimate::options::steps::StepsPerSample;
 use crate::model::Model;
@@ -95,15 +95,20 @@ pub struct TooStiff {
 const MOST_IN_ALL: f64 = 1e8;
 
 /// The first segment whose motion at the start values is too fast for the steps that may be chosen.
-pub(super) fn too_stiff(problem: &Problem) -> Option<TooStiff> {
-    if !is_automatic(&problem.options) {
+pub(super) fn too_stiff(
+    model: &Model,
+    segments: &[Segment],
+    unknowns: &Unknowns,
+    options: &Options,
+) -> Option<TooStiff> {
+    if !is_automatic(options) {
         return None;
     }
-    let (theta, mut parameters) = (problem.unknowns.start(), Vec::new());
+    let (theta, mut parameters) = (unknowns.start(), Vec::new());
     let mut all = 0.0;
-    for (index, segment) in problem.segments.iter().enumerate() {
-        problem.unknowns.parameters(index, &theta, &mut parameters);
-        let mut matrix = StateMatrixAt::new(&problem.model, &parameters);
+    for (index, segment) in segments.iter().enumerate() {
+        unknowns.parameters(index, &theta, &mut parameters);
+        let mut matrix = StateMatrixAt::new(model, &parameters);
         let rates = matrix.rates_at_start(segment, &parameters);
         if !rates.stay_in_range(segment.duration()) {
             // the simulation itself tells where it ends
@@ -113,7 +118,7 @@ pub(super) fn too_stiff(problem: &Problem) -> Option<TooStiff> {
         let steps = rate * segment.steps.longest() / REACH;
         all += steps.max(1.0) * segment.len() as f64;
         if steps > StepsPerSample::MOST as f64 || all > MOST_IN_ALL {
-            let state = initial_state(&problem.model, &parameters);
+            let state = initial_state(model, &parameters);
             let matrix = matrix.at(segment, 0, &state);
             return Some(TooStiff {
                 segment: index,

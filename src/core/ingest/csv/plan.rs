@@ -239,7 +239,10 @@ impl Making<'_, '_> {
                 .unwrap_or((code::NAME_TOO_LONG, String::new())));
         }
         let unit = RecordedUnit::parse(label.unit)?;
-        let is_stamp = self.titles.stamp(at).is_some() || self.titles.has_dates(at);
+        // a plain number is one, though it may look like a year and a day of it
+        let first = self.titles.first_said(at).unwrap_or_default().trim();
+        let is_stamp = (self.titles.stamp(at).is_some() || self.titles.has_dates(at))
+            && first.parse::<f64>().is_err();
         if self.titles.is_text(at) || is_stamp {
             let cell = quoted(self.titles.first_said(at).unwrap_or_default().trim());
             return Err((code::NOT_A_NUMBER, format!("{cell} is not a number")));

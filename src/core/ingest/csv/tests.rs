@@ -114,8 +114,14 @@ fn faults_of_rows_are_reported_with_their_lines() {
 
 #[test]
 fn at_most_twenty_faults_of_rows_are_listed() {
-    let rows: String = (0..100).map(|k| format!("{k}\n{k},1\n")).collect();
+    let rows: String = (0..100).map(|k| format!("{k},1\nx,1\n")).collect();
     assert_eq!(faults(&format!("t[s],a\n{rows}")).len(), 20);
+}
+
+#[test]
+fn a_number_is_no_year_with_a_day() {
+    let reading = reading("t[s],h[m]\n0,4840.071\n1,4840.071\n", None).unwrap();
+    assert_eq!(reading.maneuver.channels()["h"].values[0], 4840.071);
 }
 
 #[test]
