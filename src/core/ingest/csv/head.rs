@@ -55,7 +55,7 @@ pub(super) fn share_of_units(cells: &[&str]) -> f64 {
         .filter(|cell| !cell.is_empty())
         .collect();
     let is_unit = |cell: &&&str| {
-        let is_clock = ["utc", "hh:mm:ss", "time"].contains(&cell.to_ascii_lowercase().as_str());
+        let is_clock = ["utc", "hh:mm:ss"].contains(&cell.to_ascii_lowercase().as_str());
         is_clock || is_missing(cell) || Unit::parse(cell.trim_matches(['[', ']', '(', ')'])).is_ok()
     };
     let is_word = said.iter().any(|cell| Held::by(cell) == Held::Text);

@@ -264,6 +264,9 @@ fn header_lines<'a>(
             Kind::Comment | Kind::Plain => {}
         }
         let mut cells = rows.titles(looked);
+        if looked.is_plain() && rows.count > 2 && is_heading(&cells) {
+            break;
+        }
         if rows.delimiter == Delimiter::Blanks && cells.len() != rows.count {
             cells = by_wide_blanks(looked.said());
         }
@@ -282,6 +285,17 @@ fn header_lines<'a>(
     }
     above.reverse();
     (above, misfit)
+}
+
+/// Whether only the first cell says something, and no unit: it parts what is above from the table.
+fn is_heading(cells: &[&str]) -> bool {
+    let says = |cell: &&str| !cell.trim().is_empty();
+    match cells.split_first() {
+        Some((first, others)) => {
+            says(first) && !others.iter().any(says) && share_of_units(&[first]) < 1.0
+        }
+        None => false,
+    }
 }
 
 /// Titles with blanks in them stand two blanks apart.
