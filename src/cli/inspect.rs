@@ -2,12 +2,10 @@
 
 use std::path::PathBuf;
 
-use comfy_table::Table;
-use comfy_table::presets::UTF8_BORDERS_ONLY;
-
 use super::Failure;
 use super::mapping::MappingOption;
 use super::recording::{format_of, read_bytes, refused};
+use super::table::bordered;
 use crate::flight::Finding;
 use crate::ingest::{self, Format, Inspection, Limits, Reading, summary};
 
@@ -55,15 +53,18 @@ fn told(inspection: &Inspection) -> String {
     text
 }
 
-fn columns(inspection: &Inspection) -> Table {
-    let mut table = Table::new();
-    table.load_style(UTF8_BORDERS_ONLY);
-    table.set_header(["column", "title", "unit", "first value"]);
-    for (at, column) in inspection.columns.iter().enumerate() {
+fn columns(inspection: &Inspection) -> String {
+    let columns = inspection.columns.iter().enumerate();
+    let rows = columns.map(|(at, column)| {
         let number = (at + 1).to_string();
-        table.add_row([&number, &column.title, &column.unit, &column.first]);
-    }
-    table
+        vec![
+            number,
+            column.title.clone(),
+            column.unit.clone(),
+            column.first.clone(),
+        ]
+    });
+    bordered(["column", "title", "unit", "first value"], rows, 0..1)
 }
 
 fn recording(reading: &Reading) -> String {

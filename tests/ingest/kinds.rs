@@ -109,9 +109,9 @@ fn columns_that_no_one_needs_do_no_harm() {
             reading.findings
         );
         // what is needed and cannot be read is a fault with its place
-        let mapping = format!("[channels]\nx = {{from = \"(:,3)\", unit = \"-\"}}\n");
+        let mapping = "[channels]\nx = {from = \"(:,3)\", unit = \"-\"}\n";
         if cell != "1" {
-            let refused = read(text.as_bytes(), &mapping).unwrap_err();
+            let refused = read(text.as_bytes(), mapping).unwrap_err();
             assert!(refused.starts_with("/rows/1/x: line 2:"), "{refused}");
         }
     }

@@ -7,7 +7,7 @@ use super::checks::{MOST_EDITS, too_many_edits};
 use super::knowledge;
 use super::stretch::Stretch;
 use crate::diagnose::{Case, Effect, Flight};
-use crate::estimate::{Derivatives, Estimator, Problem, Role};
+use crate::estimate::{Derivatives, Estimator, Options, Problem, Role, StepsPerSample};
 use crate::flight::Fault;
 use crate::job::spec::JobSpec;
 use crate::model::{Model, ModelDocument, Recorded, expression};
@@ -114,10 +114,15 @@ pub(super) fn case(
             faults.push(Fault::new(pointer, error.code(), error.to_string()));
         }
     }
+    // what is compared is stepped alike: a motion that only shorter steps could follow is beyond what was recorded
+    let steps = problem.segments.iter().map(Segment::most_substeps).max();
     let case = Case {
         document: document.clone(),
         flights,
-        options: spec.options.clone(),
+        options: Options {
+            steps_per_sample: StepsPerSample::Number(steps.unwrap_or(1)),
+            ..spec.options.clone()
+        },
         candidates: (spec.candidates.iter())
             .map(|candidate| Effect::own(&candidate.name, candidate.edits.clone()))
             .collect(),
