@@ -3,7 +3,7 @@
 use crate::estimate::options::{Method, Options};
 
 /// Fewer iterations than this are not divided between the methods.
-const LEAST_SHARED: usize = 20;
+const LEAST_SHARED: usize = 40;
 
 /// Whether both methods have a share of the budget.
 pub(crate) fn is_divided(options: &Options) -> bool {
