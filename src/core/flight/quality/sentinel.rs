@@ -38,7 +38,7 @@ pub(super) fn sentinel(series: &Series<'_>) -> Option<(Vec<usize>, f64)> {
         return None;
     }
     let (least, most) = (*all.first()?, *all.last()?);
-    let found = [least, most].into_iter().find_map(|extreme| {
+    [least, most].into_iter().find_map(|extreme| {
         let rows: Vec<usize> = (0..values.len())
             .filter(|&k| values[k] == extreme)
             .collect();
@@ -61,8 +61,7 @@ pub(super) fn sentinel(series: &Series<'_>) -> Option<(Vec<usize>, f64)> {
         let is_odd = high > low && distance > FURTHER * size && rows.len() >= 3;
         let is_one = (known.is_some() && distance > FAR * size) || is_odd;
         is_one.then(|| (rows, known.unwrap_or(recorded)))
-    });
-    found
+    })
 }
 
 pub(super) fn finding(name: &str, rows: &[usize], number: f64) -> Finding {
