@@ -15,6 +15,7 @@
 //! States are kept once a block; those between are worked out again on the way back. The Jacobians of a block
 //! are evaluated side by side, as those of the forward sensitivities are.
 
+use super::checkpoints::Checkpoints;
 use super::input_path::driven;
 use super::interpolation::Axis;
 use super::method::{InputInterpolation, Integrator, Stage};
@@ -24,25 +25,6 @@ use super::side_by_side::{SPAN, SideBySide};
 use super::simulation::{Diverged, initial_state};
 use super::stepper::{Stepper, between};
 use crate::model::{LANES, Lanes, Model, Program, Workspace};
-
-/// States on the way forward, one for each block, from which the way back starts anew.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Checkpoints {
-    elapsed: Vec<f64>,
-    /// By block, then state.
-    states: Vec<f64>,
-    /// Where outputs have paths, all that went into them: by output, then sample.
-    outputs: Vec<Vec<f64>>,
-}
-
-impl Checkpoints {
-    /// Bytes held.
-    pub(crate) fn bytes(&self) -> usize {
-        let series = std::iter::once(&self.elapsed).chain([&self.states]);
-        let series = series.chain(&self.outputs);
-        series.map(|series| size_of_val(series.as_slice())).sum()
-    }
-}
 
 /// The machinery for one model, reusable for any segment, θ and ȳ.
 pub(crate) struct Adjoint<'m> {

@@ -11,6 +11,7 @@
 mod adjoint;
 mod aligned;
 mod block;
+mod checkpoints;
 mod columns;
 mod input_path;
 mod interpolation;
@@ -38,7 +39,8 @@ mod trajectory;
 mod transition;
 mod transition_recursion;
 
-pub(crate) use adjoint::{Adjoint, Checkpoints};
+pub(crate) use adjoint::Adjoint;
+pub(crate) use checkpoints::Checkpoints;
 pub use block::Block;
 pub use columns::Columns;
 pub use input_path::MOST_DELAY;
