@@ -138,13 +138,13 @@ fn screen_all(
                     effect,
                     screened: Some(screened),
                 }),
-                Err(why) => Err(not_fitted(effect, why)),
+                Err(why) => Err(Box::new(not_fitted(effect, why))),
             }
         });
         for seen in seen.collect::<Vec<_>>() {
             match seen {
                 Ok(seen) => all.push(seen),
-                Err(unfit) => refused.push(unfit),
+                Err(unfit) => refused.push(*unfit),
             }
         }
     }
@@ -209,12 +209,12 @@ fn try_promising(
             .into_par_iter()
             .map(|(effect, trial)| match trial {
                 Ok(trial) => Ok(pass(null, trial, threshold)),
-                Err(why) => Err(not_fitted(effect, why)),
+                Err(why) => Err(Box::new(not_fitted(effect, why))),
             })
             .collect();
         for judged in judged {
             match judged {
-                Err(unfit) => result.refused.push(unfit),
+                Err(unfit) => result.refused.push(*unfit),
                 Ok(judged) => {
                     let trial = match &judged {
                         Ok(passed) => &passed.trial,

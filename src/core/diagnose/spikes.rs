@@ -197,7 +197,7 @@ fn stuck(residual: &[f64], measured: &[f64]) -> Vec<Spike> {
 
 fn middle(series: &[f64], k: usize) -> f64 {
     let around = k.saturating_sub(SIDE)..(k + SIDE + 1).min(series.len());
-    let mut values: Vec<f64> = series[around].iter().copied().collect();
+    let mut values: Vec<f64> = series[around].to_vec();
     values.retain(|value| value.is_finite());
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)

@@ -40,8 +40,8 @@ mod transition;
 mod transition_recursion;
 
 pub(crate) use adjoint::Adjoint;
-pub(crate) use checkpoints::Checkpoints;
 pub use block::Block;
+pub(crate) use checkpoints::Checkpoints;
 pub use columns::Columns;
 pub use input_path::MOST_DELAY;
 pub(crate) use input_path::{driven, path_out_of_bounds};

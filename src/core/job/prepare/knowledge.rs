@@ -168,10 +168,16 @@ fn size(pointer: &str, known: &KnownSize, faults: &mut Vec<Fault>) {
             "a standard deviation is 0 or more; 0 means that it is not there",
         );
     }
-    if known.lower.is_some_and(|lower| !(lower <= 0.0)) {
+    if known
+        .lower
+        .is_some_and(|lower| lower > 0.0 || lower.is_nan())
+    {
         fault("lower", "it must be 0 or less: no effect is in the range");
     }
-    if known.upper.is_some_and(|upper| !(upper >= 0.0)) {
+    if known
+        .upper
+        .is_some_and(|upper| upper < 0.0 || upper.is_nan())
+    {
         fault("upper", "it must be 0 or more: no effect is in the range");
     }
     if known.size_sd.is_none() && known.lower.is_none() && known.upper.is_none() {
