@@ -1,6 +1,8 @@
 //! Every effect contains its own absence: at the values of `Edited::absence` the edited model gives the outputs of the
 //! model before, for each kind of the catalogue and all that it can be aimed at in six models.
 
+use std::collections::BTreeSet;
+
 use trimtab_core::model::{Edit, EditKind, Model, ModelDocument, catalog};
 
 use super::effects::outputs;
@@ -34,9 +36,14 @@ fn edits(document: &ModelDocument, kind: EditKind) -> Vec<Edit> {
             .chain(states.iter().map(|state| format!("{state}dot")))
             .chain(["qbar".to_string()])
             .collect(),
-        EditKind::UnsteadyAero | EditKind::StallHysteresis => {
-            signals().map(|name| (*name).to_string()).collect()
-        }
+        EditKind::UnsteadyAero => signals().map(|name| (*name).to_string()).collect(),
+        // flow separates with a flow angle, which stays below the bound of the stall; a bank angle need not
+        EditKind::StallHysteresis => (signals().map(|name| (*name).to_string()))
+            .chain(["alpha".to_string(), "beta".to_string()])
+            .filter(|name| ["alpha", "beta"].contains(&name.as_str()))
+            .collect::<BTreeSet<String>>()
+            .into_iter()
+            .collect(),
         EditKind::Wind => ["constant", "ramp", "shear"].map(String::from).to_vec(),
         EditKind::StructuralMode => inputs.iter().map(|name| (*name).to_string()).collect(),
         _ => Vec::new(),
