@@ -18,15 +18,16 @@
 //! `tests/browser`, as in `tests/browser cargo test --test service pages::`.
 //!
 //! **Add an effect.** An effect is an edit of a model document with parameters more, without effect at a value of them.
-//! 1. `src/core/model/edit/mod.rs`: a variant of `EditKind` whose doc comment is its formula; in `ALL`, `name` and
-//!    `Edit::apply`. What `target` and `term` mean for it goes into the doc comments of `Edit`.
+//! 1. `src/core/model/edit/written.rs`: a variant of `EditKind` whose doc comment is its formula; in `ALL` and `name`; in
+//!    `Edit::apply` of `mod.rs` beside it. What `target` and `term` mean for it goes into the doc comments of `Edit`.
 //! 2. Beside it, in the file of its subject (`sensors.rs`, `inputs.rs`, `dynamics.rs`, `wind.rs`, ...): a function over the
 //!    `Sheet`, which looks the target up, chooses a free name, substitutes, and adds the parameters, each
 //!    with what it is for (`AddedRole`), unit, start and physical range.
-//! 3. `src/core/diagnose/catalogue.rs`: for which targets it is a candidate; `sentence.rs` beside it: its words.
+//! 3. `src/core/diagnose/candidates`: in the file of its subject, for which quantities it is a candidate; in `ranges.rs`, which
+//!    sizes are usual. Above, `starts.rs`: where its fit begins, if one linear step does not tell; `sentence.rs`: its words.
 //! 4. `tests/numbers/effects.rs`: a row of `cases` (without effect the same outputs, with effect others), and in
 //!    `effects_go_the_right_way` that they change the way they should.
-//!    `cargo test -p trimtab-core --test numbers effects::`.
+//!    `cargo test -p trimtab-core --test numbers -- effects:: absence::` (the latter tries each kind on six models by itself).
 //! 5. `tests/bench/confusion/strength.rs`: a first guess of its size. The list of kinds in `README.md`, and the API document
 //!    (last line of "Add an endpoint").
 //!

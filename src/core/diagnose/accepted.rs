@@ -2,7 +2,7 @@
 
 use super::effect::Effect;
 use super::fitted::Fitted;
-use super::gate::Passed;
+use super::passed::Passed;
 use super::report::{Evidence, Member};
 use super::threshold::Threshold;
 use crate::model::Added;

@@ -95,13 +95,13 @@ pub(super) fn answer(
         }
     }
     let residuals = analyse(&after.solution.histories);
-    let incoherent = if found.accepted.iter().any(|a| a.effect.is_noise()) {
+    let following = if found.accepted.iter().any(|a| a.effect.is_noise()) {
         Vec::new()
     } else {
         coherent(case, last)
     };
     let left = Left {
-        coherent: &incoherent,
+        coherent: &following,
         differs: found.differs_between_maneuvers(),
     };
     let verdict = verdict::of(case, declared, &found, &left);

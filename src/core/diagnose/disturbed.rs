@@ -54,7 +54,7 @@ fn filtered(case: &Case, base: &Fitted, held: &dyn Fn(&str) -> bool) -> Result<F
         })
         .collect();
     let solution = filter_error(&problem, &mut |_| ControlFlow::Continue(()))
-        .map_err(|_| Unfit("the filter finds no steady gain".into()))?;
+        .map_err(|why| Unfit(why.to_string()))?;
     if solution.estimate.outcome == Outcome::Diverged {
         return Err(Unfit(solution.estimate.reason));
     }

@@ -49,6 +49,21 @@ pub struct Effect {
 }
 
 impl Effect {
+    /// Whether a size of zero is no effect; a rate limit or a stall is absent at the other end of its range.
+    pub(super) fn vanishes_at_zero(&self) -> bool {
+        use EditKind::{ActuatorRateLimit, StallHysteresis};
+        !matches!(
+            self.kind,
+            EffectKind::Edit(ActuatorRateLimit | StallHysteresis)
+        )
+    }
+
+    /// Effects that stand at one place in time repeat in no other part.
+    pub(super) fn is_local_in_time(&self) -> bool {
+        use EditKind::{Gust, InitialState};
+        matches!(self.kind, EffectKind::Edit(Gust | InitialState))
+    }
+
     /// A single edit of the document.
     pub fn edit(kind: EditKind, target: impl Into<String>, term: Option<&str>) -> Self {
         Self::of(Edit {

@@ -7,6 +7,7 @@ use super::case::Case;
 use super::effect::{Effect, EffectKind};
 use super::fitted::Fitted;
 use super::null_model::NullModel;
+use super::passed::Passed;
 use super::predicted::Predicted;
 use super::repeats::disagreement;
 use super::report::{OutputGain, Refusal};
@@ -30,63 +31,6 @@ const LEAST_SHARE: f64 = 0.1;
 
 /// Where flights that were not fitted say nothing of an effect, those that were must say this much more.
 const UNHEARD: f64 = 2.0;
-
-/// The price of a size of which nothing is known,
-const UNKNOWN: f64 = 4.0;
-
-/// and the most that a known one may cost: the data have the last word.
-const SURPRISING: f64 = 12.0;
-
-/// A candidate with nothing against it.
-#[derive(Clone, Debug)]
-pub(super) struct Passed {
-    pub trial: Trial,
-    /// What is reported of it: converged, by output error.
-    pub settled: Fitted,
-    /// By output, N ln(σ0²/σ1²) on flights that were not fitted; empty where there are none.
-    pub gains: Vec<OutputGain>,
-}
-
-impl Passed {
-    /// By what candidates are chosen: twice the gain of the likelihood on the flights that were fitted, and the gain of
-    /// plain errors on those that were not, less the price of its parameters (Schwarz) and of a size that is not usual.
-    pub(super) fn merit(&self) -> f64 {
-        let samples = self.settled.problem.samples().max(1) as f64;
-        let held_out: f64 = self.gains.iter().map(|gain| gain.gain).sum();
-        let price = self.trial.freedom as f64 * samples.ln();
-        self.trial.likelihood_ratio + held_out - price - self.surprise()
-    }
-
-    /// Twice the logarithm of how usual its size is, where that is known of its instrument: of candidates that the data
-    /// cannot tell apart the more usual one comes first.
-    fn surprise(&self) -> f64 {
-        let Some(plausible) = self.trial.effect.plausible else {
-            return UNKNOWN;
-        };
-        let size = (self.trial.added.first())
-            .map(|size| self.settled.sizes(std::slice::from_ref(size)))
-            .and_then(|sizes| sizes.first().map(|size| size.value));
-        match size {
-            Some(size) if plausible.sd > 0.0 && vanishes_at_zero(&self.trial.effect) => {
-                (size / plausible.sd).powi(2).min(SURPRISING)
-            }
-            _ => UNKNOWN,
-        }
-    }
-
-    /// What a linear step promised of it: of the likelihood, and of plain errors. What was tried outright has kept it.
-    pub(super) fn promise(&self) -> (f64, f64) {
-        let held_out: f64 = self.gains.iter().map(|gain| gain.gain).sum();
-        let reached = (
-            self.trial.likelihood_ratio,
-            held_out.max(self.trial.likelihood_ratio),
-        );
-        (self.trial.screened.as_ref()).map_or(reached, |seen| {
-            let promised = (seen.promise.max(seen.score), seen.plain);
-            (promised.0.min(reached.0), promised.1.min(reached.1))
-        })
-    }
-}
 
 type Objection = (Refusal, String);
 
@@ -121,7 +65,7 @@ fn judge(
     within_range(trial, &settled)?;
     told_from_nothing(&trial.effect, &settled, &trial.added)?;
     told_from_earlier(null, &settled, &trial.added)?;
-    if let Some(size) = (trial.added.first()).filter(|_| !is_local_in_time(&trial.effect))
+    if let Some(size) = (trial.added.first()).filter(|_| !trial.effect.is_local_in_time())
         && let Some(why) = disagreement(&settled, &size.name)
     {
         return Err((Refusal::NotRepeatable, why));
@@ -177,7 +121,7 @@ fn settle(case: &Case, trial: &Trial) -> Result<Fitted, Objection> {
 
 /// Some size that it adds is clearly not nothing.
 fn told_from_nothing(effect: &Effect, fitted: &Fitted, added: &[Added]) -> Result<(), Objection> {
-    if !vanishes_at_zero(effect) {
+    if !effect.vanishes_at_zero() {
         return Ok(());
     }
     let Some(size) = added.first() else {
@@ -242,7 +186,7 @@ fn predictive(
     settled: &Fitted,
     least: f64,
 ) -> Result<Vec<OutputGain>, Objection> {
-    let repeats = !trial.effect.is_noise() && !is_local_in_time(&trial.effect);
+    let repeats = !trial.effect.is_noise() && !trial.effect.is_local_in_time();
     let (Some(before), true) = (&null.predicted, repeats) else {
         return Ok(Vec::new());
     };
@@ -253,7 +197,7 @@ fn predictive(
     };
     let gains = after.gains_over(before);
     let gain: f64 = gains.iter().map(|gain| gain.gain).sum();
-    let expected = after.distance_from(before);
+    let expected = after.gain_expected_over(before);
     if expected < HEARD && trial.likelihood_ratio < UNHEARD * least {
         let why = format!(
             "flights that were not fitted hardly show it (their likelihood changes by {expected:.1}), and those that were do not show it clearly enough alone"
@@ -281,19 +225,4 @@ fn decides(effect: &Effect, role: AddedRole) -> bool {
     use AddedRole::{Delay, Steepness, TimeConstant};
     let is_stall = effect.kind == EffectKind::Edit(EditKind::StallHysteresis);
     !(is_stall && matches!(role, Steepness | TimeConstant | Delay))
-}
-
-/// Whether a size of zero is no effect; a rate limit or a stall is absent at the other end of its range.
-fn vanishes_at_zero(effect: &Effect) -> bool {
-    use EditKind::{ActuatorRateLimit, StallHysteresis};
-    !matches!(
-        effect.kind,
-        EffectKind::Edit(ActuatorRateLimit | StallHysteresis)
-    )
-}
-
-/// Effects that stand at one place in time repeat in no other part.
-pub(super) fn is_local_in_time(effect: &Effect) -> bool {
-    use EditKind::{Gust, InitialState};
-    matches!(effect.kind, EffectKind::Edit(Gust | InitialState))
 }

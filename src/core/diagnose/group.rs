@@ -1,6 +1,6 @@
 //! Alias groups: candidates that the data cannot tell apart.
 
-use super::gate::Passed;
+use super::passed::Passed;
 use super::projection::dot;
 use super::report::Member;
 

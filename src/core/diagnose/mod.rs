@@ -6,6 +6,8 @@
 //! of the data, and that helps to predict flights which were not fitted. What the data cannot tell apart is one alias
 //! group, what they cannot show is reported as invisible. An [`Effect`] is an edit of the model document, so that
 //! what results is a document again.
+//!
+//! Invariant: no decision looks at flights of the role `Final`, and every candidate is accepted or refused with a reason.
 
 mod accepted;
 mod answer;
@@ -25,6 +27,7 @@ mod inconclusive;
 mod knowledge;
 mod null_model;
 mod outliers;
+mod passed;
 mod plausible;
 mod polish;
 mod predicted;

@@ -77,7 +77,7 @@ impl Predicted {
 
     /// The gain that is to be expected of the better of two predictions: Σ N ln(1 + Σ d²/Σ e²), d by how much they
     /// differ, e the errors of this one.
-    pub(super) fn distance_from(&self, before: &Self) -> f64 {
+    pub(super) fn gain_expected_over(&self, before: &Self) -> f64 {
         let pairs = self.outputs.iter().zip(&before.outputs);
         let of = |(now, before): (&Errors, &Errors)| {
             let differences = now.residual.iter().zip(&before.residual);

@@ -6,9 +6,10 @@ use super::accepted::Accepted;
 use super::case::Case;
 use super::effect::{Effect, EffectKind, Treatment};
 use super::fitted::Fitted;
-use super::gate::{Passed, pass};
+use super::gate::pass;
 use super::group::group;
 use super::null_model::NullModel;
+use super::passed::Passed;
 use super::refused::{after_screen, after_trial, not_fitted};
 use super::report::{Refusal, RefusedEffect, Step};
 use super::screen::{Screen, Screened, independent_questions};
@@ -215,21 +216,16 @@ fn try_promising(
         for judged in judged {
             match judged {
                 Err(unfit) => result.refused.push(*unfit),
-                Ok(judged) => {
-                    let trial = match &judged {
-                        Ok(passed) => &passed.trial,
-                        Err(refused) => &refused.0,
-                    };
-                    tell(watcher, &tried_step(trial, number))?;
-                    match judged {
-                        Ok(one) => passed.push(one),
-                        Err(refused) => {
-                            let (trial, why) = *refused;
-                            tell_refusal(&trial, &why, number, watcher)?;
-                            let refused = after_trial(&trial, why, None, threshold);
-                            result.refused.push(refused);
-                        }
-                    }
+                Ok(Ok(one)) => {
+                    tell(watcher, &tried_step(&one.trial, number))?;
+                    passed.push(one);
+                }
+                Ok(Err(refused)) => {
+                    let (trial, why) = *refused;
+                    tell(watcher, &tried_step(&trial, number))?;
+                    tell_refusal(&trial, &why, number, watcher)?;
+                    let refused = after_trial(&trial, why, None, threshold);
+                    result.refused.push(refused);
                 }
             }
         }

@@ -1,0 +1,62 @@
+//! A candidate that passed the gate, and by what it is chosen among the others that did.
+
+use super::fitted::Fitted;
+use super::report::OutputGain;
+use super::trial::Trial;
+
+/// The price of a size of which nothing is known,
+const UNKNOWN: f64 = 4.0;
+
+/// and the most that a known one may cost: the data have the last word.
+const SURPRISING: f64 = 12.0;
+
+/// A candidate with nothing against it.
+#[derive(Clone, Debug)]
+pub(super) struct Passed {
+    pub trial: Trial,
+    /// What is reported of it: converged, by output error.
+    pub settled: Fitted,
+    /// By output, N ln(σ0²/σ1²) on flights that were not fitted; empty where there are none.
+    pub gains: Vec<OutputGain>,
+}
+
+impl Passed {
+    /// By what candidates are chosen: twice the gain of the likelihood on the flights that were fitted, and the gain of
+    /// plain errors on those that were not, less the price of its parameters (Schwarz) and of a size that is not usual.
+    pub(super) fn merit(&self) -> f64 {
+        let samples = self.settled.problem.samples().max(1) as f64;
+        let held_out: f64 = self.gains.iter().map(|gain| gain.gain).sum();
+        let price = self.trial.freedom as f64 * samples.ln();
+        self.trial.likelihood_ratio + held_out - price - self.surprise()
+    }
+
+    /// Twice the logarithm of how usual its size is, where that is known of its instrument: of candidates that the data
+    /// cannot tell apart the more usual one comes first.
+    fn surprise(&self) -> f64 {
+        let Some(plausible) = self.trial.effect.plausible else {
+            return UNKNOWN;
+        };
+        let size = (self.trial.added.first())
+            .map(|size| self.settled.sizes(std::slice::from_ref(size)))
+            .and_then(|sizes| sizes.first().map(|size| size.value));
+        match size {
+            Some(size) if plausible.sd > 0.0 && self.trial.effect.vanishes_at_zero() => {
+                (size / plausible.sd).powi(2).min(SURPRISING)
+            }
+            _ => UNKNOWN,
+        }
+    }
+
+    /// What a linear step promised of it: of the likelihood, and of plain errors. What was tried outright has kept it.
+    pub(super) fn promise(&self) -> (f64, f64) {
+        let held_out: f64 = self.gains.iter().map(|gain| gain.gain).sum();
+        let reached = (
+            self.trial.likelihood_ratio,
+            held_out.max(self.trial.likelihood_ratio),
+        );
+        (self.trial.screened.as_ref()).map_or(reached, |seen| {
+            let promised = (seen.promise.max(seen.score), seen.plain);
+            (promised.0.min(reached.0), promised.1.min(reached.1))
+        })
+    }
+}
