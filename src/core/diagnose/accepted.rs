@@ -24,6 +24,7 @@ impl Accepted {
             trial,
             settled,
             gains,
+            ..
         } = passed;
         let screened = trial.screened.as_ref();
         let held_out = gains.iter().map(|gain| gain.gain).sum();

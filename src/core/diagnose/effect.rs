@@ -58,6 +58,13 @@ impl Effect {
         )
     }
 
+    /// Whether another is no candidate any more once this one is in the model: itself, and of a flow that separates once
+    /// another separation.
+    pub(super) fn rules_out(&self, other: &Self) -> bool {
+        let stall = EffectKind::Edit(EditKind::StallHysteresis);
+        self == other || (self.kind == stall && other.kind == stall)
+    }
+
     /// Effects that stand at one place in time repeat in no other part.
     pub(super) fn is_local_in_time(&self) -> bool {
         use EditKind::{Gust, InitialState};

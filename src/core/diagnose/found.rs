@@ -70,16 +70,20 @@ impl Found {
         refused.cloned().collect()
     }
 
-    pub(super) fn needless(&mut self, removed: Accepted, cost: f64) {
+    /// Notes why an effect that was accepted was taken out again, and what it was worth in the end, if that is known.
+    pub(super) fn removed(
+        &mut self,
+        removed: Accepted,
+        (reason, sentence): (Refusal, String),
+        worth: Option<f64>,
+    ) {
         self.refused
             .retain(|refused| refused.effect != removed.effect);
         self.refused.push(RefusedEffect {
-            sentence: format!(
-                "it was accepted in an earlier round; with the later effects in the model its likelihood ratio is only {cost:.1}"
-            ),
+            sentence,
             effect: removed.effect,
-            reason: Refusal::Needless,
-            likelihood_ratio: Some(cost),
+            reason,
+            likelihood_ratio: worth,
             visible_fraction: removed.evidence.visible_fraction,
             smallest_seen: removed.evidence.smallest_seen,
             held_out: removed.evidence.held_out,

@@ -11,6 +11,7 @@ use super::passed::Passed;
 use super::predicted::Predicted;
 use super::repeats::disagreement;
 use super::report::{OutputGain, Refusal};
+use super::stack::Layout;
 use super::threshold::Threshold;
 use super::trial::Trial;
 use crate::estimate::Role;
@@ -32,7 +33,7 @@ const LEAST_SHARE: f64 = 0.1;
 /// Where flights that were not fitted say nothing of an effect, those that were must say this much more.
 const UNHEARD: f64 = 2.0;
 
-type Objection = (Refusal, String);
+pub(super) type Objection = (Refusal, String);
 
 /// Lets a candidate pass, or says what speaks against it.
 ///
@@ -45,6 +46,7 @@ pub(super) fn pass(
 ) -> Result<Passed, Box<(Trial, Objection)>> {
     match judge(null, &trial, threshold) {
         Ok((settled, gains)) => Ok(Passed {
+            plain_gain: plain_gain(null, &trial.effect, &settled, &gains),
             trial,
             settled,
             gains,
@@ -60,16 +62,11 @@ fn judge(
 ) -> Result<(Fitted, Vec<OutputGain>), Objection> {
     let least = threshold.of(trial.freedom, trial.starts);
     significant(trial, least)?;
-    within_range(trial, &trial.likeliest)?;
+    within_range(&trial.effect, &trial.likeliest, &trial.added)?;
     let settled = settle(null.case, trial)?;
-    within_range(trial, &settled)?;
-    told_from_nothing(&trial.effect, &settled, &trial.added)?;
+    holds(&trial.effect, &settled, &trial.added)?;
     told_from_earlier(null, &settled, &trial.added)?;
-    if let Some(size) = (trial.added.first()).filter(|_| !trial.effect.is_local_in_time())
-        && let Some(why) = disagreement(&settled, &size.name)
-    {
-        return Err((Refusal::NotRepeatable, why));
-    }
+    repeats(trial, &settled)?;
     let gains = predictive(null, trial, &settled, least)?;
     Ok((settled, gains))
 }
@@ -85,9 +82,18 @@ fn significant(trial: &Trial, least: f64) -> Result<(), Objection> {
     Err((Refusal::NotSignificant, why))
 }
 
-fn within_range(trial: &Trial, fitted: &Fitted) -> Result<(), Objection> {
-    let mut at_bound = fitted.at_bound(&trial.added);
-    at_bound.retain(|added| decides(&trial.effect, added.role));
+/// Whether the size in a settled fit is one that can be told of: inside its range, and clearly not nothing.
+///
+/// # Errors
+/// What speaks against it.
+pub(super) fn holds(effect: &Effect, settled: &Fitted, added: &[Added]) -> Result<(), Objection> {
+    within_range(effect, settled, added)?;
+    told_from_nothing(effect, settled, added)
+}
+
+fn within_range(effect: &Effect, fitted: &Fitted, added: &[Added]) -> Result<(), Objection> {
+    let mut at_bound = fitted.at_bound(added);
+    at_bound.retain(|added| decides(effect, added.role));
     match at_bound.first() {
         None => Ok(()),
         Some(added) => Err((
@@ -179,6 +185,19 @@ fn told_from_earlier(
     Ok(())
 }
 
+/// Each of its sizes is the same in all parts of the data.
+fn repeats(trial: &Trial, settled: &Fitted) -> Result<(), Objection> {
+    if trial.effect.is_local_in_time() {
+        return Ok(());
+    }
+    let is_size = |(place, added): &(usize, &Added)| *place == 0 || added.role == AddedRole::Size;
+    let mut sizes = trial.added.iter().enumerate().filter(is_size);
+    match sizes.find_map(|(_, size)| disagreement(settled, &size.name)) {
+        Some(why) => Err((Refusal::NotRepeatable, why)),
+        None => Ok(()),
+    }
+}
+
 /// Whether flights that were not fitted are predicted better with it; gains by output.
 fn predictive(
     null: &NullModel<'_>,
@@ -217,6 +236,21 @@ fn predictive(
         return Err((Refusal::NotPredictive, why));
     }
     Ok(gains)
+}
+
+/// What smaller plain errors are worth: on flights that were not fitted, or where all were, on these. `None` of what does
+/// not repeat, and of innovations, which are no such errors.
+fn plain_gain(
+    null: &NullModel<'_>,
+    effect: &Effect,
+    settled: &Fitted,
+    gains: &[OutputGain],
+) -> Option<f64> {
+    if null.predicted.is_none() && !effect.is_noise() {
+        let layout = Layout::of(&settled.problem);
+        return Some(layout.plain_gain(&null.base.residual, &settled.residual));
+    }
+    (!gains.is_empty()).then(|| gains.iter().map(|gain| gain.gain).sum())
 }
 
 /// Whether a parameter at its bound speaks against the effect: how steeply and how late the flow separates is hardly seen

@@ -71,7 +71,7 @@ use declared::Declared;
 use disturbed::disturbed_throughout;
 use fitted::Fitted;
 use found::Found;
-use review::remove_needless;
+use review::review;
 use round::round;
 use watch::{Stopped, tell};
 
@@ -95,7 +95,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
     let mut number = 1;
     while number <= MOST_ROUNDS {
         let left: Vec<Effect> = (catalogue.iter())
-            .filter(|effect| !found.accepted.iter().any(|a| a.effect == **effect))
+            .filter(|effect| !found.accepted.iter().any(|a| a.effect.rules_out(effect)))
             .cloned()
             .collect();
         let round = round(case, &base, left, &found.added(), number, watcher)?;
@@ -123,7 +123,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
         }
         number += 1;
     }
-    remove_needless(case, &declared.fitted, &mut base, &mut found);
+    review(case, &declared.fitted, &mut base, &mut found);
     Ok(answer(case, &declared, &base, found)?)
 }
 

@@ -18,16 +18,28 @@ pub(super) struct Passed {
     pub settled: Fitted,
     /// By output, N ln(σ0²/σ1²) on flights that were not fitted; empty where there are none.
     pub gains: Vec<OutputGain>,
+    /// Their sum; where all flights were fitted, that of these. `None` of what does not repeat.
+    pub plain_gain: Option<f64>,
 }
 
 impl Passed {
-    /// By what candidates are chosen: twice the gain of the likelihood on the flights that were fitted, and the gain of
-    /// plain errors on those that were not, less the price of its parameters (Schwarz) and of a size that is not usual.
+    /// By what candidates are chosen: what the data say for it, less the price of its parameters (Schwarz) and of a size that
+    /// is not usual.
     pub(super) fn merit(&self) -> f64 {
         let samples = self.settled.problem.samples().max(1) as f64;
-        let held_out: f64 = self.gains.iter().map(|gain| gain.gain).sum();
         let price = self.trial.freedom as f64 * samples.ln();
-        self.trial.likelihood_ratio + held_out - price - self.surprise()
+        self.said() - price - self.surprise()
+    }
+
+    /// Twice the geometric mean of two gains: of the likelihood with coloured noise, and of the plain errors that an
+    /// engineer is shown. Where noise is white they are alike. Where it is not each can mislead: whitening discards what
+    /// is slow, and plain errors take colour for signal.
+    fn said(&self) -> f64 {
+        let ratio = self.trial.likelihood_ratio;
+        match self.plain_gain {
+            Some(plain) => 2.0 * (ratio.max(0.0) * plain.max(0.0)).sqrt(),
+            None => ratio,
+        }
     }
 
     /// Twice the logarithm of how usual its size is, where that is known of its instrument: of candidates that the data
@@ -49,10 +61,11 @@ impl Passed {
 
     /// What a linear step promised of it: of the likelihood, and of plain errors. What was tried outright has kept it.
     pub(super) fn promise(&self) -> (f64, f64) {
-        let held_out: f64 = self.gains.iter().map(|gain| gain.gain).sum();
         let reached = (
             self.trial.likelihood_ratio,
-            held_out.max(self.trial.likelihood_ratio),
+            self.plain_gain
+                .unwrap_or(0.0)
+                .max(self.trial.likelihood_ratio),
         );
         (self.trial.screened.as_ref()).map_or(reached, |seen| {
             let promised = (seen.promise.max(seen.score), seen.plain);

@@ -50,7 +50,7 @@ pub(super) fn disagreement(fitted: &Fitted, parameter: &str) -> Option<String> {
         .map(|p| format!("{:.3e} ± {:.1e}", size + p.by, p.error))
         .collect();
     Some(format!(
-        "its size differs between parts of the data: {} (SI)",
+        "{parameter} differs between parts of the data: {} (SI)",
         sizes.join(", ")
     ))
 }

@@ -241,7 +241,7 @@ impl<'c> Screen<'c> {
         let colour = Colour::of_orders(layout, &left, &metric.orders);
         let promise = 2.0 * (colour.ln_likelihood(layout, &left) - metric.ln_likelihood);
         let length = norm(&explained).max(f64::MIN_POSITIVE);
-        let plain = plain_gain(layout, &metric.residual, &left);
+        let plain = layout.plain_gain(&metric.residual, &left);
         Screened {
             start: Values::new(),
             before: Values::new(),
@@ -291,22 +291,6 @@ impl<'c> Screen<'c> {
         let seen = self.in_metric(metric, &columns);
         seen.promise.min(seen.score) > critical(probability, 1.0, columns.len())
     }
-}
-
-/// N ln(Σ e0²/Σ e1²) over all outputs, of samples that there are.
-fn plain_gain(layout: &Layout, before: &[f64], after: &[f64]) -> f64 {
-    let of_output = |output: usize| {
-        let (mut samples, mut ahead, mut behind) = (0.0, 0.0, 0.0);
-        for series in layout.series.iter().filter(|s| s.output == output) {
-            for at in series.range.clone().filter(|&at| after[at].is_finite()) {
-                samples += 1.0;
-                ahead += before[at] * before[at];
-                behind += after[at] * after[at];
-            }
-        }
-        samples * (ahead.max(f64::MIN_POSITIVE) / behind.max(f64::MIN_POSITIVE)).ln()
-    };
-    (0..layout.outputs).map(of_output).sum()
 }
 
 /// The column with what is not there marked as such.

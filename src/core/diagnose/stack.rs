@@ -52,6 +52,23 @@ impl Layout {
         }
     }
 
+    /// Σ N ln(Σ e0²/Σ e1²) over the outputs, of two columns of residuals, of samples that there are: what smaller RMS
+    /// errors are worth.
+    pub(super) fn plain_gain(&self, before: &[f64], after: &[f64]) -> f64 {
+        let of_output = |output: usize| {
+            let (mut samples, mut ahead, mut behind) = (0.0, 0.0, 0.0);
+            for series in self.series.iter().filter(|s| s.output == output) {
+                for at in series.range.clone().filter(|&at| after[at].is_finite()) {
+                    samples += 1.0;
+                    ahead += before[at] * before[at];
+                    behind += after[at] * after[at];
+                }
+            }
+            samples * (ahead.max(f64::MIN_POSITIVE) / behind.max(f64::MIN_POSITIVE)).ln()
+        };
+        (0..self.outputs).map(of_output).sum()
+    }
+
     /// The residuals of time histories; NaN where there is no sample.
     pub(super) fn residual(&self, histories: &[TimeHistory]) -> Vec<f64> {
         let mut column = vec![f64::NAN; self.len];

@@ -7,6 +7,13 @@ use super::sheet::{Sheet, dimension, unknown};
 use super::text::replace_name;
 use crate::flight::{Dimension, PhysicalQuantity};
 
+/// What a separation of the whole flow may add to a pitching moment coefficient: a lift coefficient of about 1 that
+/// moves by less than a third of the chord.
+const MOMENT: (f64, f64) = (-0.3, 0.3);
+
+/// What it may add to a drag coefficient: not less than nothing.
+const DRAG: (f64, f64) = (0.0, 1.0);
+
 /// τ1 Ẋ = ½ (1 - tanh a1 (α - τ2 α̇ - α*)) - X; in a lift α becomes ((1 + √X)/2)² α, to a moment or a drag C (1 - X) is
 /// added.
 ///
@@ -44,18 +51,20 @@ pub(super) fn hysteresis(sheet: &mut Sheet) -> Result<(), EditError> {
     for target in targets {
         let is_rate = (sheet.document.states.get(target))
             .is_some_and(|state| dimension(&state.unit) == Dimension::NONE.over(Dimension::SECOND));
-        let is_added = matches!(
-            quantities.get(target),
-            Some(PhysicalQuantity::PitchingMomentCoefficient | PhysicalQuantity::DragCoefficient)
-        );
-        if is_rate || is_added {
+        let share = match quantities.get(target) {
+            Some(PhysicalQuantity::PitchingMomentCoefficient) => Some(Some(MOMENT)),
+            Some(PhysicalQuantity::DragCoefficient) => Some(Some(DRAG)),
+            _ if is_rate => Some(None),
+            _ => None,
+        };
+        if let Some(range) = share {
             let (_, measures) = sheet.law(target)?;
             let share = sheet.free(&format!("{target}_{separation}"));
             let words = format!("effect on {target} of the separation of the flow");
             sheet.add(
                 &share,
                 AddedRole::Size,
-                unknown(measures.to_string(), 0.0, None, words),
+                unknown(measures.to_string(), 0.0, range, words),
             );
             let (equation, _) = sheet.law(target)?;
             *equation = format!("{equation} + {share}*(1 - {separation})");
