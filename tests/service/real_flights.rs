@@ -149,7 +149,7 @@ fn lateral_motion_is_predicted_better() {
     assert_eq!(diagnosis.verdict, Verdict::Unexplained);
     assert_eq!(
         not_better(&diagnosis),
-        (vec!["ay of rudder-final".into()], 6)
+        (vec!["ay of aileron-final".into()], 6)
     );
     // what got worse is said
     let worse =
