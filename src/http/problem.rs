@@ -70,7 +70,7 @@ pub struct Problem {
     code: Code,
     detail: String,
     errors: Vec<Fault>,
-    mapping: Option<serde_json::Value>,
+    mapping: Option<Box<serde_json::Value>>,
     headers: Vec<(HeaderName, HeaderValue)>,
 }
 
@@ -135,7 +135,7 @@ impl Problem {
             code: self.code.name().to_string(),
             detail: self.detail,
             errors: self.errors,
-            mapping: self.mapping,
+            mapping: self.mapping.map(|mapping| *mapping),
             request_id,
         }
     }
@@ -156,7 +156,7 @@ impl From<IngestError> for Problem {
             .draft()
             .and_then(|draft| serde_json::from_str(draft).ok());
         Self {
-            mapping: draft,
+            mapping: draft.map(Box::new),
             ..Self::of_faults(Code::InvalidManeuver, error.into_faults())
         }
     }
