@@ -8,8 +8,8 @@ use crate::ingest::{Format, Mapping};
 
 #[derive(clap::Args, Debug)]
 pub(super) struct MappingOption {
-    /// Where MAT files and ASCII matrices have time and channels: fvsysid-attas, fvsysid-hfb320, sidpac, or a mapping
-    /// document (.toml, .json).
+    /// Where MAT files, ASCII matrices, workbooks and logs have time and channels: ardupilot, fvsysid-attas, fvsysid-hfb320,
+    /// px4, sidpac, or a mapping document (.toml, .json).
     #[arg(long, value_name = "FILE|NAME")]
     mapping: Option<String>,
 }
@@ -18,7 +18,10 @@ impl MappingOption {
     /// As a server reads it: the name of a bundled mapping, or a JSON document. `None` for a recording that says names
     /// and units itself.
     pub(super) fn text(&self, recording: &Path) -> Result<Option<String>, Failure> {
-        let needs_one = matches!(format_of(recording), Format::Mat | Format::Ascii);
+        let needs_one = matches!(
+            format_of(recording),
+            Format::Mat | Format::Ascii | Format::Unstated
+        );
         let Some(mapping) = self.mapping.as_ref().filter(|_| needs_one) else {
             return Ok(None);
         };

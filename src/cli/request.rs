@@ -18,7 +18,8 @@ use crate::model::{ModelDocument, Start, catalog};
 #[derive(clap::Args, Debug)]
 pub(super) struct Request {
     /// Recordings: CSV with `name[unit]` headers (.csv), JSON (.json), MAT files (.mat) or ASCII matrices (.asc), the last
-    /// two with --mapping; rows count from 1. Several are fitted together.
+    /// two with --mapping; Excel workbooks (.xlsx), logs of PX4 (.ulg) and ArduPilot (.bin); any of them packed (.gz, .zip).
+    /// Rows count from 1; FILE:2s-32.5s are seconds. Several are fitted together.
     #[arg(required = true, value_name = "FILE[:FIRST-LAST]")]
     pub files: Vec<FileRows>,
     /// A recording that the model is not fitted to but predicts, to see whether it holds.
@@ -190,6 +191,7 @@ impl Request {
             id: id.clone(),
             label: used.label(),
             rows: used.rows,
+            seconds: used.seconds,
             role,
             gaps,
         };

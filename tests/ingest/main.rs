@@ -8,3 +8,4 @@ mod common {
 
 mod flight_data;
 mod formats;
+mod structs;

@@ -5,8 +5,11 @@
 //! Its memory is bounded by [`Limits`] *before* it is used: every format is surveyed in one cheap pass
 //! before anything is built from it.
 //!
-//! CSV and JSON say names and units themselves. MAT files and ASCII matrices do not: a [`Mapping`] says them. It can do so
-//! for CSV, too, where what the file says is not what is meant.
+//! CSV, JSON and workbooks say names and units themselves. MAT files and ASCII matrices do not: a [`Mapping`] says them. It
+//! can do so for CSV, too, where what the file says is not what is meant. Logs of PX4 and ArduPilot come with mappings of
+//! the quantities that most of them have.
+//!
+//! Whatever a sender says that a file is, its first bytes are looked at first. What is packed with gzip or zip is unpacked.
 //!
 //! What is readable may still be poor: [`quality()`] finds gaps, missing values, stuck sensors and spikes,
 //! and [`summary()`] is what a user sees of a maneuver without downloading it.
@@ -20,6 +23,7 @@ pub mod bundled;
 mod cell;
 mod csv;
 mod csv_writer;
+mod dataflash;
 mod export;
 mod fault;
 mod header;
@@ -30,13 +34,19 @@ mod lines;
 mod mapping;
 mod mat;
 mod matrix;
+mod messages;
 mod name;
+mod packed;
 mod quality;
+mod recognition;
 mod recording;
 mod stamp;
 mod summary;
 mod text;
+mod ulog;
+mod union;
 mod units;
+mod workbook;
 
 pub use csv_writer::CsvWriter;
 pub use export::{to_csv, to_csv_as_recorded, to_json};
@@ -48,6 +58,7 @@ pub use recording::Recording;
 pub use summary::{ChannelSummary, Summary, summary};
 
 use crate::flight::Maneuver;
+use recognition::Kind;
 
 /// What a recording is written in.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -56,19 +67,22 @@ pub enum Format {
     Csv,
     /// One time axis and a list of values for each channel.
     Json,
-    /// A MAT file of version 5.
+    /// A MAT file of version 4 or 5.
     Mat,
     /// A matrix of numbers as text.
     Ascii,
+    /// Not said: the first bytes tell what it is, and text that is not JSON is CSV.
+    Unstated,
 }
 
 impl Format {
     /// The media types of [`Format::from_content_type`], for a message that says what is accepted.
-    pub const CONTENT_TYPES: [&str; 4] = [
+    pub const CONTENT_TYPES: [&str; 5] = [
         "text/csv",
         "application/json",
         "application/x-matlab-data",
         "text/plain",
+        "application/octet-stream",
     ];
 
     /// The media type of an upload.
@@ -78,6 +92,7 @@ impl Format {
             Self::Json => "application/json",
             Self::Mat => "application/x-matlab-data",
             Self::Ascii => "text/plain",
+            Self::Unstated => "application/octet-stream",
         }
     }
 
@@ -88,6 +103,7 @@ impl Format {
             "json" => Some(Self::Json),
             "mat" => Some(Self::Mat),
             "asc" => Some(Self::Ascii),
+            "gz" | "zip" | "xlsx" | "xlsm" | "ulg" | "ulog" | "bin" => Some(Self::Unstated),
             _ => None,
         }
     }
@@ -100,9 +116,21 @@ impl Format {
             "application/json" | "text/json" => Some(Self::Json),
             "application/x-matlab-data" | "application/matlab-mat" => Some(Self::Mat),
             "text/plain" => Some(Self::Ascii),
+            "application/octet-stream"
+            | "application/gzip"
+            | "application/x-gzip"
+            | "application/zip"
+            | "application/x-zip-compressed"
+            | "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
+            | "application/vnd.ms-excel.sheet.macroenabled.12" => Some(Self::Unstated),
             _ => None,
         }
     }
+}
+
+/// Whether a file is packed with gzip or zip, so that it needs more memory than its own.
+pub fn is_packed(bytes: &[u8]) -> bool {
+    matches!(Kind::of(bytes), Some(Kind::Gzip | Kind::Zip))
 }
 
 /// Reads a recording that says names and units itself.
@@ -124,12 +152,30 @@ pub fn read_mapped(
     mapping: Option<&Mapping>,
     limits: &Limits,
 ) -> Result<Maneuver, IngestError> {
-    match (format, mapping) {
-        (Format::Csv, _) => csv::read(bytes, mapping, limits),
+    let packed::Unpacked { bytes, name } = packed::unpack(bytes, limits)?;
+    let bytes: &[u8] = &bytes;
+    match Kind::of(bytes) {
+        Some(Kind::Ulog) => return ulog::read(bytes, mapping, limits),
+        Some(Kind::DataFlash) => return dataflash::read(bytes, mapping, limits),
+        Some(Kind::Mat) => return mat::read(bytes, mapping, limits),
+        None if mat::is_version_4(bytes) => return mat::read(bytes, mapping, limits),
+        Some(Kind::Zip) => return workbook::read(bytes, mapping, limits),
+        // it is told how MATLAB writes another one
+        Some(Kind::Foreign(_)) if format == Format::Mat && mat::is_hdf5(bytes) => {}
+        Some(Kind::Foreign(foreign)) => return Err(foreign.fault().into()),
+        Some(Kind::Gzip) | None => {}
+    }
+    let extension = name.as_deref().and_then(|name| name.rsplit_once('.'));
+    let of_name = extension.and_then(|(_, extension)| Format::from_extension(extension));
+    match (of_name.unwrap_or(format), mapping) {
+        (Format::Unstated, _) if bytes.trim_ascii_start().starts_with(b"{") => {
+            read_mapped(bytes, Format::Json, mapping, limits)
+        }
+        (Format::Csv | Format::Unstated, _) => csv::read(bytes, mapping, limits),
         (Format::Json, None) => json::read(bytes, limits),
         (Format::Mat, _) => mat::read(bytes, mapping, limits),
         (Format::Ascii, _) => ascii::read(bytes, mapping, limits),
-        (_, Some(_)) => {
+        (Format::Json, Some(_)) => {
             let message = "this format says names and units itself; leave the mapping out";
             Err(fault::of_file(code::MAPPING_NOT_USED, message).into())
         }
@@ -146,6 +192,7 @@ mod tests {
         assert_eq!(format("text/csv; charset=utf-8"), Some(Format::Csv));
         assert_eq!(format("Application/JSON"), Some(Format::Json));
         assert_eq!(format("application/x-hdf5"), None);
+        assert_eq!(format("application/gzip"), Some(Format::Unstated));
         assert_eq!(format(""), None);
         for accepted in Format::CONTENT_TYPES {
             assert_eq!(format(accepted).map(Format::content_type), Some(accepted));
@@ -158,7 +205,7 @@ mod tests {
         let limits = Limits::default();
         let unused = read_mapped(b"{}", Format::Json, Some(&mapping), &limits);
         assert_eq!(fault::places(unused), ["mapping_not_used "]);
-        for extension in ["csv", "JSON", "mat", "asc"] {
+        for extension in ["csv", "JSON", "mat", "asc", "gz", "xlsx", "ulg", "bin"] {
             assert!(Format::from_extension(extension).is_some());
         }
         assert_eq!(Format::from_extension("txt"), None);

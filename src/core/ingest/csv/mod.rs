@@ -234,6 +234,7 @@ mod tests {
             max_samples: 4,
             max_values: 8,
             max_name_length: 5,
+            ..Limits::default()
         };
         let refused = |text: &str, code: &str, bound: &str| {
             let error = read(text.as_bytes(), None, &limits).unwrap_err();

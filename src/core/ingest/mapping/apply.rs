@@ -5,25 +5,22 @@ use std::collections::BTreeMap;
 use crate::flight::{Fault, Maneuver};
 
 use super::super::{
-    IngestError, Limits, code,
-    fault::pointer,
-    matrix::Matrix,
+    IngestError, Limits,
+    axis::{TimeAxis, code_of},
+    code,
+    fault::{CELLS_LISTED, pointer},
     recording::{Channels, Number, RecordedChannel, RecordedTime, Recording},
+    union::{Union, fill},
+    units::RecordedUnit,
 };
-use super::{Mapping, Part, Source};
-
-/// A file that values are taken from by name.
-pub(in super::super) trait Archive {
-    /// The matrix at a path; an empty path is the only matrix of the file.
-    ///
-    /// # Errors
-    /// A code and a message: there is none, with what there is instead; or it cannot be read.
-    fn matrix(&mut self, path: &[String]) -> Result<Matrix<'_>, (&'static str, String)>;
-}
+use super::axes::{Axes, AxisSource};
+use super::taken::{Slot, Taken};
+use super::{Archive, Mapping, Part, Source};
 
 impl Mapping {
     /// Takes time and channels out of a file. A channel whose source is a whole matrix of n columns becomes
-    /// n channels, `name_1` to `name_n`.
+    /// n channels, `name_1` to `name_n`. Where channels have time axes of their own, all of these are the time axis of the
+    /// recording, and a channel has no value at the times of the others.
     ///
     /// # Errors
     /// Every source that is not in the file, by its place in the mapping; else the faults of names, units, lengths
@@ -36,18 +33,35 @@ impl Mapping {
         limits
             .columns(self.channels.len() + 1)
             .map_or(Ok(()), Err)?;
-        let mut taken = Taken::new(limits, self.channels.len() + 1);
+        let axes = Axes::of(self, archive);
+        let mut taken = Taken::new(limits, axes.axes.len(), self.channels.len());
+        let unsaid = axes.faults.iter().cloned();
+        taken
+            .faults
+            .extend(unsaid.map(|(at, code, message)| (Slot::Channel(at), code, message)));
         // in the order of paths, so that every variable is unpacked once
-        let mut by_path: BTreeMap<Vec<String>, Vec<(usize, Part)>> = BTreeMap::new();
-        let of_time = self.time.from.as_deref().map(|from| (TIME, from));
-        let of_channels = self.channels.values().enumerate();
-        let of_channels = of_channels.map(|(at, channel)| (at + 1, &*channel.from));
-        for (slot, from) in of_time.into_iter().chain(of_channels) {
-            match from.parse::<Source>() {
-                Ok(Source { path, part }) => by_path.entry(path).or_default().push((slot, part)),
-                Err(why) => taken
-                    .faults
-                    .push((slot, code::INVALID_MAPPING, why.to_string())),
+        let mut by_path: BTreeMap<Vec<String>, Vec<(Slot, Part)>> = BTreeMap::new();
+        for (at, channel) in self.channels.values().enumerate() {
+            match channel.from.parse::<Source>() {
+                Ok(Source { path, part }) => {
+                    by_path
+                        .entry(path)
+                        .or_default()
+                        .push((Slot::Channel(at), part));
+                }
+                Err(why) => {
+                    taken
+                        .faults
+                        .push((Slot::Channel(at), code::INVALID_MAPPING, why.to_string()))
+                }
+            }
+        }
+        for (at, axis) in axes.axes.iter().enumerate() {
+            if let Some(Source { path, part }) = axis.source.clone() {
+                by_path
+                    .entry(path)
+                    .or_default()
+                    .push((Slot::Axis(at), part));
             }
         }
         for (path, wanted) in by_path {
@@ -65,32 +79,161 @@ impl Mapping {
                 }
             }
         }
-        IngestError::refuse(self.faults(taken.faults))?;
-        self.recording(taken.columns).into_maneuver(limits)
+        // what is not there needs no time
+        let is_missing = |slot: Slot, faults: &[(Slot, &str, String)]| {
+            faults
+                .iter()
+                .any(|(at, code, _)| *at == slot && *code == code::UNKNOWN_SOURCE)
+        };
+        let missing: Vec<Slot> = (0..self.channels.len())
+            .map(Slot::Channel)
+            .filter(|&slot| is_missing(slot, &taken.faults))
+            .collect();
+        taken
+            .faults
+            .retain(|(slot, code, _)| *code != code::INVALID_MAPPING || !missing.contains(slot));
+        if self.optional {
+            taken
+                .faults
+                .retain(|(_, code, _)| *code != code::UNKNOWN_SOURCE);
+        }
+        IngestError::refuse(self.faults(&axes.axes, taken.faults))?;
+        let only_main = axes.axes.len() == 1 && self.time.is_stated();
+        let recording = if only_main {
+            self.on_one_axis(taken.axes.pop(), taken.channels)
+        } else {
+            self.on_all_axes(&axes, taken.axes, taken.channels, limits)?
+        };
+        recording.into_maneuver(limits).map_err(with_remedy)
     }
 
-    fn faults(&self, mut faults: Vec<(usize, &'static str, String)>) -> Vec<Fault> {
+    fn faults(
+        &self,
+        axes: &[AxisSource],
+        mut faults: Vec<(Slot, &'static str, String)>,
+    ) -> Vec<Fault> {
         faults.sort_by_key(|&(slot, ..)| slot);
-        let fault = |(slot, code, message): (usize, &'static str, String)| {
-            let place = match slot
-                .checked_sub(1)
-                .and_then(|at| self.channels.get_index(at))
-            {
-                Some((name, _)) => pointer(["channels", name, "from"]),
-                None => pointer(["time", "from"]),
+        let fault = |(slot, code, message): (Slot, &'static str, String)| {
+            let place = match slot {
+                Slot::Axis(at) => match axes[at].place.as_slice() {
+                    [time] if time == "time" => pointer(["time", "from"]),
+                    place => pointer(place),
+                },
+                Slot::Channel(at) => {
+                    let name = self.channels.get_index(at).map_or("", |(name, _)| name);
+                    pointer(["channels", name, "from"])
+                }
             };
             Fault::new(place, code, message)
         };
         faults.into_iter().map(fault).collect()
     }
 
-    /// The recording of what was taken, by slot.
-    fn recording(&self, columns: Vec<Vec<Vec<f64>>>) -> Recording {
-        let numbers = |values: Vec<f64>| values.into_iter().map(Number).collect::<Vec<_>>();
-        let mut slots = columns.into_iter();
-        let time = slots.next().and_then(|mut columns| columns.pop());
+    /// The recording of channels that all have the time axis that the mapping says.
+    fn on_one_axis(&self, time: Option<Vec<f64>>, channels: Vec<Vec<Vec<f64>>>) -> Recording {
+        let time = time.filter(|_| self.time.from.is_some());
+        let channels = channels.into_iter().zip(self.channels.values());
+        let filled = channels.map(|(mut columns, channel)| {
+            for values in &mut columns {
+                let steps: Vec<f64>;
+                let time = match &time {
+                    Some(time) if time.len() == values.len() => time,
+                    Some(_) => continue,
+                    None => {
+                        steps = (0..values.len()).map(|k| k as f64).collect();
+                        &steps
+                    }
+                };
+                fill(channel.between, time, values);
+            }
+            columns
+        });
+        let channels = filled.collect();
+        let time = RecordedTime {
+            unit: self.time.unit.clone(),
+            values: time.map(numbers),
+            start: self.time.start,
+            step: self.time.step,
+        };
+        self.recording(time, channels)
+    }
+
+    /// The recording of channels with time axes of their own.
+    ///
+    /// # Errors
+    /// An axis does not increase, or is not as long as a channel on it; or all together are too long.
+    fn on_all_axes(
+        &self,
+        axes: &Axes,
+        mut times: Vec<Vec<f64>>,
+        channels: Vec<Vec<Vec<f64>>>,
+        limits: &Limits,
+    ) -> Result<Recording, IngestError> {
+        let mut faults = Vec::new();
+        for (at, (axis, times)) in axes.axes.iter().zip(&mut times).enumerate() {
+            let mut on_it = axes.of.iter().zip(&channels).filter(|(of, _)| **of == at);
+            if on_it.all(|(_, columns)| columns.is_empty()) {
+                times.clear();
+                continue;
+            }
+            if axis.source.is_none() {
+                let on_it = axes.of.iter().zip(&channels).find(|(of, _)| **of == at);
+                let length = on_it
+                    .and_then(|(_, columns)| columns.first())
+                    .map_or(0, Vec::len);
+                let (start, step) = (
+                    self.time.start.unwrap_or(0.0),
+                    self.time.step.unwrap_or(1.0),
+                );
+                *times = (0..length).map(|k| start + k as f64 * step).collect();
+            }
+            seconds(axis, times, &mut faults);
+        }
+        for ((name, columns), &axis) in self.channels.keys().zip(&channels).zip(&axes.of) {
+            let expected = times.get(axis).map_or(0, Vec::len);
+            if let Some(found) = columns
+                .iter()
+                .map(Vec::len)
+                .find(|&found| found != expected)
+            {
+                let message = format!(
+                    "channel '{name}' has {found} values where its time axis has {expected}"
+                );
+                let place = pointer(["channels", name, "from"]);
+                faults.push(Fault::new(place, code::LENGTH_MISMATCH, message));
+            }
+        }
+        IngestError::refuse(faults)?;
+        let union = Union::of(&times, limits)?;
+        let columns: usize = channels.iter().map(Vec::len).sum();
+        let values = columns.saturating_mul(union.time.len());
+        limits.values(values).map_or(Ok(()), Err)?;
+        let spread = channels
+            .into_iter()
+            .zip(&axes.of)
+            .zip(self.channels.values());
+        let spread = spread.map(|((columns, &axis), channel)| {
+            let spread = columns.into_iter().map(|values| {
+                let mut spread = union.spread(axis, &values);
+                fill(channel.between, &union.time, &mut spread);
+                spread
+            });
+            spread.collect()
+        });
+        let channels = spread.collect();
+        let time = RecordedTime {
+            unit: "s".to_string(),
+            values: Some(numbers(union.time)),
+            start: None,
+            step: None,
+        };
+        Ok(self.recording(time, channels))
+    }
+
+    /// The recording of what was taken; channels of which nothing was are left out.
+    fn recording(&self, time: RecordedTime, taken: Vec<Vec<Vec<f64>>>) -> Recording {
         let mut channels = Vec::new();
-        for ((name, channel), columns) in self.channels.iter().zip(slots) {
+        for ((name, channel), columns) in self.channels.iter().zip(taken) {
             let is_one = columns.len() == 1;
             for (at, values) in columns.into_iter().enumerate() {
                 let name = if is_one {
@@ -99,190 +242,57 @@ impl Mapping {
                     format!("{name}_{}", at + 1)
                 };
                 let (unit, values) = (channel.unit.clone(), numbers(values));
-                channels.push((name, RecordedChannel { unit, values }));
+                let time = None;
+                channels.push((name, RecordedChannel { unit, values, time }));
             }
         }
         Recording {
-            time: RecordedTime {
-                unit: self.time.unit.clone(),
-                values: time.map(numbers),
-                start: self.time.start,
-                step: self.time.step,
-            },
+            time,
             channels: Channels(channels),
         }
     }
 }
 
-/// The slot of time; that of a channel is its number from 1.
-const TIME: usize = 0;
-
-/// What was taken out of a file, by slot, and what could not be.
-struct Taken<'a> {
-    limits: &'a Limits,
-    columns: Vec<Vec<Vec<f64>>>,
-    faults: Vec<(usize, &'static str, String)>,
-    count: usize,
-    values: usize,
+fn numbers(values: Vec<f64>) -> Vec<Number> {
+    values.into_iter().map(Number).collect()
 }
 
-impl<'a> Taken<'a> {
-    fn new(limits: &'a Limits, slots: usize) -> Self {
-        Self {
-            limits,
-            columns: vec![Vec::new(); slots],
-            faults: Vec::new(),
-            count: 0,
-            values: 0,
+/// An axis in seconds, with what is wrong about it.
+fn seconds(axis: &AxisSource, times: &mut Vec<f64>, faults: &mut Vec<Fault>) {
+    let place = || pointer(&axis.place);
+    let unit = match RecordedUnit::parse_time(&axis.unit) {
+        Ok(unit) => unit.unit(),
+        Err((code, message)) => {
+            faults.push(Fault::new(place(), code, message));
+            return;
         }
-    }
-
-    /// Takes a part of a matrix, within the limits.
-    ///
-    /// # Errors
-    /// A limit is exceeded. What the matrix does not have becomes one of the faults.
-    fn take(&mut self, slot: usize, part: Part, matrix: &Matrix) -> Result<(), Fault> {
-        let Matrix { rows, columns, .. } = *matrix;
-        let (count, length) = match part {
-            Part::Row(_) => (1, columns),
-            Part::Whole if matrix.is_vector() => (1, rows.max(columns)),
-            Part::Whole if slot != TIME => (columns, rows),
-            Part::Column(_) | Part::Whole => (1, rows),
-        };
-        self.count = self.count.saturating_add(count);
-        self.values = self.values.saturating_add(count.saturating_mul(length));
-        let limits = self.limits;
-        let too_much = [
-            limits.columns(self.count),
-            limits.samples(length),
-            limits.values(self.values),
-        ];
-        if let Some(fault) = too_much.into_iter().flatten().next() {
-            return Err(fault);
-        }
-        let missing = match part {
-            Part::Column(at) if at > columns => Some(format!("there is no column {at}")),
-            Part::Row(at) if at > rows => Some(format!("there is no row {at}")),
-            Part::Whole if slot == TIME && !matrix.is_vector() => {
-                Some("time is one column, as (:,1); say which".to_string())
+    };
+    let mut checked = TimeAxis::new(unit, times.len());
+    let mut found = 0;
+    for &time in times.iter() {
+        if let Err(error) = checked.push(time) {
+            faults.push(Fault::new(place(), code_of(&error), error.to_string()));
+            found += 1;
+            if found == CELLS_LISTED {
+                return;
             }
-            _ => None,
-        };
-        if let Some(why) = missing {
-            let message = format!("{why}: the matrix has {rows} row(s) and {columns} column(s)");
-            self.faults.push((slot, code::UNKNOWN_SOURCE, message));
-            return Ok(());
         }
-        let taken = &mut self.columns[slot];
-        match part {
-            Part::Column(at) => taken.push(matrix.column(at - 1)),
-            Part::Row(at) => taken.push(matrix.row(at - 1)),
-            Part::Whole if rows == 1 => taken.push(matrix.row(0)),
-            Part::Whole => taken.extend((0..columns).map(|at| matrix.column(at))),
-        }
-        Ok(())
     }
+    *times = checked.into_seconds();
+    times.iter_mut().for_each(|time| *time += axis.offset);
+}
+
+/// A channel that is not as long as the time axis may have one of its own.
+fn with_remedy(error: IngestError) -> IngestError {
+    const REMEDY: &str = "; where it has a time axis of its own, say so in the mapping, as \"time\": \"AIR(:,1)\" beside its \"from\"";
+    let with_remedy = |mut fault: Fault| {
+        if fault.code == code::LENGTH_MISMATCH {
+            fault.message.push_str(REMEDY);
+        }
+        fault
+    };
+    error.map(with_remedy)
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::super::fault::places;
-    use super::*;
-
-    /// `t`: 3 x 1; `m`: 3 x 2; `r`: 2 x 3.
-    struct Three;
-
-    impl Archive for Three {
-        fn matrix(&mut self, path: &[String]) -> Result<Matrix<'_>, (&'static str, String)> {
-            match path.join(".").as_str() {
-                "t" => Ok(Matrix::of_rows(&[0.0, 1.0, 2.0], 1)),
-                "m" => Ok(Matrix::of_rows(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0], 2)),
-                "r" => Ok(Matrix::of_rows(
-                    &[1.0, 2.0, 3.0, 4.0, 5.0, f64::INFINITY],
-                    3,
-                )),
-                _ => Err((code::UNKNOWN_SOURCE, "there is t, m and r".to_string())),
-            }
-        }
-    }
-
-    fn apply(time: &str, channels: &str, limits: &Limits) -> Result<Maneuver, IngestError> {
-        let text = format!(r#"{{"time": {{{time}}}, "channels": {{{channels}}}}}"#);
-        Mapping::from_json(&text)?.apply(&mut Three, limits)
-    }
-
-    const T: &str = r#""from": "t", "unit": "s""#;
-
-    #[test]
-    fn parts_become_channels_in_the_order_of_the_mapping() {
-        let channels = r#""row": {"from": "r(2,:)", "unit": "-"}, "m": {"from": "m", "unit": "km"},
-            "a": {"from": "m(:,2)", "unit": "m"}, "time": {"from": "t", "unit": "s"}"#;
-        let maneuver = apply(T, channels, &Limits::default()).unwrap();
-        let names: Vec<&String> = maneuver.channels().keys().collect();
-        assert_eq!(names, ["row", "m_1", "m_2", "a", "time"]);
-        assert_eq!(maneuver.channels()["m_2"].values, [2000.0, 4000.0, 6000.0]);
-        assert_eq!(maneuver.channels()["a"].values, [2.0, 4.0, 6.0]);
-        assert!(maneuver.channels()["row"].values[2].is_nan());
-        assert_eq!(maneuver.channels()["row"].values[..2], [4.0, 5.0]);
-
-        let even = apply(
-            r#""step": 40, "start": 1000, "unit": "ms""#,
-            r#""a": {"from": "t", "unit": "m"}"#,
-            &Limits::default(),
-        );
-        assert_eq!(even.unwrap().time(), [1.0, 1.04, 1.08]);
-    }
-
-    #[test]
-    fn all_faults_stand_at_their_place_in_the_mapping() {
-        let channels = r#""b": {"from": "x.y", "unit": "-"}, "c": {"from": "m(:,3)", "unit": "-"}, "d": {"from": "r(3,:)", "unit": "-"}"#;
-        let refused = apply(r#""from": "m", "unit": "s""#, channels, &Limits::default());
-        let expected = [
-            "/time/from",
-            "/channels/b/from",
-            "/channels/c/from",
-            "/channels/d/from",
-        ];
-        assert_eq!(
-            places(refused),
-            expected.map(|place| format!("unknown_source {place}"))
-        );
-        let channels =
-            r#""a b": {"from": "t", "unit": "-"}, "c": {"from": "r(:,1)", "unit": "warp"}"#;
-        assert_eq!(
-            places(apply(T, channels, &Limits::default())),
-            [
-                "invalid_name /channels/a b",
-                "length_mismatch /channels/c/values",
-                "unknown_unit /channels/c/unit"
-            ]
-        );
-    }
-
-    #[test]
-    fn limits_hold_before_anything_is_taken() {
-        let limits = Limits {
-            max_columns: 4,
-            max_samples: 3,
-            max_values: 100,
-            max_name_length: 5,
-        };
-        let refused = |sources: &[&str], limits: &Limits| {
-            let channel = |(at, from)| format!(r#""c{at}": {{"from": "{from}", "unit": "-"}}"#);
-            let channels: Vec<String> = sources.iter().enumerate().map(channel).collect();
-            places(apply(T, &channels.join(","), limits))
-        };
-        assert_eq!(refused(&["t"; 4], &limits), ["too_many_columns "]);
-        assert_eq!(refused(&["r", "t"], &limits), ["too_many_columns "]);
-        let few_values = Limits {
-            max_values: 8,
-            ..limits
-        };
-        assert_eq!(refused(&["m"], &few_values), ["too_many_values "]);
-        let few_samples = Limits {
-            max_samples: 2,
-            ..limits
-        };
-        assert_eq!(refused(&["t"], &few_samples), ["too_many_samples "]);
-    }
-}
+mod tests;

@@ -8,21 +8,28 @@
 //! [channels]
 //! alpha = {from = "fdata(:,4)", unit = "deg"}
 //! ```
+//!
+//! A channel of a table with a time axis of its own names that, too: `alpha = {from = "AIR(:,2)", time = "AIR(:,1)", unit =
+//! "deg"}`; or the table does, for all channels that come from it: `[tables] AIR = {from = "AIR(:,1)", offset = 0.12}`.
 
 mod apply;
+mod archive;
+mod axes;
 mod source;
+mod taken;
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-pub(super) use apply::Archive;
-pub(super) use source::{Part, Source};
+pub(super) use archive::{Archive, OwnTime};
+pub(super) use source::{Part, Source, element};
 
 use super::{
     code,
     fault::{of_file, pointer},
     text::short_message,
+    union::Between,
 };
 use crate::flight::Fault;
 
@@ -33,13 +40,21 @@ pub struct Mapping {
     /// For people: which recordings it is for.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     about: String,
+    /// May be left out where every channel has a time axis of its own, or the file says which it is (ULog, DataFlash).
+    #[serde(default, skip_serializing_if = "MappedTime::is_unstated")]
     pub(super) time: MappedTime,
+    /// Time axes of tables of the file, by what the sources of their channels begin with: `AIR`, `log.AIR`, `IMU[1]`.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub(super) tables: IndexMap<String, Axis>,
+    /// Whether channels that a file does not have are left out.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(super) optional: bool,
     /// By name, in the order of the document.
     pub(super) channels: IndexMap<String, MappedChannel>,
 }
 
 /// Either `from`, or `step` (with `start`, else 0) for even sampling.
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MappedTime {
     pub(super) unit: String,
@@ -51,18 +66,61 @@ pub(super) struct MappedTime {
     pub(super) step: Option<f64>,
 }
 
+impl MappedTime {
+    fn is_stated(&self) -> bool {
+        self.from.is_some() || self.step.is_some()
+    }
+
+    fn is_unstated(&self) -> bool {
+        !self.is_stated()
+    }
+}
+
+/// A time axis of its own.
+#[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Axis {
+    /// Absent: as the file says it, or the recording's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(example = "AIR(:,1)")]
+    pub(super) from: Option<String>,
+    /// Absent: that of the recording's time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) unit: Option<String>,
+    /// Seconds that are added to its times.
+    #[serde(default)]
+    #[schema(example = 0.12)]
+    pub(super) offset: f64,
+}
+
+/// The source of a time axis, in the unit of the recording's time; or all that is to be said of it.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(untagged)]
+pub(super) enum ChannelTime {
+    From(String),
+    Axis(Axis),
+}
+
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MappedChannel {
     pub(super) from: String,
     /// `-` for a pure number; it must be said.
     pub(super) unit: String,
+    /// Where its values have times of their own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) time: Option<ChannelTime>,
+    /// What it has at the times of the other channels: `missing`, `held` or `straight`.
+    #[serde(default, skip_serializing_if = "Between::is_missing")]
+    pub(super) between: Between,
 }
 
 /// The mappings that come with Trimtab.
-const BUNDLED: [(&str, &str); 3] = [
+const BUNDLED: [(&str, &str); 5] = [
+    ("ardupilot", include_str!("ardupilot.toml")),
     ("fvsysid-attas", include_str!("fvsysid-attas.toml")),
     ("fvsysid-hfb320", include_str!("fvsysid-hfb320.toml")),
+    ("px4", include_str!("px4.toml")),
     ("sidpac", include_str!("sidpac.toml")),
 ];
 
@@ -116,19 +174,30 @@ impl Mapping {
 
     /// Every source of it can be read, and time has one.
     fn checked(self) -> Result<Self, Fault> {
-        if self.time.from.is_some() == self.time.step.is_some() {
+        let time = &self.time;
+        let says_half = time.is_unstated() && (time.start.is_some() || !time.unit.is_empty());
+        if says_half || time.from.is_some() && time.step.is_some() {
             let message = "mapping: time has either \"from\", or \"step\" and perhaps \"start\"";
             return Err(Fault::new("/time", code::INVALID_MAPPING, message));
         }
-        let of_time = self
-            .time
-            .from
-            .as_deref()
-            .map(|from| (pointer(["time", "from"]), from));
+        let of_time = self.time.from.as_deref();
+        let of_time = of_time.map(|from| (pointer(["time", "from"]), from));
+        let of_tables = self.tables.iter().filter_map(|(name, axis)| {
+            let from = axis.from.as_deref()?;
+            Some((pointer(["tables", name, "from"]), from))
+        });
+        let of_axes = self.channels.iter().filter_map(|(name, channel)| {
+            let from = match channel.time.as_ref()? {
+                ChannelTime::From(from) => from,
+                ChannelTime::Axis(axis) => axis.from.as_ref()?,
+            };
+            Some((pointer(["channels", name, "time"]), from.as_str()))
+        });
         let of_channels = self.channels.iter();
         let of_channels = of_channels
             .map(|(name, channel)| (pointer(["channels", name, "from"]), &*channel.from));
-        for (place, from) in of_time.into_iter().chain(of_channels) {
+        let of_axes = of_tables.chain(of_axes);
+        for (place, from) in of_time.into_iter().chain(of_channels).chain(of_axes) {
             from.parse::<Source>().map_err(|why| {
                 let from = short_message(from);
                 let message = format!(
@@ -160,11 +229,10 @@ mod tests {
             let mapping =
                 Mapping::named_or_json(name).unwrap_or_else(|fault| panic!("{name}: {fault}"));
             assert!(!mapping.about().is_empty(), "{name}");
-            assert!(
-                RecordedUnit::parse_time(&mapping.time.unit).is_ok(),
-                "{name}"
-            );
-            let mut sources: Vec<&str> = vec![mapping.time.from.as_deref().unwrap()];
+            let time = &mapping.time;
+            let has_unit = RecordedUnit::parse_time(&time.unit).is_ok();
+            assert!(has_unit || time.is_unstated(), "{name}");
+            let mut sources: Vec<&str> = time.from.as_deref().into_iter().collect();
             for (channel, mapped) in &mapping.channels {
                 assert!(
                     RecordedUnit::parse(&mapped.unit).is_ok(),
@@ -189,7 +257,7 @@ mod tests {
             );
             assert!(fault.message.contains(expected), "{fault}");
         };
-        refused("sidpack", "", "Trimtab are fvsysid-attas");
+        refused("sidpack", "", "Trimtab are ardupilot, fvsysid-attas");
         refused("{", "", "EOF");
         refused(r#"{"time": {"unit": "s"}}"#, "", "channels");
         refused(

@@ -43,11 +43,13 @@ pub(super) fn stretches<'m>(
         |(index, (usage, maneuver))| match rows_in_use(usage, maneuver) {
             Ok(rows) => cut(usage, maneuver, rows, index, findings),
             Err(message) => {
-                faults.push(Fault::new(
-                    format!("/maneuvers/{index}/rows"),
-                    "bad_rows",
-                    message,
-                ));
+                let part = if usage.rows.is_some() {
+                    "rows"
+                } else {
+                    "seconds"
+                };
+                let place = format!("/maneuvers/{index}/{part}");
+                faults.push(Fault::new(place, "bad_rows", message));
                 Vec::new()
             }
         },
@@ -56,8 +58,13 @@ pub(super) fn stretches<'m>(
 }
 
 fn rows_in_use(usage: &ManeuverUse, maneuver: &Maneuver) -> Result<Range<usize>, String> {
-    let Some([first, last]) = usage.rows else {
-        return Ok(0..maneuver.len());
+    let [first, last] = match (usage.rows, usage.seconds) {
+        (None, None) => return Ok(0..maneuver.len()),
+        (Some(rows), None) => rows,
+        (None, Some(seconds)) => return rows_between(seconds, maneuver),
+        (Some(_), Some(_)) => {
+            return Err("a part is said by \"rows\" or by \"seconds\", not by both".to_string());
+        }
     };
     if first < 1 || last > maneuver.len() || first >= last {
         return Err(format!(
@@ -66,6 +73,22 @@ fn rows_in_use(usage: &ManeuverUse, maneuver: &Maneuver) -> Result<Range<usize>,
         ));
     }
     Ok(first - 1..last)
+}
+
+fn rows_between([from, to]: [f64; 2], maneuver: &Maneuver) -> Result<Range<usize>, String> {
+    let time = maneuver.time();
+    // times that were added up from steps are a little beside what is written
+    let nothing = 1e-6 * maneuver.sampling().step;
+    let start = time.partition_point(|&t| t < from - nothing);
+    let end = time.partition_point(|&t| t <= to + nothing);
+    if from >= to || end < start + 2 {
+        return Err(format!(
+            "seconds {from} to {to} of a recording from {} s to {} s; at least two samples are needed",
+            time[0],
+            time[time.len() - 1]
+        ));
+    }
+    Ok(start..end)
 }
 
 fn cut<'m>(
@@ -285,7 +308,10 @@ fn samples(
         }
         Ok(_) => {}
     }
-    let mut values = formula.samples(stretch).unwrap_or_default();
+    let mut values = match formula.samples(stretch) {
+        Ok(values) => values,
+        Err(error) => return fault(error.code(), error.to_string()),
+    };
     if side == Side::Output {
         let missing = values.iter_mut().filter(|value| !value.is_finite());
         missing.for_each(|value| *value = f64::NAN);
@@ -300,11 +326,11 @@ fn samples(
             missing.len(),
             stretch.rows.start + first + 1,
             if mapped.is_some() {
-                "correct the formula where it gives no number (interpolated(...) fills in between values), or choose \"rows\" without them"
+                "correct the formula where it gives no number (interpolated(...) and held(...) fill in between values), or choose \"rows\" without them"
                     .to_string()
             } else {
                 format!(
-                    "say \"channels\": {{\"{name}\": \"interpolated({name})\"}} to fill in between values, or choose \"rows\" without them"
+                    "say \"channels\": {{\"{name}\": \"interpolated({name})\"}}, or held({name}), to fill in between values, or choose \"rows\" without them"
                 )
             }
         );
