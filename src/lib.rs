@@ -43,8 +43,10 @@
 //!    then make a `Recording` (`recording.rs`: columns by name with units) and call its `into_maneuver`, or hand a table of
 //!    numbers, an `Archive`, to `Mapping::apply`. A fault names its place and the remedy; its code is a row of `code` in
 //!    `fault.rs`.
-//! 2. `src/core/ingest/mod.rs`: a variant of `Format`, its media type and its file ending, its line in `read_mapped`. HTTP
-//!    and command line go by these; where it needs a mapping, `src/cli/mapping.rs` must know that, too.
+//!    A log of messages, each kind with its own times, makes a `Table` of each (`messages/`, after `ulog/` or `dataflash/`).
+//! 2. A format that its first bytes tell: a variant of `Kind` in `recognition.rs` (and its line among the foreign ones goes), its
+//!    line in `read_mapped` and its ending in `mod.rs`. Text: a variant of `Format`, its media type and its file ending, its line
+//!    in `read_mapped`. HTTP and command line go by these; where it needs a mapping, `src/cli/mapping.rs` must know that, too.
 //! 3. Tests beside the reader; a good file in `no_damage_to_a_file_panics` in `mod.rs`; real files in
 //!    `tests/ingest/formats.rs`; a target in `tests/fuzz/targets`, with its name in `tests/fuzz/Cargo.toml` and
 //!    `tests/fuzz/run`.
