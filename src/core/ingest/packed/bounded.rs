@@ -27,6 +27,7 @@ fn too_large(what: &str, most: usize) -> Fault {
 }
 
 pub(super) fn damaged(what: &str, why: &str) -> Fault {
-    let message = format!("the {what} is damaged: {why}; upload it again, packed anew or saved as CSV");
+    let message =
+        format!("the {what} is damaged: {why}; upload it again, packed anew or saved as CSV");
     of_file(code::DAMAGED_FILE, message)
 }
