@@ -26,9 +26,13 @@ const TIED: f64 = 0.97;
 /// Flights that were not fitted speak of an effect where it should change their likelihood by at least this.
 const HEARD: f64 = 8.0;
 
-/// The least gain there: a fixed part, and a share of what the effect should bring.
+/// The least gain there: a fixed part and a share of what the effect should bring,
 const LEAST_GAIN: f64 = 2.0;
 const LEAST_SHARE: f64 = 0.1;
+
+/// or, where that is less, what an effect of which E is expected brings by chance: its gain spreads by 2 √E about E from
+/// the noise of those flights alone, and by as much again from the uncertainty of all parameters.
+const SPREADS: f64 = 6.0;
 
 /// Where flights that were not fitted say nothing of an effect, those that were must say this much more.
 const UNHEARD: f64 = 2.0;
@@ -223,7 +227,11 @@ fn predictive(
         );
         return Err((Refusal::NotPredictive, why));
     }
-    if expected >= HEARD && gain < LEAST_GAIN + LEAST_SHARE * expected {
+    let by_chance = expected - SPREADS * expected.sqrt();
+    let least_gain = by_chance.min(LEAST_GAIN + LEAST_SHARE * expected);
+    // what speaks for it on all flights together
+    let in_all = trial.likelihood_ratio + gain;
+    if expected >= HEARD && (gain < least_gain || in_all < least) {
         let why = format!(
             "it differs between maneuvers: flights that were not fitted are not predicted better with it (gain {gain:.1}, where {expected:.1} is expected)"
         );

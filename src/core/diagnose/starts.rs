@@ -88,7 +88,9 @@ fn plays(case: &Case, effect: &Effect) -> Vec<f64> {
     let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), v| {
         (least.min(*v), most.max(*v))
     });
-    [0.02, 0.1].map(|share| share * (most - least)).to_vec()
+    [0.002, 0.02, 0.1]
+        .map(|share| share * (most - least))
+        .to_vec()
 }
 
 /// Shares of how fast the input moves.

@@ -8,6 +8,7 @@
 mod aircraft;
 mod convention;
 mod derivatives;
+mod described;
 mod dimension;
 mod fault;
 mod finding;
@@ -27,6 +28,7 @@ mod unit_words;
 pub use aircraft::Aircraft;
 pub use convention::{by_name, coefficient, steady_speed, wind};
 pub use derivatives::{Derivative, WeightedSum, coefficients, derivatives};
+pub use described::by_description;
 pub use dimension::Dimension;
 pub use fault::{Fault, Faults, escape};
 pub use finding::{Finding, FindingTally};

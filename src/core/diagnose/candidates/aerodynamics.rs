@@ -49,10 +49,9 @@ impl Subject<'_> {
             });
             let states =
                 states.filter_map(|(name, x)| law(name, &x.derivative, self.quantities.get(name)));
-            let forces = definitions().filter(|(name, _)| {
-                let quantity = self.quantities.get(name);
-                let is_named = quantity.is_some_and(|q| !q.is_flow_angle());
-                is_named && !self.is_a_measurement(name)
+            let forces = definitions().filter(|(name, x)| match self.quantities.get(name) {
+                Some(quantity) => !quantity.is_flow_angle() && !self.is_a_measurement(name),
+                None => may_be_a_force(&x.unit),
             });
             let forces =
                 forces.filter_map(|(name, x)| law(name, &x.equation, self.quantities.get(name)));
@@ -99,6 +98,17 @@ impl Subject<'_> {
         let direct = Monomial::all_of(equation, &|_| None);
         direct.iter().any(multiplies)
     }
+}
+
+/// Whether a definition of which nothing else is known can be a force or a moment: a coefficient, or over mass or inertia.
+fn may_be_a_force(unit: &str) -> bool {
+    let per_second = |dimension: Dimension| dimension.over(Dimension::SECOND);
+    Unit::parse(unit).is_ok_and(|unit| {
+        let dimension = unit.dimension;
+        dimension.is_none()
+            || dimension == per_second(per_second(Dimension::NONE))
+            || dimension == per_second(per_second(Dimension::METRE))
+    })
 }
 
 /// Flow angles, of the motion that an equation belongs to, whose history it may feel.

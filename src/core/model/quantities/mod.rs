@@ -1,4 +1,4 @@
-//! What the quantities of a document are: what it declares, and otherwise what names, units and equations tell.
+//! What the quantities of a document are: what it declares, and otherwise what names, units, equations and descriptions tell.
 
 mod attitude;
 mod check;
@@ -28,19 +28,25 @@ impl Quantities {
         found.declared(document);
         found.by_names(document);
         let equations = Equations::of(document);
-        for _ in 0..PASSES {
-            let before = (found.named.len(), found.outputs.len());
-            velocity::find(&equations, &mut found);
-            identity::find(&equations, &mut found);
-            flow::find(&equations, &mut found);
-            attitude::find(&equations, &mut found);
-            if before == (found.named.len(), found.outputs.len()) {
-                break;
-            }
-        }
+        found.by_equations(&equations);
+        found.by_descriptions(document);
+        found.by_equations(&equations);
         control::find(&equations, &mut found);
         attitude::only_rate(&equations, &mut found);
         found
+    }
+
+    fn by_equations(&mut self, equations: &Equations) {
+        for _ in 0..PASSES {
+            let before = (self.named.len(), self.outputs.len());
+            velocity::find(equations, self);
+            identity::find(equations, self);
+            flow::find(equations, self);
+            attitude::find(equations, self);
+            if before == (self.named.len(), self.outputs.len()) {
+                break;
+            }
+        }
     }
 }
 
@@ -149,6 +155,37 @@ mod tests {
         assert_eq!(found.get("x3"), Some(PitchRate));
         assert_eq!(found.get("x1"), Some(Control));
         assert_eq!(found.output("x3"), Some(PitchRate));
+    }
+
+    #[test]
+    fn descriptions_tell_what_names_and_equations_leave_open() {
+        use PhysicalQuantity::*;
+        let found = quantities(
+            r#"
+            name = "heave-and-pitch"
+            inputs.k1 = { unit = "deg", description = "elevator deflection" }
+            parameters.a = { unit = "1/s", start = -1.0 }
+            parameters.b = { unit = "1/s^2", start = -1.0 }
+            constants.V0 = { unit = "m/s", value = 60.0 }
+            definitions.k2 = { unit = "rad", equation = "k3/V0", description = "angle of attack about the steady one" }
+            definitions.k5 = { unit = "rad/s^2", equation = "a*k4 + b*k1", description = "pitch acceleration by the air" }
+            states.k3 = { unit = "m/s", initial = "0", derivative = "a*k3 + V0*k4", description = "velocity down" }
+            states.k4 = { unit = "rad/s", initial = "0", derivative = "k5", description = "pitch rate" }
+            outputs.k6 = { unit = "deg", equation = "k2", description = "reading of the vane" }
+            outputs.k7 = { unit = "m/s^2", equation = "a*k3", description = "specific force down" }
+            "#,
+        );
+        for (name, quantity) in [
+            ("k1", Elevator),
+            ("k2", AngleOfAttack),
+            ("k3", VelocityZ),
+            ("k4", PitchRate),
+            ("k5", PitchAcceleration),
+        ] {
+            assert_eq!(found.get(name), Some(quantity), "{name}");
+        }
+        assert_eq!(found.output("k6"), Some(AngleOfAttack));
+        assert_eq!(found.output("k7"), Some(AccelerationZ));
     }
 
     #[test]

@@ -2,7 +2,9 @@
 
 use super::equations::dimension;
 use super::known::{Quantities, Source, Taken};
-use crate::flight::{Family, PhysicalQuantity, by_name, coefficient, steady_speed, wind};
+use crate::flight::{
+    Family, PhysicalQuantity, by_description, by_name, coefficient, steady_speed, wind,
+};
 use crate::model::document::ModelDocument;
 
 impl Quantities {
@@ -26,6 +28,28 @@ impl Quantities {
         for (name, output) in &document.outputs {
             if let Some(quantity) = &output.quantity {
                 self.outputs.insert(name.clone(), taken(quantity));
+            }
+        }
+    }
+
+    /// What descriptions say, of what names and equations leave open.
+    pub(super) fn by_descriptions(&mut self, document: &ModelDocument) {
+        let inputs = (document.inputs.iter()).map(|(name, x)| (name, &x.unit, &x.description));
+        let states = (document.states.iter()).map(|(name, x)| (name, &x.unit, &x.description));
+        let definitions =
+            (document.definitions.iter()).map(|(name, x)| (name, &x.unit, &x.description));
+        let reason = || "by its description and unit".to_string();
+        let drives = |name: &str| document.inputs.contains_key(name);
+        for (name, unit, description) in inputs.chain(states).chain(definitions) {
+            let found = by_description(description, dimension(unit));
+            let found = found.filter(|q| drives(name) || q.family() != Family::Control);
+            if let Some(quantity) = found {
+                self.note(name, quantity, reason);
+            }
+        }
+        for (name, output) in &document.outputs {
+            if let Some(quantity) = by_description(&output.description, dimension(&output.unit)) {
+                self.note_output(name, quantity, reason);
             }
         }
     }
