@@ -70,7 +70,7 @@ pub struct Problem {
     code: Code,
     detail: String,
     errors: Vec<Fault>,
-    mapping: Option<serde_json::Value>,
+    mapping: Option<Box<serde_json::Value>>,
     headers: Vec<(HeaderName, HeaderValue)>,
 }
 
@@ -135,7 +135,7 @@ impl Problem {
             code: self.code.name().to_string(),
             detail: self.detail,
             errors: self.errors,
-            mapping: self.mapping,
+            mapping: self.mapping.map(|draft| *draft),
             request_id,
         }
     }
@@ -154,7 +154,8 @@ impl From<IngestError> for Problem {
     fn from(error: IngestError) -> Self {
         let draft = error
             .draft()
-            .and_then(|draft| serde_json::from_str(draft).ok());
+            .and_then(|draft| serde_json::from_str(draft).ok())
+            .map(Box::new);
         Self {
             mapping: draft,
             ..Self::of_faults(Code::InvalidManeuver, error.into_faults())

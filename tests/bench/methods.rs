@@ -200,7 +200,8 @@ fn compare_random(name: &str, problem: &Problem, starts: usize) {
             (of(0).0, of(1).0, of(0).1, of(1).1)
         })
         .collect();
-    let median = |pick: &dyn Fn(&(usize, usize, usize, usize)) -> usize| {
+    type Counts = (usize, usize, usize, usize);
+    let median = |pick: &dyn Fn(&Counts) -> usize| {
         let mut values: Vec<usize> = both.iter().map(pick).collect();
         values.sort_unstable();
         (

@@ -20,9 +20,9 @@ fn maneuver() -> Arc<Maneuver> {
         .map(|k| if (k / 9) % 2 == 0 { 1.0 } else { -0.5 })
         .collect();
     let (mut x, mut y) = (0.2, Vec::new());
-    for k in 0..SAMPLES {
+    for (k, u) in u.iter().enumerate().take(SAMPLES) {
         y.push(x + 0.1 + 0.02 * scatter(k, 0.4));
-        x += step * (-1.5 * x + 2.0 * u[k]);
+        x += step * (-1.5 * x + 2.0 * u);
     }
     let rate: Vec<f64> = (0..SAMPLES)
         .map(|k| -1.5 * y[k] + 2.0 * u[k] + 0.05 * scatter(k, 0.1))

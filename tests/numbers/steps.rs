@@ -22,10 +22,13 @@ fn solve(model: &Value, options: Value, maneuver: &Arc<Maneuver>) -> JobResult {
     job::run(&plan, &mut |_| ControlFlow::Continue(())).unwrap_or_else(|f| panic!("{f:#?}"))
 }
 
+/// A and B.
+type Matrices = (DMatrix<f64>, DVector<f64>);
+
 /// dx/dt = A x + B u, y = x_0, x(0) = 0; A and B by θ.
 struct Linear {
     states: usize,
-    matrices: fn(&[f64]) -> (DMatrix<f64>, DVector<f64>),
+    matrices: fn(&[f64]) -> Matrices,
     model: fn(&[f64]) -> Value,
 }
 
@@ -141,7 +144,7 @@ fn exact_fit(system: &Linear, truth: &[f64], u: &[f64], z: &[f64], h: f64) -> Ve
 fn input(samples: usize, h: f64) -> Vec<f64> {
     let level = |k: usize| {
         let t = k as f64 * h;
-        let slow = if (t / 1.7) as usize % 2 == 0 {
+        let slow = if ((t / 1.7) as usize).is_multiple_of(2) {
             1.0
         } else {
             -1.0

@@ -115,11 +115,11 @@ fn a_stable_model_has_no_such_finding() {
         .map(|k| if (k / 40) % 2 == 0 { 1.0 } else { -1.0 })
         .collect();
     let (mut y, mut v, mut ys) = (0.0, 0.0, Vec::new());
-    for k in 0..400 {
+    for (k, u) in u.iter().enumerate().take(400) {
         ys.push(y + 0.01 * scatter(k, 1.0));
         for _ in 0..50 {
             let h = 0.02 / 50.0;
-            (y, v) = (y + h * v, v + h * (-5.0 * y - 0.8 * v + u[k]));
+            (y, v) = (y + h * v, v + h * (-5.0 * y - 0.8 * v + u));
         }
     }
     stable["parameters"]["c"] = json!({"unit": "1/s", "start": -0.5});

@@ -198,9 +198,7 @@ async fn bad_recordings_are_refused_with_their_places() {
         .await
         .problem(422, "invalid_maneuver");
     assert_eq!(faults[0].0, "/channels/q/values/1", "{faults:?}");
-    let answer = server
-        .post("/v1/maneuvers", "application/octet-stream", "x")
-        .await;
+    let answer = server.post("/v1/maneuvers", "image/png", "x").await;
     assert_eq!(answer.problem(415, "unsupported_media_type"), []);
     let answer = send(server.request(Method::POST, "/v1/maneuvers").body("x")).await;
     assert_eq!(answer.problem(415, "unsupported_media_type"), []);

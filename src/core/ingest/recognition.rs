@@ -30,6 +30,11 @@ impl Foreign {
         Self::named(self.what, self.remedy)
     }
 
+    /// Whether a table of text may begin so, too: `PAR1,PAR2`.
+    fn begins_like_text(&self) -> bool {
+        self.at == 0 && self.begins.iter().all(u8::is_ascii_alphanumeric)
+    }
+
     /// That a file is of a format that is not read, and what to do about it.
     pub(super) fn named(what: &str, remedy: &str) -> Fault {
         let message = format!("this is {what}, which is not read; {remedy}");
@@ -205,13 +210,21 @@ impl Kind {
         if at(0, b"MATLAB 5.0") || at(0, b"MATLAB 7.3") || has_version {
             return Some(Self::Mat);
         }
-        let fits = |foreign: &&Foreign| at(foreign.at, foreign.begins);
+        let fits = |foreign: &&Foreign| {
+            at(foreign.at, foreign.begins) && !(foreign.begins_like_text() && is_text(bytes))
+        };
         FOREIGN
             .iter()
             .find(fits)
             .or_else(|| is_telemetry(bytes).then_some(&TELEMETRY))
             .map(Self::Foreign)
     }
+}
+
+/// Whether there is nothing in the first bytes that no text has.
+fn is_text(bytes: &[u8]) -> bool {
+    let is_of_text = |byte: &u8| !byte.is_ascii_control() || b"\t\r\n".contains(byte);
+    bytes.iter().take(256).all(is_of_text)
 }
 
 /// Microseconds since 1970 from 2001 to 2100, and the mark of a message.
@@ -269,6 +282,8 @@ mod tests {
             b"\xef\xbb\xbft,a\n",
             b"% comment\n1 2 3\n",
             b"MDF,a\n0,1\n",
+            b"PAR1,PAR2\n0,1\n",
+            b"ORC\n",
             b"%time,field.q\n",
         ] {
             assert_eq!(Kind::of(text), None, "{text:?}");

@@ -115,7 +115,7 @@ impl Mapping {
             .filter(|(_, code, _)| !self.optional || *code != code::UNKNOWN_SOURCE)
             .map(|(slot, code, message)| {
                 let place = self.place(axes, *slot);
-                (*slot, Fault::new(place, *code, message.clone()))
+                (*slot, Fault::new(place, code, message.clone()))
             })
             .collect();
         faults.extend(axes.faults.iter().cloned());

@@ -26,7 +26,7 @@ pub(super) fn rows_in_use(
         (None, Some(seconds)) => rows_between(seconds, maneuver).map_err(|why| ("seconds", why)),
         (Some(_), Some(_)) => {
             let message = "a part is said by \"rows\" or by \"seconds\", not by both";
-            Err(("seconds", message.to_string()))
+            Err(("rows", message.to_string()))
         }
     }
 }

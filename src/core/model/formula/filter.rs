@@ -239,7 +239,13 @@ mod tests {
     #[test]
     fn missing_samples_stay_missing_and_gaps_part() {
         let (time, values) = channel();
-        let every_fifth = |k: usize| if k % 5 == 0 { values[k] } else { f64::NAN };
+        let every_fifth = |k: usize| {
+            if k.is_multiple_of(5) {
+                values[k]
+            } else {
+                f64::NAN
+            }
+        };
         let sparse: Vec<f64> = (0..50).map(every_fifth).collect();
         let smooth = smoothed(&time, &sparse, 1.0).unwrap();
         assert!((0..50).all(|k| smooth[k].is_nan() == sparse[k].is_nan()));

@@ -72,11 +72,11 @@ async fn list_iterations(
 async fn prepared(service: &Service, id: Uuid) -> Result<Option<Prepared>, Problem> {
     let log = service.store.events(id, 0, 16).await?;
     let bodies = log.entries.iter();
-    let found = bodies.filter_map(|event| match serde_json::from_str(&event.body) {
+    let mut found = bodies.filter_map(|event| match serde_json::from_str(&event.body) {
         Ok(EventBody::Prepared(prepared)) => Some(prepared),
         _ => None,
     });
-    Ok(found.last())
+    Ok(found.next_back())
 }
 
 /// A row for each iteration; variances by output and parameters by name, in their own units.
