@@ -194,6 +194,8 @@ impl Mapping {
             || self.optional
             || self.skip.is_some()
             || self.header.is_some()
+            || time.date.is_some()
+            || time.week.is_some()
             || time.repeated.is_some();
         !is_for_tables
             && !self.channels.is_empty()

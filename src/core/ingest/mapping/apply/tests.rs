@@ -117,6 +117,17 @@ fn channels_with_times_of_their_own_keep_their_samples() {
     let alone = of_tables(&format!(r#"{{{tables}, "channels": {{{alpha}}}}}"#)).unwrap();
     assert_eq!(alone.time(), [0.1, 0.25]);
 
+    let of_several = r#""x": {"from": ["GPS(:,2)", "no source", "AIR(:,2)"], "unit": "-", "time": ["GPS(:,1)", "AIR(:,1)"], "scale": 3}"#;
+    let several = of_tables(&format!(r#"{{{time}, "channels": {{{q}, {of_several}}}}}"#)).unwrap();
+    assert_eq!(
+        several.channels()["x"]
+            .values
+            .iter()
+            .filter(|v| **v == 3.0)
+            .count(),
+        1
+    );
+
     let not_there = r#""x": {"from": "GPS(:,2)", "unit": "-"}"#;
     let optional = of_tables(&format!(
         r#"{{{time}, "optional": true, "channels": {{{q}, {not_there}}}}}"#
@@ -169,6 +180,10 @@ fn faults_of_axes_stand_at_their_place() {
     ] {
         assert_eq!(places::<()>(Err(alpha(time))), [expected]);
     }
+    let dated = of_tables(
+        r#"{"time": {"from": "IMU(:,1)", "date": "day", "unit": "s"}, "channels": {"a": {"from": "IMU(:,2)", "unit": "-"}}}"#,
+    );
+    assert_eq!(places(dated), ["invalid_mapping /time/date"]);
     let unsaid = of_tables(r#"{"channels": {"a": {"from": "IMU(:,2)", "unit": "-"}}}"#);
     assert_eq!(places(unsaid), ["invalid_mapping /channels/a/from"]);
 }
