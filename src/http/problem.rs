@@ -135,7 +135,7 @@ impl Problem {
             code: self.code.name().to_string(),
             detail: self.detail,
             errors: self.errors,
-            mapping: self.mapping.map(|draft| *draft),
+            mapping: self.mapping.map(|mapping| *mapping),
             request_id,
         }
     }
@@ -154,10 +154,9 @@ impl From<IngestError> for Problem {
     fn from(error: IngestError) -> Self {
         let draft = error
             .draft()
-            .and_then(|draft| serde_json::from_str(draft).ok())
-            .map(Box::new);
+            .and_then(|draft| serde_json::from_str(draft).ok());
         Self {
-            mapping: draft,
+            mapping: draft.map(Box::new),
             ..Self::of_faults(Code::InvalidManeuver, error.into_faults())
         }
     }

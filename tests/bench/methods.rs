@@ -188,7 +188,8 @@ fn compare_random(name: &str, problem: &Problem, starts: usize) {
             of(Outcome::Diverged)
         );
     }
-    let both: Vec<(usize, usize, usize, usize)> = all
+    // iterations of both methods, then looks of both
+    let both: Vec<[usize; 4]> = all
         .iter()
         .filter(|pair| is_best(&pair[0]) && is_best(&pair[1]))
         .map(|pair| {
@@ -197,12 +198,11 @@ fn compare_random(name: &str, problem: &Problem, starts: usize) {
                     .as_ref()
                     .map_or((0, 0), |e| (e.iterations, e.evaluations + e.simulations))
             };
-            (of(0).0, of(1).0, of(0).1, of(1).1)
+            [of(0).0, of(1).0, of(0).1, of(1).1]
         })
         .collect();
-    type Counts = (usize, usize, usize, usize);
-    let median = |pick: &dyn Fn(&Counts) -> usize| {
-        let mut values: Vec<usize> = both.iter().map(pick).collect();
+    let median = |which: usize| {
+        let mut values: Vec<usize> = both.iter().map(|efforts| efforts[which]).collect();
         values.sort_unstable();
         (
             values.get(values.len() / 2).copied(),
@@ -211,9 +211,9 @@ fn compare_random(name: &str, problem: &Problem, starts: usize) {
     };
     let ratio = both
         .iter()
-        .map(|b| b.0 as f64 / b.1.max(1) as f64)
+        .map(|[lm, gn, ..]| *lm as f64 / (*gn).max(1) as f64)
         .fold(0.0, f64::max);
-    let above = both.iter().filter(|b| b.0 > 2 * b.1).count();
+    let above = both.iter().filter(|[lm, gn, ..]| *lm > 2 * gn).count();
     let budget_alone = all
         .iter()
         .filter(|p| p[0].as_ref().is_some_and(|e| e.outcome == Outcome::Budget))
@@ -221,10 +221,10 @@ fn compare_random(name: &str, problem: &Problem, starts: usize) {
         .count();
     println!(
         "{line} of both: median, most iterations LM {:?} GN {:?}, looks LM {:?} GN {:?}; largest ratio {ratio:.1}, above twice {above}; LM budget where GN converges {budget_alone}",
-        median(&|b| b.0),
-        median(&|b| b.1),
-        median(&|b| b.2),
-        median(&|b| b.3)
+        median(0),
+        median(1),
+        median(2),
+        median(3)
     );
 }
 

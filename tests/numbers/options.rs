@@ -20,7 +20,7 @@ fn maneuver() -> Arc<Maneuver> {
         .map(|k| if (k / 9) % 2 == 0 { 1.0 } else { -0.5 })
         .collect();
     let (mut x, mut y) = (0.2, Vec::new());
-    for (k, u) in u.iter().enumerate().take(SAMPLES) {
+    for (k, u) in u.iter().enumerate() {
         y.push(x + 0.1 + 0.02 * scatter(k, 0.4));
         x += step * (-1.5 * x + 2.0 * u);
     }

@@ -115,7 +115,7 @@ fn a_stable_model_has_no_such_finding() {
         .map(|k| if (k / 40) % 2 == 0 { 1.0 } else { -1.0 })
         .collect();
     let (mut y, mut v, mut ys) = (0.0, 0.0, Vec::new());
-    for (k, u) in u.iter().enumerate().take(400) {
+    for (k, u) in u.iter().enumerate() {
         ys.push(y + 0.01 * scatter(k, 1.0));
         for _ in 0..50 {
             let h = 0.02 / 50.0;

@@ -71,12 +71,13 @@ async fn list_iterations(
 /// What the job amounts to, which its log begins with.
 async fn prepared(service: &Service, id: Uuid) -> Result<Option<Prepared>, Problem> {
     let log = service.store.events(id, 0, 16).await?;
-    let bodies = log.entries.iter();
-    let mut found = bodies.filter_map(|event| match serde_json::from_str(&event.body) {
-        Ok(EventBody::Prepared(prepared)) => Some(prepared),
-        _ => None,
-    });
-    Ok(found.next_back())
+    let mut bodies = log.entries.iter().rev();
+    Ok(
+        bodies.find_map(|event| match serde_json::from_str(&event.body) {
+            Ok(EventBody::Prepared(prepared)) => Some(prepared),
+            _ => None,
+        }),
+    )
 }
 
 /// A row for each iteration; variances by output and parameters by name, in their own units.
