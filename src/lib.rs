@@ -44,8 +44,10 @@
 //!    then make a `Recording` (`recording.rs`: columns by name with units) and call its `into_maneuver`, or hand a table of
 //!    numbers, an `Archive`, to `Mapping::apply`. A fault names its place and the remedy; its code is a row of `code` in
 //!    `fault.rs`.
-//! 2. `src/core/ingest/mod.rs`: a variant of `Format`, its media type and its file ending, its line in `read_recording`. HTTP
-//!    and command line go by these.
+//!    A log of messages, each kind with its own times, makes a `Table` of each (`messages/`, after `ulog/` or `dataflash/`).
+//! 2. `src/core/ingest/contents.rs`: a variant of `Contents`, and how a file is known: by its first bytes a variant of `Kind`
+//!    in `recognition.rs` (and its line among the foreign ones goes); text by a variant of `Format` in `format.rs`,
+//!    with its media type and file ending. Its line in `read_recording` in `mod.rs`. HTTP and command line go by these.
 //! 3. Tests beside the reader; a good file in `no_damage_to_a_file_panics` in `mod.rs`; real files in
 //!    `tests/ingest/formats.rs`; a target in `tests/fuzz/targets`, with its name in `tests/fuzz/Cargo.toml` and
 //!    `tests/fuzz/run`.

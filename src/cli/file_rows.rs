@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-/// `FILE`, or `FILE:FIRST-LAST` for rows counted from 1, both included.
+/// `FILE`, or `FILE:FIRST-LAST` for rows counted from 1, both included, or `FILE:2s-32.5s` for seconds.
 #[derive(Clone, PartialEq, Debug)]
 pub(super) struct FileRows {
     pub file: PathBuf,
     pub rows: Option<[usize; 2]>,
+    pub seconds: Option<[f64; 2]>,
 }
 
 impl FromStr for FileRows {
@@ -17,6 +18,7 @@ impl FromStr for FileRows {
         let whole = || Self {
             file: PathBuf::from(text),
             rows: None,
+            seconds: None,
         };
         // a file may be called so
         let Some((file, rows)) = text.rsplit_once(':').filter(|_| !Path::new(text).exists()) else {
@@ -25,14 +27,25 @@ impl FromStr for FileRows {
         let Some((first, last)) = rows.split_once('-') else {
             return Ok(whole());
         };
+        let second = |text: &str| text.trim().strip_suffix('s')?.parse::<f64>().ok();
+        if let (Some(from), Some(to)) = (second(first), second(last))
+            && from < to
+        {
+            return Ok(Self {
+                file: PathBuf::from(file),
+                rows: None,
+                seconds: Some([from, to]),
+            });
+        }
         let number = |text: &str| text.trim().parse::<usize>().ok();
         match (number(first), number(last)) {
             (Some(first), Some(last)) if 1 <= first && first < last => Ok(Self {
                 file: PathBuf::from(file),
                 rows: Some([first, last]),
+                seconds: None,
             }),
             _ => Err(format!(
-                "'{rows}' is not a range of rows; write FIRST-LAST, counted from 1, both included"
+                "'{rows}' is not a range of rows or seconds; write FIRST-LAST, rows counted from 1, both included, or 2s-32.5s"
             )),
         }
     }
@@ -42,9 +55,10 @@ impl FileRows {
     /// What it is called in tables.
     pub(super) fn label(&self) -> Option<String> {
         let stem = self.file.file_stem()?.to_string_lossy().into_owned();
-        Some(match self.rows {
-            Some([first, last]) => format!("{stem}:{first}-{last}"),
-            None => stem,
+        Some(match (self.rows, self.seconds) {
+            (Some([first, last]), _) => format!("{stem}:{first}-{last}"),
+            (None, Some([from, to])) => format!("{stem}:{from}s-{to}s"),
+            (None, None) => stem,
         })
     }
 }
@@ -62,7 +76,16 @@ mod tests {
         assert_eq!(part.rows, Some([10, 200]));
         assert_eq!(part.file, PathBuf::from("C:/flights/a.csv"));
         assert_eq!(part.label().as_deref(), Some("a:10-200"));
-        for wrong in ["a.csv:0-7", "a.csv:7-7", "a.csv:x-7", "a.csv:7-"] {
+        let seconds = read("a.csv:2s-32.5s").unwrap();
+        assert_eq!((seconds.rows, seconds.seconds), (None, Some([2.0, 32.5])));
+        assert_eq!(seconds.label().as_deref(), Some("a:2s-32.5s"));
+        for wrong in [
+            "a.csv:7s-2s",
+            "a.csv:0-7",
+            "a.csv:7-7",
+            "a.csv:x-7",
+            "a.csv:7-",
+        ] {
             assert!(read(wrong).unwrap_err().contains("FIRST-LAST"), "{wrong}");
         }
     }

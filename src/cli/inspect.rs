@@ -7,13 +7,13 @@ use super::mapping::MappingOption;
 use super::recording::{format_of, read_bytes, refused};
 use super::table::bordered;
 use crate::flight::Finding;
-use crate::ingest::{self, Format, Inspection, Limits, Reading, summary};
+use crate::ingest::{self, IngestError, Inspection, Limits, Reading, summary};
 
-/// Prints what is found in a recording: of a table of text how it is written, its columns, what they are read as, and a draft
+/// Prints what is found in a recording: of a table how it is written, its columns, what they are read as, and a draft
 /// of a mapping.
 #[derive(clap::Args, Debug)]
 pub(super) struct Inspect {
-    /// A recording: a table of text (.csv, .txt, .dat, ...), or what `fit` reads.
+    /// A recording: a table of text (.csv, .txt, .dat, ...), a workbook, or what `fit` reads.
     file: PathBuf,
     #[command(flatten)]
     mapping: MappingOption,
@@ -22,18 +22,18 @@ pub(super) struct Inspect {
 impl Inspect {
     pub(super) fn run(&self) -> Result<(), Failure> {
         let (bytes, mapping) = (read_bytes(&self.file)?, self.mapping.read()?);
-        let format = format_of(&self.file);
-        if !matches!(format, Format::Csv | Format::Ascii) {
+        let (format, limits) = (format_of(&self.file), Limits::default());
+        let refuse = |error: IngestError| refused(&self.file, &error);
+        let inspected = ingest::inspect(&bytes, format, None, mapping.as_ref(), &limits);
+        let text = match inspected.map_err(refuse)? {
+            Some(inspection) => told(&inspection),
             // such a file says itself what it has, or its refusal does
-            let limits = Limits::default();
-            let read = ingest::read_recording(&bytes, format, None, mapping.as_ref(), &limits);
-            let reading = read.map_err(|error| refused(&self.file, &error))?;
-            print!("{}", recording(&reading));
-            return Ok(());
-        }
-        let inspection = ingest::inspect(&bytes, None, mapping.as_ref(), &Limits::default())
-            .map_err(|error| refused(&self.file, &error))?;
-        print!("{}", told(&inspection));
+            None => {
+                let read = ingest::read_recording(&bytes, format, None, mapping.as_ref(), &limits);
+                recording(&read.map_err(refuse)?)
+            }
+        };
+        print!("{text}");
         Ok(())
     }
 }

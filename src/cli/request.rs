@@ -19,8 +19,9 @@ use crate::simulate::{InputInterpolation, Integrator};
 
 #[derive(clap::Args, Debug)]
 pub(super) struct Request {
-    /// Recordings: tables of text (.csv, .txt, .dat, ...), JSON (.json), MAT files (.mat) or ASCII matrices (.asc), the last
-    /// two with --mapping; rows count from 1. Several are fitted together.
+    /// Recordings: tables of text (.csv, .txt, .dat, ...), JSON (.json), Excel workbooks (.xlsx), logs of PX4 (.ulg) and
+    /// ArduPilot (.bin), MAT files (.mat) or ASCII matrices (.asc), the last two with --mapping; any of them packed (.gz,
+    /// .zip). Rows count from 1; FILE:2s-32.5s are seconds. Several are fitted together.
     #[arg(required = true, value_name = "FILE[:FIRST-LAST]")]
     pub files: Vec<FileRows>,
     /// A recording that the model is not fitted to but predicts, to see whether it holds.
@@ -204,6 +205,7 @@ impl Request {
         let usage = |(id, (used, role)): (&String, (&FileRows, Role))| ManeuverUse {
             label: used.label(),
             rows: used.rows,
+            seconds: used.seconds,
             gaps,
             ..ManeuverUse::new(id.clone(), role)
         };

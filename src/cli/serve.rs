@@ -130,6 +130,7 @@ impl Serve {
                 max_columns: self.max_columns,
                 max_samples: self.max_samples,
                 max_values: self.max_values,
+                max_bytes: self.max_maneuver_body,
                 ..ingest::Limits::default()
             },
             max_job_values: self.max_job_values,

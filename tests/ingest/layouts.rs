@@ -1,7 +1,10 @@
 //! Layouts of loggers, simulators and programs: small files of our own making go in without editing.
 
+use std::io::Write;
+
+use flate2::{Compression, write::GzEncoder};
 use trimtab_core::flight::{Maneuver, Unit};
-use trimtab_core::ingest::{Format, Limits, Mapping, read_recording};
+use trimtab_core::ingest::{Format, Limits, Mapping, Reading, read_recording};
 
 /// A layout, a file in it, and a channel with its first value in a unit.
 struct Layout {
@@ -214,16 +217,13 @@ fn layouts() -> Vec<Layout> {
 }
 
 fn read(layout: &Layout, format: Format) -> Maneuver {
+    read_bytes(layout, layout.file.as_bytes(), format).maneuver
+}
+
+fn read_bytes(layout: &Layout, bytes: &[u8], format: Format) -> Reading {
     let mapping = layout.mapping.map(|text| Mapping::from_toml(text).unwrap());
-    let read = read_recording(
-        layout.file.as_bytes(),
-        format,
-        None,
-        mapping.as_ref(),
-        &Limits::default(),
-    );
+    let read = read_recording(bytes, format, None, mapping.as_ref(), &Limits::default());
     read.unwrap_or_else(|error| panic!("{}: {error}", layout.name))
-        .maneuver
 }
 
 #[test]
@@ -265,6 +265,31 @@ fn as_plain_text_they_are_the_same() {
     for layout in layouts() {
         let (csv, text) = (read(&layout, Format::Csv), read(&layout, Format::Ascii));
         assert_eq!(csv.digest(), text.digest(), "{}", layout.name);
+    }
+}
+
+#[test]
+fn packed_or_in_another_encoding_they_are_the_same() {
+    for layout in layouts() {
+        let plain = read_bytes(&layout, layout.file.as_bytes(), Format::Csv);
+        let utf_16: Vec<u8> = "\u{feff}"
+            .encode_utf16()
+            .chain(layout.file.encode_utf16())
+            .flat_map(u16::to_le_bytes)
+            .collect();
+        for bytes in [layout.file.as_bytes(), &utf_16] {
+            let mut packing = GzEncoder::new(Vec::new(), Compression::fast());
+            packing.write_all(bytes).unwrap();
+            let packed = packing.finish().unwrap();
+            let read = read_bytes(&layout, &packed, Format::Unstated);
+            assert_eq!(
+                read.maneuver.digest(),
+                plain.maneuver.digest(),
+                "{}",
+                layout.name
+            );
+            assert_eq!(read.findings, plain.findings, "{}", layout.name);
+        }
     }
 }
 

@@ -12,3 +12,4 @@ mod flight_data;
 mod formats;
 mod kinds;
 mod layouts;
+mod structs;

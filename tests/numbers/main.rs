@@ -24,6 +24,7 @@ mod bundled_data;
 mod bundled_effects;
 mod catalog;
 mod catalog_published;
+mod channel_formulas;
 mod coverage;
 mod delays;
 mod derivative_techniques;

@@ -9,6 +9,12 @@ use trimtab::http::Config;
 
 const SMALL: &str = "t[s],alpha[deg],q[deg/s]\n0,1.5,2\n0.1,,3\n0.2,2.5,4\n";
 
+/// [`SMALL`] and 5000 ones, packed with gzip.
+const PACKED: &[u8] =
+    b"\x1f\x8b\x08\x00\x00\x00\x00\x00\x02\x03\x2b\x89\x2e\x8e\xd5\x49\xcc\x29\xc8\x48\x8c\x4e\x49\x4d\x8f\xd5\x29\x04\x51\xfa\xc5\xb1\x5c\x06\x3a\x86\x7a\xa6\x3a\x46\x5c\x06\x7a\x86\x3a\x3a\xc6\x40\xca\x48\xc7\x08\x28\x60\xc2\x05\x00\x95\x3d\x46\xe8\x32\x00\x00\x00";
+const BOMB: &[u8] =
+    b"\x1f\x8b\x08\x00\x00\x00\x00\x00\x02\x03\xed\xc1\x31\x01\x00\x00\x00\xc2\xa0\x4c\xeb\x5f\xce\x14\x7e\x40\x01\x00\x00\x00\x00\x6f\x03\x82\x0d\xdf\xdc\x88\x13\x00\x00";
+
 async fn csv(server: &Server, body: impl Into<Body>) -> Answer {
     server.post("/v1/maneuvers", "text/csv", body).await
 }
@@ -50,6 +56,31 @@ async fn the_same_content_is_the_same_maneuver() {
     );
     let unknown = server.get("/v1/maneuvers/abc").await;
     assert_eq!(unknown.problem(404, "unknown_maneuver"), []);
+}
+
+#[tokio::test]
+async fn a_file_is_what_its_first_bytes_tell() {
+    let config = Config {
+        max_maneuver_body: 2000,
+        ..Config::default()
+    };
+    let server = Server::start_with(config, 0).await;
+    let id = server.upload(SMALL).await;
+    for media_type in ["text/csv", "application/gzip", "application/octet-stream"] {
+        let packed = server.post("/v1/maneuvers", media_type, PACKED).await;
+        assert_eq!(packed.status, 200, "{media_type}: {}", packed.text());
+        assert_eq!(packed.json()["id"], id, "{media_type}");
+    }
+    for (body, code) in [
+        (BOMB, "unpacked_too_large"),
+        (&b"PAR1\0\0\0\0PAR1"[..], "format_not_read"),
+        (&b"TDSm\x0e\0\0\0"[..], "format_not_read"),
+        (&b"ULog\x01\x12\x35\x01\0\0\0\0\0\0\0\0"[..], "damaged_file"),
+    ] {
+        let refused = server.post("/v1/maneuvers", "text/csv", body).await;
+        let errors = refused.problem(422, "invalid_maneuver");
+        assert_eq!(errors, [(String::new(), code.to_string())]);
+    }
 }
 
 #[tokio::test]
@@ -167,9 +198,7 @@ async fn bad_recordings_are_refused_with_their_places() {
         .await
         .problem(422, "invalid_maneuver");
     assert_eq!(faults[0].0, "/channels/q/values/1", "{faults:?}");
-    let answer = server
-        .post("/v1/maneuvers", "application/octet-stream", "x")
-        .await;
+    let answer = server.post("/v1/maneuvers", "image/png", "x").await;
     assert_eq!(answer.problem(415, "unsupported_media_type"), []);
     let answer = send(server.request(Method::POST, "/v1/maneuvers").body("x")).await;
     assert_eq!(answer.problem(415, "unsupported_media_type"), []);

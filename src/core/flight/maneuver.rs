@@ -106,7 +106,8 @@ impl Maneuver {
                 });
             }
         }
-        let sampling = Sampling::of(&time);
+        let values = channels.values().map(|channel| channel.values.as_slice());
+        let sampling = Sampling::of(&time, values);
         Ok(Self {
             time,
             channels,

@@ -1,6 +1,6 @@
 //! ASCII matrices (`.asc`, `.dat`, `save -ascii`): numbers separated by blanks, one row a sample, no header.
 
-use crate::flight::{Fault, Maneuver};
+use crate::flight::Fault;
 
 use super::{
     IngestError, Limits,
@@ -10,6 +10,7 @@ use super::{
     lines::{Line, Lines},
     mapping::{Archive, Mapping},
     matrix::Matrix,
+    reading::Reading,
     text::{decode, quoted},
 };
 
@@ -32,7 +33,7 @@ pub(super) fn read(
     bytes: &[u8],
     mapping: &Mapping,
     limits: &Limits,
-) -> Result<Maneuver, IngestError> {
+) -> Result<Reading, IngestError> {
     let text = decode(bytes)?;
     let lines = Lines::of(text);
     let columns = lines.clone().next().map_or(0, |line| cells(line).count());
@@ -114,6 +115,7 @@ impl Archive for Table {
 mod tests {
     use super::super::fault::places;
     use super::*;
+    use crate::flight::Maneuver;
 
     const MAPPING: &str = r#"{"time": {"from": "(:,1)", "unit": "s"},
         "channels": {"alpha": {"from": "fdata(:,3)", "unit": "deg"}, "mach": {"from": "(:,2)", "unit": "-"}}}"#;
@@ -124,6 +126,7 @@ mod tests {
             &Mapping::from_json(MAPPING).unwrap(),
             limits,
         )
+        .map(|reading| reading.maneuver)
     }
 
     #[test]

@@ -43,6 +43,14 @@ impl IngestError {
         }
     }
 
+    /// The same with every fault as `with` makes it.
+    pub(super) fn map(self, with: impl FnMut(Fault) -> Fault) -> Self {
+        Self {
+            faults: self.faults.into_iter().map(with).collect(),
+            ..self
+        }
+    }
+
     /// Refuses if there is a fault.
     pub(super) fn refuse(faults: Vec<Fault>) -> Result<(), Self> {
         if faults.is_empty() {
@@ -130,6 +138,9 @@ pub mod code {
         UNREADABLE_SOURCE = "unreadable_source", "What the mapping names is not a matrix of real numbers.";
         NOT_A_MAT_FILE = "not_a_mat_file", "The body is not a MAT file.";
         MAT_VERSION = "mat_version", "The MAT file is of a version that is not read.";
+        FORMAT_NOT_READ = "format_not_read", "The file is of a format that is not read; the message says which and how to convert it.";
+        UNPACKED_TOO_LARGE = "unpacked_too_large", "A packed file unpacks to more than the longest body that is taken.";
+        SEVERAL_FILES = "several_files", "An archive has no file in it, or more than one.";
         DAMAGED_FILE = "damaged_file", "The file contradicts itself or is cut off.";
     }
 }

@@ -187,6 +187,7 @@ mod tests {
             max_samples: 4,
             max_values: 8,
             max_name_length: 5,
+            ..Limits::default()
         };
         let refused = |channels: &str, code: &str, bound: &str| {
             let error = read(recording(EVEN, channels).as_bytes(), &limits).unwrap_err();

@@ -14,6 +14,8 @@ pub struct Limits {
     pub max_values: usize,
     /// Bytes of a channel's name.
     pub max_name_length: usize,
+    /// Bytes of a file that comes packed, once it is unpacked.
+    pub max_bytes: usize,
 }
 
 impl Default for Limits {
@@ -24,6 +26,7 @@ impl Default for Limits {
             max_samples: 2_000_000,
             max_values: 50_000_000,
             max_name_length: 128,
+            max_bytes: 1_000_000_000,
         }
     }
 }

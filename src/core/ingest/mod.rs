@@ -5,9 +5,11 @@
 //! Its memory is bounded by [`Limits`] *before* it is used: every format is surveyed in one cheap pass
 //! before anything is built from it.
 //!
-//! Tables of text and JSON say names and units themselves. MAT files and ASCII matrices do not: a [`Mapping`] says them. It
-//! can do so for any table of text, too, where what the file says is not what is meant. [`inspect`] looks at one, and
-//! drafts a mapping.
+//! Tables of text, workbooks and JSON say names and units themselves. MAT files and ASCII matrices do not: a [`Mapping`] says
+//! them. It can do so for any table, too, where what the file says is not what is meant. [`inspect`] looks at one, and drafts
+//! a mapping. Logs of PX4 and ArduPilot come with mappings of the quantities that most of them have.
+//!
+//! Whatever a sender says that a file is, its first bytes are looked at first. What is packed with gzip or zip is unpacked.
 //!
 //! What is readable may still be poor: [`quality()`] finds gaps, missing values, stuck sensors and spikes,
 //! and [`summary()`] is what a user sees of a maneuver without downloading it.
@@ -19,11 +21,14 @@ mod assemble;
 mod axis;
 pub mod bundled;
 mod cell;
+mod contents;
 mod csv;
 mod csv_writer;
+mod dataflash;
 mod encoding;
 mod export;
 mod fault;
+mod format;
 mod json;
 mod label;
 mod limits;
@@ -31,21 +36,28 @@ mod lines;
 mod mapping;
 mod mat;
 mod matrix;
+mod messages;
 mod name;
 mod note;
+mod packed;
 mod quick;
 mod reading;
+mod recognition;
 mod recording;
 mod stamp;
 mod summary;
 mod text;
+mod ulog;
+mod union;
 mod units;
+mod workbook;
 
 pub use crate::flight::quality;
 pub use csv::{InspectedColumn, Inspection};
 pub use csv_writer::CsvWriter;
 pub use export::{to_csv, to_csv_as_recorded, to_json};
 pub use fault::{IngestError, code};
+pub use format::Format;
 pub use limits::Limits;
 pub use mapping::Mapping;
 pub use reading::Reading;
@@ -53,71 +65,12 @@ pub use recording::Recording;
 pub use summary::{ChannelSummary, Summary, summary};
 
 use crate::flight::Maneuver;
+use contents::{Contents, Opened};
+use recognition::Kind;
 
-/// What a recording is written in.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Format {
-    /// A table of text with a header of `name[unit]`, a row for each sample.
-    Csv,
-    /// One time axis and a list of values for each channel.
-    Json,
-    /// A MAT file of version 5.
-    Mat,
-    /// A matrix of numbers as text, or any other table of text.
-    Ascii,
-}
-
-impl Format {
-    /// The media types of [`Format::from_content_type`], for a message that says what is accepted.
-    pub const CONTENT_TYPES: [&str; 4] = [
-        "text/csv",
-        "application/json",
-        "application/x-matlab-data",
-        "text/plain",
-    ];
-
-    /// The media type of an upload.
-    pub fn content_type(self) -> &'static str {
-        match self {
-            Self::Csv => "text/csv",
-            Self::Json => "application/json",
-            Self::Mat => "application/x-matlab-data",
-            Self::Ascii => "text/plain",
-        }
-    }
-
-    /// By the end of a file's name, without the dot; `None` if it says nothing.
-    pub fn from_extension(extension: &str) -> Option<Self> {
-        match extension.to_ascii_lowercase().as_str() {
-            "csv" => Some(Self::Csv),
-            "json" => Some(Self::Json),
-            "mat" => Some(Self::Mat),
-            "asc" => Some(Self::Ascii),
-            _ => None,
-        }
-    }
-
-    /// The charset that a `Content-Type` says.
-    pub fn charset(content_type: &str) -> Option<&str> {
-        let mut parameters = content_type.split(';').skip(1);
-        parameters.find_map(|parameter| {
-            let (name, value) = parameter.split_once('=')?;
-            let is_charset = name.trim().eq_ignore_ascii_case("charset");
-            is_charset.then(|| value.trim().trim_matches('"'))
-        })
-    }
-
-    /// Reads a `Content-Type`; its parameters (`charset=...`) are ignored.
-    pub fn from_content_type(content_type: &str) -> Option<Self> {
-        let essence = content_type.split(';').next().unwrap_or_default().trim();
-        match essence.to_ascii_lowercase().as_str() {
-            "text/csv" | "application/csv" => Some(Self::Csv),
-            "application/json" | "text/json" => Some(Self::Json),
-            "application/x-matlab-data" | "application/matlab-mat" => Some(Self::Mat),
-            "text/plain" => Some(Self::Ascii),
-            _ => None,
-        }
-    }
+/// Whether a file is packed with gzip or zip, so that it needs more memory than its own.
+pub fn is_packed(bytes: &[u8]) -> bool {
+    matches!(Kind::of(bytes), Some(Kind::Gzip | Kind::Zip))
 }
 
 /// Reads a recording that says names and units itself.
@@ -154,32 +107,54 @@ pub fn read_recording(
     mapping: Option<&Mapping>,
     limits: &Limits,
 ) -> Result<Reading, IngestError> {
-    match (format, mapping) {
-        (Format::Csv, _) => csv::read(bytes, charset, mapping, limits),
-        (Format::Json, None) => json::read(bytes, limits).map(Reading::from),
-        (Format::Mat, _) => mat::read(bytes, mapping, limits).map(Reading::from),
-        (Format::Ascii, Some(mapping)) if ascii::is_matrix(bytes, mapping) => {
-            ascii::read(bytes, mapping, limits).map(Reading::from)
+    let Opened { bytes, contents } = contents::open(bytes, format, limits)?;
+    let bytes: &[u8] = &bytes;
+    match (contents, mapping) {
+        (Contents::Ulog, _) => ulog::read(bytes, mapping, limits),
+        (Contents::DataFlash, _) => dataflash::read(bytes, mapping, limits),
+        (Contents::Mat, _) => mat::read(bytes, mapping, limits),
+        (Contents::Workbook, _) => {
+            let table = workbook::table(bytes, limits)?;
+            csv::read(table.as_bytes(), Some(workbook::CHARSET), mapping, limits)
         }
-        (Format::Ascii, _) => csv::read(bytes, charset, mapping, limits),
-        (_, Some(_)) => {
+        (Contents::TableOrMatrix, Some(mapping)) if ascii::is_matrix(bytes, mapping) => {
+            ascii::read(bytes, mapping, limits)
+        }
+        (Contents::Table | Contents::TableOrMatrix, _) => {
+            csv::read(bytes, charset, mapping, limits)
+        }
+        (Contents::Json, None) => json::read(bytes, limits).map(Reading::from),
+        (Contents::Json, Some(_)) => {
             let message = "this format says names and units itself; leave the mapping out";
             Err(fault::of_file(code::MAPPING_NOT_USED, message).into())
         }
     }
 }
 
-/// Looks at a table of text: how it is written, what its columns are, the draft of a mapping for it.
+/// Looks at a table of text or a workbook: how it is written, what its columns are, the draft of a mapping for it. `None`
+/// where the file is neither.
 ///
 /// # Errors
-/// There is no table in it.
+/// There is no table in it; or it cannot be unpacked, or is of a format that is not read.
 pub fn inspect(
     bytes: &[u8],
+    format: Format,
     charset: Option<&str>,
     mapping: Option<&Mapping>,
     limits: &Limits,
-) -> Result<Inspection, IngestError> {
-    csv::inspect(bytes, charset, mapping, limits)
+) -> Result<Option<Inspection>, IngestError> {
+    let Opened { bytes, contents } = contents::open(bytes, format, limits)?;
+    let inspected = match contents {
+        Contents::Table | Contents::TableOrMatrix => {
+            csv::inspect(&bytes, charset, mapping, limits)?
+        }
+        Contents::Workbook => {
+            let table = workbook::table(&bytes, limits)?;
+            csv::inspect(table.as_bytes(), Some(workbook::CHARSET), mapping, limits)?
+        }
+        _ => return Ok(None),
+    };
+    Ok(Some(inspected))
 }
 
 #[cfg(test)]
@@ -187,27 +162,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn content_types_are_read_without_their_parameters() {
-        let format = Format::from_content_type;
-        assert_eq!(format("text/csv; charset=utf-8"), Some(Format::Csv));
-        assert_eq!(format("Application/JSON"), Some(Format::Json));
-        assert_eq!(format("application/x-hdf5"), None);
-        assert_eq!(format(""), None);
-        for accepted in Format::CONTENT_TYPES {
-            assert_eq!(format(accepted).map(Format::content_type), Some(accepted));
-        }
-    }
-
-    #[test]
     fn a_mapping_is_for_files_that_need_one() {
         let mapping = Mapping::named_or_json("sidpac").unwrap();
         let limits = Limits::default();
         let unused = read_mapped(b"{}", Format::Json, Some(&mapping), &limits);
         assert_eq!(fault::places(unused), ["mapping_not_used "]);
-        for extension in ["csv", "JSON", "mat", "asc"] {
-            assert!(Format::from_extension(extension).is_some());
-        }
-        assert_eq!(Format::from_extension("txt"), None);
     }
 
     /// Cuts and byte changes of a good file must be answered, never panic.

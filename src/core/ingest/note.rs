@@ -1,5 +1,6 @@
 //! What was odd about the writing of a file that was read all the same.
 
+use super::text::short_message;
 use crate::flight::{Finding, FindingCode};
 
 /// A finding about the file as a whole.
@@ -22,4 +23,32 @@ pub(super) fn note_of_rows(
         count: rows.len(),
         ..note(code, message, remedy)
     }
+}
+
+/// Names are listed up to this many.
+const LISTED: usize = 12;
+
+/// The first of several names or sentences, and how many more there are.
+pub(super) fn listed(names: impl ExactSizeIterator<Item = String>) -> String {
+    let more = names.len().saturating_sub(LISTED);
+    let names: Vec<String> = names
+        .take(LISTED)
+        .map(|name| short_message(&name))
+        .collect();
+    let names = names.join(", ");
+    if more > 0 {
+        format!("{names} and {more} more")
+    } else {
+        names
+    }
+}
+
+/// That a file does not have channels of a mapping which it need not have.
+pub(super) fn absent(names: &[String]) -> Option<Finding> {
+    let message = format!(
+        "the file does not have {}, which the mapping names",
+        listed(names.iter().cloned())
+    );
+    let remedy = "nothing needs to be done where the model does not need them";
+    (!names.is_empty()).then(|| note(FindingCode::Absent, message, remedy))
 }

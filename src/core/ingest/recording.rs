@@ -45,6 +45,10 @@ pub(super) struct RecordedChannel {
     /// One for each sample, `null` where there is none.
     #[schema(value_type = Vec<Option<f64>>)]
     pub(super) values: Vec<Number>,
+    /// Times of its own, where it was recorded at another rate. The recording then has the times of all, and this channel no
+    /// value at those of the others.
+    #[serde(default)]
+    pub(super) time: Option<RecordedTime>,
 }
 
 /// Channels in the order of the document, a name that stands twice included.

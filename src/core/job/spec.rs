@@ -41,7 +41,9 @@ pub struct JobSpec {
     /// One or more; fitted together.
     #[schema(min_items = 1)]
     pub maneuvers: Vec<ManeuverUse>,
-    /// How model inputs and outputs are made from recorded channels, where not simply by name.
+    /// How model inputs and outputs are made from recorded channels, where not simply by name. Formulas have numbers with or
+    /// without units (`9.80665[m/s^2]`), the functions of equations, and those of recordings: `first`, `mean`, `largest_rate`,
+    /// `interpolated`, `held`, `fresh`, `unwrap`, `delayed`, `lowpass`, `smoothed`, `derivative`, `north`, `east`, `airspeed`.
     #[serde(
         default,
         deserialize_with = "crate::model::unique",
@@ -241,6 +243,10 @@ pub struct ManeuverUse {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = json!([1, 751]))]
     pub rows: Option<[usize; 2]>,
+    /// First and last second to use, on the recording's own time, both included; absent: all. Not together with `rows`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = json!([2.0, 32.5]))]
+    pub seconds: Option<[f64; 2]>,
     /// Whether the model is fitted to it, or predicts it.
     #[serde(default)]
     pub role: Role,
@@ -281,6 +287,7 @@ impl ManeuverUse {
             id: id.into(),
             label: None,
             rows: None,
+            seconds: None,
             role,
             gaps: Gaps::default(),
             constants: IndexMap::new(),

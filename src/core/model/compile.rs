@@ -346,10 +346,8 @@ impl Builder<'_> {
                 };
             }
             Function::If => return self.graph.select(arguments[0], arguments[1], arguments[2]),
-            // refused by `read_equation`
-            Function::First | Function::Mean | Function::LargestRate | Function::Interpolated => {
-                return self.graph.constant(f64::NAN);
-            }
+            // of recordings: refused by `read_equation`
+            _ => return self.graph.constant(f64::NAN),
         };
         self.graph.unary(unary, arguments[0])
     }

@@ -56,7 +56,14 @@ pub(super) fn measure(
             _ => alike(left, right, "compare").map(|_| Some(Dimension::NONE)),
         },
         Kind::Call(function, arguments) => match (function, arguments.as_slice()) {
-            (Function::Abs | Function::First | Function::Interpolated, [value]) => of(value),
+            (
+                Function::Abs
+                | Function::First
+                | Function::Interpolated
+                | Function::Held
+                | Function::Fresh,
+                [value],
+            ) => of(value),
             (Function::LargestRate, [value]) => {
                 Ok(of(value)?.map(|dimension| dimension.over(Dimension::SECOND)))
             }
@@ -75,18 +82,37 @@ pub(super) fn measure(
                 alike(y, x, "divide in atan2").map(|_| Some(Dimension::NONE))
             }
             (Function::Min | Function::Max, [left, right]) => alike(left, right, "compare"),
-            (Function::Mean, [value, duration]) => {
-                match of(duration)? {
-                    Some(d) if !d.is_none() && d != Dimension::SECOND => {
-                        let message = format!("mean takes a time in seconds, not {d}");
-                        return Err(Mismatch {
-                            span: duration.span,
-                            message,
-                        });
-                    }
-                    _ => {}
-                }
+            (Function::Mean | Function::Delayed, [value, duration]) => {
+                let what = (Dimension::SECOND, "a time in seconds");
+                takes(*function, duration, of(duration)?, what)?;
                 of(value)
+            }
+            (Function::Lowpass | Function::Smoothed | Function::Derivative, [value, frequency]) => {
+                let what = (Dimension::NONE.over(Dimension::SECOND), "a frequency in Hz");
+                takes(*function, frequency, of(frequency)?, what)?;
+                let dimension = of(value)?;
+                Ok(match function {
+                    Function::Derivative => dimension.map(|d| d.over(Dimension::SECOND)),
+                    _ => dimension,
+                })
+            }
+            (Function::North | Function::East, [latitude, longitude]) => {
+                pure(latitude, "a latitude")?;
+                pure(longitude, "a longitude")?;
+                Ok(Some(Dimension::METRE))
+            }
+            (Function::Airspeed, [pressure, density]) => {
+                let quotient = both(of(pressure)?, of(density)?, Dimension::over);
+                let speed = Dimension::METRE.over(Dimension::SECOND);
+                match quotient {
+                    Some(quotient) if quotient != speed.times(speed) => Err(Mismatch {
+                        span: expression.span,
+                        message: format!(
+                            "airspeed takes a pressure and a density, whose quotient is in m^2/s^2, not in {quotient}"
+                        ),
+                    }),
+                    _ => Ok(Some(speed)),
+                }
             }
             (Function::If, [condition, yes, no]) => {
                 of(condition)?;
@@ -99,6 +125,22 @@ pub(super) fn measure(
                 Ok(Some(Dimension::NONE))
             }
         },
+    }
+}
+
+/// An argument is a written number, or of this dimension.
+fn takes(
+    function: Function,
+    argument: &Expression,
+    found: Measured,
+    (wanted, what): (Dimension, &str),
+) -> Result<(), Mismatch> {
+    match found {
+        Some(found) if !found.is_none() && found != wanted => Err(Mismatch {
+            span: argument.span,
+            message: format!("{} takes {what}, not {found}", function.name()),
+        }),
+        _ => Ok(()),
     }
 }
 
@@ -178,6 +220,11 @@ mod tests {
         assert_eq!(measured("2^alpha"), Ok("-".into()));
         assert_eq!(measured("mean(V, 5)"), Ok("m/s".into()));
         assert_eq!(measured("0.6*largest_rate(alpha)"), Ok("1/s".into()));
+        assert_eq!(measured("derivative(q, 2)"), Ok("1/s^2".into()));
+        assert_eq!(measured("lowpass(V, q)"), Ok("m/s".into()));
+        assert_eq!(measured("north(alpha, alpha)"), Ok("m".into()));
+        assert_eq!(measured("airspeed(0.5*rho*V^2, rho)"), Ok("m/s".into()));
+        assert!(measured("airspeed(V, rho)").is_err() && measured("delayed(V, V)").is_err());
     }
 
     #[test]

@@ -220,13 +220,7 @@ fn data_function(expression: &Expression) -> Option<Function> {
         Kind::Number(_) | Kind::Name(_) => None,
         Kind::Negate(inner) => data_function(inner),
         Kind::Binary(_, left, right) => data_function(left).or_else(|| data_function(right)),
-        Kind::Call(
-            function @ (Function::First
-            | Function::Mean
-            | Function::LargestRate
-            | Function::Interpolated),
-            _,
-        ) => Some(*function),
+        Kind::Call(function, _) if function.is_of_recordings() => Some(*function),
         Kind::Call(_, arguments) => arguments.iter().find_map(data_function),
     }
 }

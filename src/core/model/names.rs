@@ -3,7 +3,7 @@
 use indexmap::IndexMap;
 
 use super::document::ModelDocument;
-use super::expression::{Function, is_name};
+use super::expression::{Function, is_name, written_unit};
 use crate::flight::{Dimension, Fault, Unit, escape};
 
 /// What a name in an equation stands for.
@@ -105,10 +105,16 @@ impl<'d> Names<'d> {
     }
 
     pub(super) fn meaning(&self, name: &str) -> Option<Meaning> {
+        if let Some(Ok(unit)) = written_unit(name) {
+            return Some(Meaning::Constant(unit.scale));
+        }
         self.table.get(name).map(|&(meaning, _)| meaning)
     }
 
     pub(super) fn dimension(&self, name: &str) -> Option<Dimension> {
+        if let Some(Ok(unit)) = written_unit(name) {
+            return Some(unit.dimension);
+        }
         self.table.get(name).and_then(|&(_, dimension)| dimension)
     }
 
@@ -155,11 +161,18 @@ impl<'d> Names<'d> {
     }
 }
 
+/// Functions of recordings have no place in equations, so that models may have such names; those that came first keep theirs.
+fn is_reserved(name: &str) -> bool {
+    const FIRST: [Function; 3] = [Function::First, Function::Mean, Function::Interpolated];
+    let reserves = |function: Function| !function.is_of_recordings() || FIRST.contains(&function);
+    Function::find(name).is_some_and(reserves)
+}
+
 fn unfit(name: &str, pointer: &str) -> Option<Fault> {
     let why = if !is_name(name) {
         "a name is a letter or '_' followed by letters, digits and '_', at most 64 in all"
             .to_string()
-    } else if name == TIME || name == PI || Function::find(name).is_some() {
+    } else if name == TIME || name == PI || is_reserved(name) {
         format!("'{name}' has a meaning of its own in equations; choose another name")
     } else {
         return None;

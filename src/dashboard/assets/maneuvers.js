@@ -45,7 +45,8 @@ class Chosen {
     if (this.type === 'application/json') parts.mappings.hidden = true;
     else if (!isCsv) {
       parts.document.hidden = false;
-      parts.about.textContent += '; names and units come from a mapping';
+      const isKnown = this.type !== 'application/octet-stream';
+      parts.about.textContent += isKnown ? '; names and units come from a mapping' : '; a mapping may say other names and units than it does';
     } else if (this.head) {
       parts.mapping.options[0].textContent = 'as the file says';
       this.table = columnTable(this.head, () => this.mappingChanged());

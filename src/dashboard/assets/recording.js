@@ -4,8 +4,12 @@
 /** Bytes of the head. */
 const HEAD = 65536;
 
+const ANY = 'application/octet-stream';
+
 const TYPES = {
   csv: 'text/csv', tsv: 'text/csv', json: 'application/json', mat: 'application/x-matlab-data', asc: 'text/plain', dat: 'text/plain',
+  // the service finds out what these are
+  xlsx: ANY, xlsm: ANY, ulg: ANY, ulog: ANY, bin: ANY, gz: ANY, zip: ANY,
 };
 
 /** What a file is sent as, and for CSV what stands in its head. */

@@ -86,38 +86,52 @@ struct UploadQuery {
     /// For people; at most 200 characters.
     #[param(example = "ATTAS elevator 3-2-1-1")]
     name: Option<String>,
-    /// Where a MAT file or an ASCII matrix has time and channels, and in which units; for a table of text, what it does not
-    /// say, or says otherwise than is meant. The name of a mapping that is bundled (`GET /v1/mappings`) or kept there, or a
-    /// JSON document. Sources are variables (`alpha`), fields of structs (`rec.alpha`), columns (`data(:,2)`) or rows
-    /// (`data(2,:)`) of either, or columns of the only matrix of a file (`(:,2)`). Of a table of text they are titles as they
-    /// stand there, with or without their units (`Elev Pos`), or columns (`(:,2)`); its other columns are left out.
+    /// Where a MAT file, a log or an ASCII matrix has time and channels, and in which units; for a table of text or a workbook,
+    /// what it does not say, or says otherwise than is meant. The name of a mapping that is bundled (`GET /v1/mappings`) or
+    /// kept there, or a JSON document. Sources are variables (`alpha`), fields of structs (`rec.alpha`,
+    /// `scope.signals(1).values`), fields of messages (`IMU[1].GyrY`), columns (`data(:,2)`) or rows (`data(2,:)`) of any, or
+    /// columns of the only matrix of a file (`(:,2)`). Of a table of text they are titles as they stand there, with or without
+    /// their units (`Elev Pos`), or columns (`(:,2)`); its other columns are left out.
     #[param(
         example = "{\"time\": {\"from\": \"data(:,1)\", \"unit\": \"s\"}, \"channels\": {\"alpha\": {\"from\": \"data(:,2)\", \"unit\": \"deg\"}}}"
     )]
     mapping: Option<String>,
 }
 
-/// The bytes of a MAT file of version 5 (`save -v7`, `save -v6`).
+/// The bytes of a MAT file of version 4 or 5 (`save -v7`, `save -v6`, `save -v4`).
 #[derive(ToSchema)]
 #[schema(value_type = String, format = Binary)]
 #[expect(dead_code, reason = "it is there for the API's document")]
 struct MatFile(Vec<u8>);
+
+/// The bytes of a file that its first bytes tell: a workbook of Excel (`.xlsx`), a log of PX4 (`.ulg`) or ArduPilot (`.bin`), or
+/// any recording packed with gzip or zip.
+#[derive(ToSchema)]
+#[schema(value_type = String, format = Binary)]
+#[expect(dead_code, reason = "it is there for the API's document")]
+struct AnyFile(Vec<u8>);
 
 /// Upload a recording.
 ///
 /// A table of text as loggers, simulators and spreadsheets write them: lines before the header, names and units in brackets
 /// or in rows of their own, behind a comment's sign or not; separated by commas, semicolons, tabs, vertical bars or blanks;
 /// decimal points or commas; time in a unit or as time stamps. The charset of the media type holds, else it is found out. A
-/// column that cannot be read is left out, with a finding. With a `mapping`, other names and units than it states. Or JSON.
-/// Or, with a `mapping`, a MAT file (`-v7` or older, not 7.3) or an ASCII matrix. Where a choice is to be made, the answer has
-/// the draft of a mapping that makes it, as `mapping`. Values are
-/// converted to SI. Content that is here already answers 200 with the maneuver it was first uploaded as.
+/// column that cannot be read is left out, with a finding. With a `mapping`, other names and units than it states. Or a
+/// workbook of Excel, whose first sheet with a table is read so, too. Or JSON. Or, with a `mapping`, a MAT file (`-v7` or
+/// older, not 7.3) or an ASCII matrix. Or a log of PX4 or ArduPilot, without a `mapping` by those called `px4` and `ardupilot`.
+///
+/// Whatever the `Content-Type` says, a file is what its first bytes tell; it may be packed with gzip or zip. What is not read is
+/// refused with its name and how to convert it. Channels of several tables with times of their own keep their samples, and
+/// have no value at the times of the others. Where a choice is to be made, the answer has the draft of a mapping that makes
+/// it, as `mapping`. Values are converted to SI. Content that is here already answers 200 with the maneuver it was first
+/// uploaded as.
 #[utoipa::path(post, path = "/v1/maneuvers", tag = "Maneuvers", operation_id = "uploadManeuver",
     params(UploadQuery),
     request_body(content(
         (String = "text/csv", example = "t[s],alpha[deg],q[deg/s],de[deg]\n0,1.2,0,0\n0.04,1.2,0.1,-1\n0.08,1.3,0.4,-1\n"),
         (ingest::Recording = "application/json"),
         (MatFile = "application/x-matlab-data"),
+        (AnyFile = "application/octet-stream"),
         (String = "text/plain", example = "0.00  1.2  0.0\n0.04  1.2  0.1\n0.08  1.3  0.4\n"),
     )),
     responses(
@@ -151,8 +165,15 @@ async fn upload_maneuver(
     };
     let limit = service.config.max_maneuver_body;
     let body = body::read(&headers, body, limit, "--max-maneuver-body", &service.room).await?;
-    let (bytes, _room) = (body.bytes, body.room);
-    let limits = service.config.recording;
+    let (bytes, mut room) = (body.bytes, body.room);
+    if ingest::is_packed(&bytes) {
+        service.room.extend(&mut room, limit).await?;
+    }
+    let _room = room;
+    let limits = ingest::Limits {
+        max_bytes: limit,
+        ..service.config.recording
+    };
     let read = move || {
         let charset = ingest::Format::charset(&media_type);
         let read = ingest::read_recording(&bytes, format, charset, mapping.as_ref(), &limits)?;

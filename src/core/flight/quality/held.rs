@@ -121,7 +121,7 @@ fn finding(name: &str, values: &[f64], grid: f64, step: f64) -> Finding {
     );
     let remedy = match is_control(name) {
         true => format!(
-            "where a recorder held a slower channel, say \"channels\": {{\"{name}\": \"interpolated(fresh({name}))\"}} (-c \"{name}=interpolated(fresh({name}))\"); where a computer moves it in such steps, say \"input_interpolation\": \"hold\""
+            "where a recorder held a slower channel, say \"channels\": {{\"{name}\": \"held(interpolated(fresh({name})))\"}} (-c \"{name}=held(interpolated(fresh({name})))\"); where a computer moves it in such steps, say \"input_interpolation\": \"hold\""
         ),
         false => format!(
             "say \"channels\": {{\"{name}\": \"fresh({name})\"}} in the job (-c \"{name}=fresh({name})\"): each value counts once, when it was new"

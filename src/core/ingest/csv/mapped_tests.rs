@@ -160,3 +160,40 @@ fn faults_stand_at_their_place_in_the_mapping() {
         ["invalid_mapping /delimiter"]
     );
 }
+
+#[test]
+fn channels_with_a_column_of_times_keep_their_samples() {
+    let text = "t[s],q[deg/s],t_air[ms],alpha[deg]\n0,1,50,5\n0.1,2,50,5\n0.2,3,250,6\n0.3,4,,\n";
+    let of = |time: &str, alpha: &str| {
+        let q = "q = {from = \"q\"}";
+        let mapping = format!("{time}\n[channels]\n{q}\nalpha = {{from = \"alpha\", {alpha}}}\n");
+        mapped(&mapping, text).unwrap_or_else(|error| panic!("{mapping}: {error}"))
+    };
+    let there = |maneuver: &Maneuver, name: &str| -> Vec<usize> {
+        let values = &maneuver.channels()[name].values;
+        (0..values.len()).filter(|&k| !values[k].is_nan()).collect()
+    };
+    let main = "time = {from = \"t\"}";
+    let own = of(main, "time = \"t_air\"");
+    assert_eq!(own.time(), [0.0, 0.05, 0.1, 0.2, 0.25, 0.3]);
+    assert_eq!(
+        (there(&own, "q"), there(&own, "alpha")),
+        (vec![0, 2, 3, 5], vec![1, 4])
+    );
+    let held = of(main, "time = \"t_air\", between = \"held\"");
+    assert_eq!(there(&held, "alpha"), [1, 2, 3, 4, 5]);
+    let late = of(main, "time = {from = \"t_air\", offset = 0.05}");
+    assert_eq!(late.time(), [0.0, 0.1, 0.2, 0.3]);
+    let shifted = of(main, "time = {offset = 0.05}");
+    assert_eq!(shifted.time().len(), 8);
+    let filled = of(main, "between = \"held\"");
+    assert_eq!(there(&filled, "alpha"), [0, 1, 2, 3]);
+
+    let all = "[channels]\nalpha = {from = \"alpha\", time = {from = \"t_air\", unit = \"s\"}}\n";
+    assert_eq!(mapped(all, text).unwrap().time(), [50.0, 250.0]);
+    let refused = |mapping: &str| places(mapped(mapping, text));
+    let back = "time = {from = \"t\"}\n[channels]\nq = {from = \"q\", time = \"alpha\"}\n";
+    assert_eq!(refused(back), ["time_unit /channels/q/time"]);
+    let tables = "[tables]\nAIR = {from = \"t_air\"}\n";
+    assert_eq!(refused(tables), ["invalid_mapping /tables"]);
+}

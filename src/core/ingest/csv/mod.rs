@@ -7,6 +7,7 @@
 //! with the draft of a mapping that says it. What is not needed does no harm: a column that cannot be read is left out.
 
 mod clock;
+mod column;
 mod decimal;
 mod delimiter;
 mod draft;
@@ -14,6 +15,7 @@ mod ending;
 mod head;
 mod inspection;
 mod layout;
+mod own_times;
 mod plan;
 mod read;
 mod repeated;

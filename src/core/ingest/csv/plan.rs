@@ -4,44 +4,19 @@ use super::super::{
     IngestError, Limits, code,
     fault::pointer,
     label::Label,
-    mapping::{Mapping, NoValue},
+    mapping::{ChannelTime, MappedChannel, Mapping},
     name::{Names, is_identifier},
     text::quoted,
+    union::Between,
     units::RecordedUnit,
 };
 use super::{
+    column::{Column, OwnTime, Use},
+    own_times,
     time::{self, Time},
     titles::Titles,
 };
 use crate::flight::Fault;
-
-/// A column that becomes a channel.
-pub(super) struct Column {
-    /// Which of the table it is, from 0.
-    pub(super) at: usize,
-    pub(super) name: String,
-    pub(super) unit: RecordedUnit,
-    /// What recorded numbers are multiplied by.
-    pub(super) factor: f64,
-    pub(super) no_values: Vec<NoValue>,
-    /// A mapping names it: what cannot be read in it is a fault.
-    pub(super) is_needed: bool,
-}
-
-impl Column {
-    /// Applies signs for no value and the factor to recorded numbers.
-    pub(super) fn apply(&self, values: &mut [f64]) {
-        for no_value in &self.no_values {
-            if let NoValue::Number(number) = no_value {
-                let without = values.iter_mut().filter(|value| *value == number);
-                without.for_each(|value| *value = f64::NAN);
-            }
-        }
-        if self.factor != 1.0 {
-            values.iter_mut().for_each(|value| *value *= self.factor);
-        }
-    }
-}
 
 /// Columns by what becomes of them.
 pub(super) struct Plan {
@@ -68,7 +43,11 @@ impl Plan {
         limits: &Limits,
     ) -> Result<Self, IngestError> {
         let mut faults = Vec::new();
-        let time = time::of(titles, &mapping.time, &mut faults);
+        faults.extend((!mapping.tables.is_empty()).then(one_table));
+        let time = match own_times::is_said_of_all(mapping) {
+            true => None,
+            false => time::of(titles, &mapping.time, &mut faults),
+        };
         let mut making = Making {
             titles,
             mapping,
@@ -111,6 +90,11 @@ impl Plan {
 fn no_channels() -> Fault {
     let message = "there is no channel besides time; add a column for every recorded quantity";
     Fault::new("", code::NO_CHANNELS, message)
+}
+
+fn one_table() -> Fault {
+    let message = "this file is one table; say \"time\" beside the \"from\" of a channel that has times of its own";
+    Fault::new("/tables", code::INVALID_MAPPING, message)
 }
 
 struct Making<'m, 'a> {
@@ -160,6 +144,13 @@ impl Making<'_, '_> {
                 }
             };
             self.taken[at] = Some(name.clone());
+            let own = match self.own_time(name, channel) {
+                Ok(own) => own,
+                Err(why) => {
+                    refuse(Some("time"), why);
+                    continue;
+                }
+            };
             let no_values = self.mapping.missing.iter().chain(&channel.missing);
             self.plan.columns.push(Column {
                 at,
@@ -168,8 +159,57 @@ impl Making<'_, '_> {
                 factor: channel.factor(),
                 no_values: no_values.cloned().collect(),
                 is_needed: !self.mapping.optional,
+                used: Use::Channel,
+                own,
+                between: channel.between,
             });
         }
+    }
+
+    /// The time axis that a mapping says of a channel; its column of times is read, too.
+    fn own_time(
+        &mut self,
+        name: &str,
+        channel: &MappedChannel,
+    ) -> Result<Option<OwnTime>, (&'static str, String)> {
+        let Some(axis) = channel.time.as_ref().map(ChannelTime::axis) else {
+            return Ok(None);
+        };
+        let offset = axis.offset;
+        let Some(from) = &axis.from else {
+            return Ok(Some(OwnTime { at: None, offset }));
+        };
+        let at = self.titles.find(from)?;
+        if self.plan.time.columns().any(|column| column == at) {
+            return Ok(Some(OwnTime { at: None, offset }));
+        }
+        let is_read = |column: &Column| column.at == at && column.used == Use::Times;
+        let own = OwnTime {
+            at: Some(at),
+            offset,
+        };
+        if self.plan.columns.iter().any(is_read) {
+            return Ok(Some(own));
+        }
+        if let Some(other) = &self.taken[at] {
+            let message = format!("column {} is '{other}' already", at + 1);
+            return Err((code::INVALID_MAPPING, message));
+        }
+        let of_table = &self.mapping.time.unit;
+        let unit = own_times::unit(self.titles, at, axis.unit.as_deref(), of_table)?;
+        self.taken[at] = Some(format!("the time of {name}"));
+        self.plan.columns.push(Column {
+            at,
+            name: format!("time of {name}"),
+            unit,
+            factor: 1.0,
+            no_values: self.mapping.missing.clone(),
+            is_needed: true,
+            used: Use::Times,
+            own: None,
+            between: Between::Missing,
+        });
+        Ok(Some(own))
     }
 
     /// The unit of a mapping, else that of the file.
@@ -265,6 +305,9 @@ impl Making<'_, '_> {
             factor: 1.0,
             no_values: self.mapping.missing.clone(),
             is_needed: false,
+            used: Use::Channel,
+            own: None,
+            between: Between::Missing,
         }))
     }
 }

@@ -1,24 +1,17 @@
 //! A table that was found becomes a recording.
 
-use indexmap::IndexMap;
-
 use super::super::{
-    IngestError, Limits,
-    axis::code_of,
-    code, encoding,
-    fault::{CELLS_LISTED, of_file, pointer},
+    IngestError, Limits, code, encoding,
+    fault::{CELLS_LISTED, pointer},
     mapping::Mapping,
     reading::Reading,
     text::quoted,
 };
 use super::{
-    clock, draft,
-    plan::{Column, Plan},
-    repeated, report, rows,
-    samples::{Samples, Unreadable},
-    table::Table,
+    clock, column::Column, draft, own_times, plan::Plan, repeated, report, rows,
+    samples::Unreadable, table::Table,
 };
-use crate::flight::{Fault, Maneuver};
+use crate::flight::Fault;
 
 /// Reads a table of text, as its header says or as a mapping does.
 ///
@@ -81,7 +74,7 @@ fn read_table(table: &Table, limits: &Limits) -> Result<Reading, IngestError> {
     IngestError::refuse(faults.into_iter().map(|(_, fault)| fault).collect())?;
     let mut findings = report::findings(table, &plan, &left_out);
     findings.append(&mut samples.findings);
-    let maneuver = maneuver(plan.columns, samples)?;
+    let maneuver = own_times::maneuver(plan.columns, samples, limits)?;
     Ok(Reading { maneuver, findings })
 }
 
@@ -106,19 +99,4 @@ fn not_readable(column: &Column, unreadable: &Unreadable) -> Fault {
         code::NOT_A_NUMBER,
         message,
     )
-}
-
-fn maneuver(columns: Vec<Column>, samples: Samples) -> Result<Maneuver, IngestError> {
-    let mut channels = IndexMap::with_capacity(columns.len());
-    let readable = columns
-        .into_iter()
-        .zip(samples.values)
-        .zip(samples.unreadable);
-    for ((column, values), unreadable) in readable {
-        if unreadable.is_none() {
-            channels.insert(column.name, column.unit.channel(values));
-        }
-    }
-    Maneuver::new(samples.time, channels)
-        .map_err(|error| of_file(code_of(&error), error.to_string()).into())
 }

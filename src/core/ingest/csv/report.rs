@@ -3,13 +3,10 @@
 use crate::flight::{Fault, Finding, FindingCode};
 
 use super::super::{
-    note::note,
-    text::{quoted, short_message},
+    note::{absent, listed, note},
+    text::quoted,
 };
 use super::{plan::Plan, table::Table};
-
-/// Names are listed up to this many.
-const LISTED: usize = 12;
 
 /// What is odd about the columns.
 pub(super) fn findings(table: &Table, plan: &Plan, left_out: &[(String, Fault)]) -> Vec<Finding> {
@@ -62,30 +59,6 @@ pub(super) fn findings(table: &Table, plan: &Plan, left_out: &[(String, Fault)])
         let remedy = "say the unit in the header, as alpha[deg], or in a mapping; [-] is that of a pure number";
         findings.push(note(FindingCode::NoUnit, message, remedy));
     }
-    if !plan.absent.is_empty() {
-        let message = format!(
-            "the file does not have {}, which the mapping names",
-            listed(plan.absent.iter().cloned())
-        );
-        findings.push(note(
-            FindingCode::Absent,
-            message,
-            "nothing needs to be done where the model does not need them",
-        ));
-    }
+    findings.extend(absent(&plan.absent));
     findings
-}
-
-fn listed(names: impl ExactSizeIterator<Item = String>) -> String {
-    let more = names.len().saturating_sub(LISTED);
-    let names: Vec<String> = names
-        .take(LISTED)
-        .map(|name| short_message(&name))
-        .collect();
-    let names = names.join(", ");
-    if more > 0 {
-        format!("{names} and {more} more")
-    } else {
-        names
-    }
 }

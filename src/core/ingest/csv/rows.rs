@@ -9,9 +9,10 @@ use super::super::{
 };
 use super::{
     clock::{Clock, NOT_A_NUMBER},
+    column::Column,
     delimiter::Delimiter,
     ending,
-    plan::{Column, Plan},
+    plan::Plan,
     samples::{Samples, Unreadable},
     time::Time,
     trouble::{Trouble, Written},

@@ -175,6 +175,7 @@ fn limits_are_named() {
         max_samples: 4,
         max_values: 8,
         max_name_length: 5,
+        ..Limits::default()
     };
     let refused = |text: &str, code: &str, bound: &str| {
         let error = read(text.as_bytes(), None, None, &limits).unwrap_err();

@@ -8,11 +8,21 @@
 //! [channels]
 //! alpha = {from = "fdata(:,4)", unit = "deg"}
 //! ```
+//!
+//! A channel of a table with a time axis of its own names that, too: `alpha = {from = "AIR(:,2)", time = "AIR(:,1)", unit =
+//! "deg"}`; or the table does, for all channels that come from it: `[tables] AIR = {from = "AIR(:,1)", offset = 0.12}`.
 
 mod apply;
+mod archive;
+mod axes;
 mod bundled;
+mod channel;
+mod check;
 mod draft;
 mod source;
+mod spread;
+mod taken;
+mod time;
 mod titles;
 
 use std::sync::LazyLock;
@@ -21,21 +31,19 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-pub(super) use apply::Archive;
+pub(super) use archive::{Archive, OwnTime};
 use bundled::BUNDLED;
+pub(super) use channel::MappedChannel;
 pub(super) use draft::Draft;
-pub(super) use source::{Part, Source};
+pub(super) use source::{Part, Source, element};
+pub(super) use time::{Axis, ChannelTime, MappedTime, Repeated};
 pub(super) use titles::{NoValue, Titles};
 
-use super::{
-    code,
-    fault::{of_file, pointer},
-    text::short_message,
-};
+use super::{code, fault::of_file, text::short_message};
 use crate::flight::Fault;
 
-/// Says where time and channels are in a MAT file or an ASCII matrix, or which columns of a table of text they are, and how
-/// that is written. What it does not say of a table is as the file says.
+/// Says where time and channels are in a MAT file, a log or an ASCII matrix, or which columns of a table of text they are,
+/// and how that is written. What it does not say of a table is as the file says.
 #[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Mapping {
@@ -60,8 +68,12 @@ pub struct Mapping {
     /// Numbers and words that stand for no value, on every channel.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) missing: Vec<NoValue>,
+    /// May be left out where the file says which it is, or every channel has a time axis of its own.
     #[serde(default, skip_serializing_if = "MappedTime::is_silent")]
     pub(super) time: MappedTime,
+    /// Time axes of tables of the file, by what the sources of their channels begin with: `AIR`, `log.AIR`, `IMU[1]`.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub(super) tables: IndexMap<String, Axis>,
     /// By name, in the order of the document.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub(super) channels: IndexMap<String, MappedChannel>,
@@ -69,76 +81,9 @@ pub struct Mapping {
     /// empty.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub(super) others: bool,
-    /// Channels that a table does not have are left out.
+    /// Channels that a file does not have are left out.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub(super) optional: bool,
-}
-
-/// Either `from`, or `step` (with `start`, else 0) for even sampling.
-#[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct MappedTime {
-    /// May be left out where a table says it, or has time stamps.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub(super) unit: String,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) from: Option<Titles>,
-    /// The column of a table that has the date of a time of day.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) date: Option<Titles>,
-    /// The column of a table that has the week of the satellites' clock; `from` has its seconds, or in `unit`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) week: Option<Titles>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) start: Option<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) step: Option<f64>,
-    /// What is made of several rows of a table with one time.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) repeated: Option<Repeated>,
-}
-
-impl MappedTime {
-    fn is_silent(&self) -> bool {
-        *self == Self::default()
-    }
-}
-
-/// What is made of several rows with one time. Rows that are the same in all cells are kept once in any case.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub(super) enum Repeated {
-    /// The first is kept.
-    First,
-    /// The mean of each channel is kept.
-    Mean,
-    /// All are kept, evenly between this time and the next: the clock is coarser than the rate.
-    Spread,
-}
-
-#[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct MappedChannel {
-    pub(super) from: Titles,
-    /// `-` for a pure number; it must be said where the file does not say it.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub(super) unit: String,
-    /// What recorded numbers are multiplied by before the unit is applied.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) scale: Option<f64>,
-    /// 1 or -1: another sense than the recorded one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) sign: Option<i8>,
-    /// Numbers and words that stand for no value on this channel.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(super) missing: Vec<NoValue>,
-}
-
-impl MappedChannel {
-    /// What recorded numbers are multiplied by.
-    pub(super) fn factor(&self) -> f64 {
-        self.scale.unwrap_or(1.0) * f64::from(self.sign.unwrap_or(1))
-    }
 }
 
 impl Mapping {
@@ -204,52 +149,6 @@ impl Mapping {
         let found = ALL.iter().find(|(_, mapping)| is_of(mapping));
         found.map(|(name, mapping)| (*name, mapping))
     }
-
-    /// What it says does not contradict itself.
-    fn checked(self) -> Result<Self, Fault> {
-        let refuse = |place: String, message: &str| {
-            Err(Fault::new(
-                place,
-                code::INVALID_MAPPING,
-                format!("mapping: {message}"),
-            ))
-        };
-        if self.time.from.is_some() && self.time.step.is_some() {
-            return refuse(
-                "/time".to_string(),
-                "time has either \"from\", or \"step\" and perhaps \"start\"",
-            );
-        }
-        let time = &self.time;
-        let of_time = [
-            ("from", &time.from),
-            ("date", &time.date),
-            ("week", &time.week),
-        ];
-        for (member, titles) in of_time {
-            if titles.as_ref().is_some_and(Titles::is_empty) {
-                return refuse(pointer(["time", member]), "this title is empty");
-            }
-        }
-        if !matches!(self.decimal.as_deref(), None | Some("." | ",")) {
-            return refuse("/decimal".to_string(), "decimal is \".\" or \",\"");
-        }
-        for (name, channel) in &self.channels {
-            if channel.from.is_empty() {
-                return refuse(pointer(["channels", name, "from"]), "this source is empty");
-            }
-            if !matches!(channel.sign, None | Some(1 | -1)) {
-                return refuse(pointer(["channels", name, "sign"]), "sign is 1 or -1");
-            }
-            if !channel.factor().is_normal() {
-                return refuse(
-                    pointer(["channels", name, "scale"]),
-                    "scale is a number other than 0",
-                );
-            }
-        }
-        Ok(self)
-    }
 }
 
 fn invalid(error: &str) -> Fault {
@@ -277,7 +176,7 @@ mod tests {
                 has_stamps || RecordedUnit::parse_time(&time.unit).is_ok(),
                 "{name}"
             );
-            let mut sources: Vec<&Titles> = vec![time.from.as_ref().unwrap()];
+            let mut sources: Vec<&Titles> = time.from.iter().collect();
             for (channel, mapped) in &mapping.channels {
                 assert!(
                     RecordedUnit::parse(&mapped.unit).is_ok(),
@@ -302,7 +201,7 @@ mod tests {
             );
             assert!(fault.message.contains(expected), "{fault}");
         };
-        refused("sidpack", "", "Trimtab are fvsysid-attas");
+        refused("sidpack", "", "Trimtab are ardupilot, betaflight");
         refused("{", "", "EOF");
         refused(r#"{"tim": {"unit": "s"}}"#, "", "channels");
         refused(
@@ -311,6 +210,7 @@ mod tests {
             "from",
         );
         refused(r#"{"time": {"from": "t", "step": 1}}"#, "/time", "either");
+        refused(r#"{"time": {"start": 1}}"#, "/time", "either");
         refused(r#"{"decimal": ";"}"#, "/decimal", "decimal is");
         let a = |members: &str| format!(r#"{{"channels": {{"a": {{"from": "a", {members}}}}}}}"#);
         refused(&a(r#""sign": 2"#), "/channels/a/sign", "1 or -1");

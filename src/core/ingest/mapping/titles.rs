@@ -32,11 +32,6 @@ impl Titles {
     pub(super) fn is_empty(&self) -> bool {
         self.iter().all(|title| title.trim().is_empty())
     }
-
-    /// The first of them.
-    pub(super) fn first(&self) -> &str {
-        self.iter().next().unwrap_or_default()
-    }
 }
 
 impl fmt::Display for Titles {

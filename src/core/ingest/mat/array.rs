@@ -13,6 +13,7 @@ pub(super) struct Head {
 }
 
 const STRUCT: u8 = 2;
+const OBJECT: u8 = 3;
 const OPAQUE: u8 = 17;
 const COMPLEX: u32 = 1 << 11;
 
@@ -63,6 +64,11 @@ impl Head {
 
     pub(super) fn is_struct(&self) -> bool {
         self.class == STRUCT
+    }
+
+    /// Whether it is an object of MATLAB's own, such as a table, whose layout is not documented.
+    pub(super) fn is_object(&self) -> bool {
+        matches!(self.class, OBJECT | OPAQUE)
     }
 
     /// Whether it is an array of numbers, not a sparse one.
@@ -206,14 +212,45 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// The array in a field; `None` where there is no such field.
-    pub(super) fn value(mut self, name: &str) -> Result<Option<Element<'a>>, Damage> {
-        let Some(at) = self.names.iter().position(|field| field == name) else {
-            return Ok(None);
-        };
-        for _ in 0..at {
+    /// The array in the field `place` of the struct `which`, both counted from 0.
+    pub(super) fn value(self, which: usize, place: usize) -> Result<Element<'a>, Damage> {
+        let mut values = self.values(place);
+        for _ in 0..which {
+            values.next_value()?;
+        }
+        values.next_value()
+    }
+
+    /// The arrays in a field of the structs of an array, one behind the other.
+    pub(super) fn values(self, place: usize) -> FieldValues<'a> {
+        FieldValues {
+            values: self.values,
+            before: place,
+            behind: self.names.len() - place - 1,
+        }
+    }
+}
+
+/// The values of one field in an array of structs.
+pub(super) struct FieldValues<'a> {
+    values: Elements<'a>,
+    /// Fields before it in a struct, and behind it.
+    before: usize,
+    behind: usize,
+}
+
+impl<'a> FieldValues<'a> {
+    pub(super) fn next_value(&mut self) -> Result<Element<'a>, Damage> {
+        for _ in 0..self.before {
             self.values.expect()?;
         }
-        self.values.expect().map(Some)
+        let value = self.values.expect()?;
+        for _ in 0..self.behind {
+            // those of the last struct may be missing where it is not asked for them
+            if self.values.next()?.is_none() {
+                break;
+            }
+        }
+        Ok(value)
     }
 }

@@ -3,9 +3,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::stretch::{Bridge, Stretch};
+use super::stretch::{Bridge, Stretch, rows_in_use};
 use crate::flight::{Fault, Finding, FindingCode, Gap, Maneuver, Severity};
-use crate::job::spec::{Gaps, JobSpec, ManeuverUse};
+use crate::job::spec::{Gaps, JobSpec};
 use crate::model::{ChannelFormula, Model, Recorded};
 use crate::simulate::Steps;
 
@@ -32,8 +32,8 @@ pub(super) fn stretches<'m>(
     for (index, (usage, maneuver)) in uses {
         let cut = match rows_in_use(usage, maneuver) {
             Ok(rows) => cut(spec, model, index, maneuver, rows, findings),
-            Err(message) => {
-                let pointer = format!("/maneuvers/{index}/rows");
+            Err((part, message)) => {
+                let pointer = format!("/maneuvers/{index}/{part}");
                 Err(Fault::new(pointer, "bad_rows", message))
             }
         };
@@ -43,19 +43,6 @@ pub(super) fn stretches<'m>(
         }));
     }
     all
-}
-
-fn rows_in_use(usage: &ManeuverUse, maneuver: &Maneuver) -> Result<Range<usize>, String> {
-    let Some([first, last]) = usage.rows else {
-        return Ok(0..maneuver.len());
-    };
-    if first < 1 || last > maneuver.len() || first >= last {
-        return Err(format!(
-            "rows {first} to {last} of a recording of {} rows; rows count from 1 and at least two are needed",
-            maneuver.len()
-        ));
-    }
-    Ok(first - 1..last)
 }
 
 /// What is done with one gap.

@@ -56,7 +56,11 @@ fn record<'r>(
     let time = &maneuver.time()[rows.clone()];
     let sampling = match rows.len() == maneuver.len() {
         true => Cow::Borrowed(maneuver.sampling()),
-        false => Cow::Owned(Sampling::of(time)),
+        false => {
+            let channels = maneuver.channels().values();
+            let values = channels.map(|channel| &channel.values[rows.clone()]);
+            Cow::Owned(Sampling::of(time, values))
+        }
     };
     let series = |quantity: &'r Quantity, values: &dyn Fn(&Used<'r, '_>) -> &'r [f64]| {
         // a channel that is taken as it is recorded is judged in the unit of the recording

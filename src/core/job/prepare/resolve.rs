@@ -123,7 +123,10 @@ fn samples(
         }
         Ok(_) => {}
     }
-    let mut values = formula.samples(stretch).unwrap_or_default();
+    let mut values = match formula.samples(stretch) {
+        Ok(values) => values,
+        Err(error) => return fault(error.code(), error.to_string()),
+    };
     if side == Side::Output {
         let missing = values.iter_mut().filter(|value| !value.is_finite());
         missing.for_each(|value| *value = f64::NAN);
@@ -141,11 +144,11 @@ fn samples(
             missing.len(),
             stretch.row(first) + 1,
             if mapped.is_some() {
-                "correct the formula where it gives no number (interpolated(...) fills in between values), or choose \"rows\" without them"
+                "correct the formula where it gives no number (interpolated(...) and held(...) fill in between values), or choose \"rows\" without them"
                     .to_string()
             } else {
                 format!(
-                    "say \"channels\": {{\"{name}\": \"interpolated({name})\"}} to fill in between values, or choose \"rows\" without them"
+                    "say \"channels\": {{\"{name}\": \"interpolated({name})\"}}, or held({name}), to fill in between values, or choose \"rows\" without them"
                 )
             }
         );

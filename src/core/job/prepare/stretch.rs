@@ -5,8 +5,57 @@ use std::ops::Range;
 use indexmap::IndexMap;
 
 use crate::flight::{Dimension, Maneuver};
+use crate::job::spec::ManeuverUse;
 use crate::model::Recorded;
 use crate::simulate::Steps;
+
+/// A member of a maneuver that says which part of it is used, and what is wrong with it.
+type WrongPart = (&'static str, String);
+
+/// The rows of a recording that a job uses, from 0: those between its first and last row, or second.
+///
+/// # Errors
+/// They are not in the recording, or fewer than two.
+pub(super) fn rows_in_use(
+    usage: &ManeuverUse,
+    maneuver: &Maneuver,
+) -> Result<Range<usize>, WrongPart> {
+    match (usage.rows, usage.seconds) {
+        (None, None) => Ok(0..maneuver.len()),
+        (Some(rows), None) => rows_from(rows, maneuver).map_err(|why| ("rows", why)),
+        (None, Some(seconds)) => rows_between(seconds, maneuver).map_err(|why| ("seconds", why)),
+        (Some(_), Some(_)) => {
+            let message = "a part is said by \"rows\" or by \"seconds\", not by both";
+            Err(("rows", message.to_string()))
+        }
+    }
+}
+
+fn rows_from([first, last]: [usize; 2], maneuver: &Maneuver) -> Result<Range<usize>, String> {
+    if first < 1 || last > maneuver.len() || first >= last {
+        return Err(format!(
+            "rows {first} to {last} of a recording of {} rows; rows count from 1 and at least two are needed",
+            maneuver.len()
+        ));
+    }
+    Ok(first - 1..last)
+}
+
+fn rows_between([from, to]: [f64; 2], maneuver: &Maneuver) -> Result<Range<usize>, String> {
+    let time = maneuver.time();
+    // times that were added up from steps are a little beside what is written
+    let nothing = 1e-6 * maneuver.sampling().step;
+    let start = time.partition_point(|&t| t < from - nothing);
+    let end = time.partition_point(|&t| t <= to + nothing);
+    if from >= to || end < start + 2 {
+        return Err(format!(
+            "seconds {from} to {to} of a recording from {} s to {} s; at least two samples are needed",
+            time[0],
+            time[time.len() - 1]
+        ));
+    }
+    Ok(start..end)
+}
 
 /// Some rows of a recording, and what the job makes of them.
 pub(super) struct Stretch<'m> {

@@ -6,6 +6,8 @@ use super::{Span, SyntaxError};
 pub(super) enum Token<'a> {
     Number(f64),
     Name(&'a str),
+    /// A unit with its square brackets.
+    Unit(&'a str),
     /// An operator, bracket or comma, as it is written.
     Symbol(&'static str),
     End,
@@ -30,6 +32,8 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token<'_>, Span)>, SyntaxError> 
                 .find(|c: char| !c.is_ascii_alphanumeric() && c != '_')
                 .unwrap_or(rest.len());
             (Token::Name(&rest[..length]), length)
+        } else if let Some(end) = rest.find(']').filter(|_| next == '[') {
+            (Token::Unit(&rest[..=end]), end + 1)
         } else if let Some(symbol) = SYMBOLS.into_iter().find(|symbol| rest.starts_with(symbol)) {
             (Token::Symbol(symbol), symbol.len())
         } else {

@@ -1,6 +1,7 @@
 //! Expressions: the text of an equation as a tree.
 //!
-//! Numbers, names, `+ - * / ^`, calls, and comparisons (inside `if(condition, a, b)` only).
+//! Numbers, with or without a unit (`9.80665[m/s^2]`), names, `+ - * / ^`, calls, and comparisons (inside
+//! `if(condition, a, b)` only).
 //! A tree prints as text that parses to the same tree.
 
 mod function;
@@ -10,6 +11,8 @@ mod print;
 
 pub use function::Function;
 pub use parser::parse;
+
+use crate::flight::{Unit, UnitError};
 
 /// A place in the text of an expression, in bytes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -34,7 +37,7 @@ pub struct Expression {
 pub enum Kind {
     /// A number as written, at least 0.
     Number(f64),
-    /// A constant, input, state, definition, parameter, output, channel, `t` or `pi`.
+    /// A constant, input, state, definition, parameter, output, channel, `t` or `pi`; or a unit, as `[m/s^2]`.
     Name(String),
     /// A minus sign before its operand.
     Negate(Box<Expression>),
@@ -121,6 +124,13 @@ pub const MOST_NODES: usize = 2_000;
 
 /// Longest name, in bytes.
 pub const LONGEST_NAME: usize = 64;
+
+/// The unit that a name in square brackets is; `None` for other names.
+pub fn written_unit(name: &str) -> Option<Result<Unit, UnitError>> {
+    let text = name.strip_prefix('[')?.strip_suffix(']')?;
+    let is_empty = matches!(text.trim(), "");
+    (!is_empty).then(|| Unit::parse(text))
+}
 
 /// Whether a text can stand as a name in equations.
 pub fn is_name(text: &str) -> bool {

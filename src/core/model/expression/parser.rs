@@ -3,6 +3,7 @@
 use super::lexer::{Token, tokens};
 use super::{
     BinaryOperator, DEEPEST, Expression, Function, Kind, LONGEST, MOST_NODES, Span, SyntaxError,
+    written_unit,
 };
 
 /// Reads an expression.
@@ -134,7 +135,32 @@ impl<'a> Parser<'a> {
         match self.peek() {
             Token::Number(value) => {
                 self.advance();
-                self.node(Kind::Number(value), span)
+                let number = self.node(Kind::Number(value), span)?;
+                let Token::Unit(_) = self.peek() else {
+                    return Ok(number);
+                };
+                // 2[Hz] is 2*[Hz], and binds tighter than all else
+                let unit = self.operand()?;
+                let span = Span {
+                    start: span.start,
+                    end: unit.span.end,
+                };
+                let product =
+                    Kind::Binary(BinaryOperator::Multiply, Box::new(number), Box::new(unit));
+                self.node(product, span)
+            }
+            Token::Unit(text) => {
+                let why = match written_unit(text) {
+                    Some(Ok(unit)) if unit.offset == 0.0 => None,
+                    Some(Ok(_)) => Some("a temperature that does not count from absolute zero has no place in a formula; write it in K".to_string()),
+                    Some(Err(error)) => Some(error.to_string()),
+                    None => Some("there is no unit in the brackets".to_string()),
+                };
+                if let Some(message) = why {
+                    return Err(SyntaxError { span, message });
+                }
+                self.advance();
+                self.node(Kind::Name(text.to_string()), span)
             }
             Token::Name(name) => {
                 self.advance();
@@ -237,6 +263,7 @@ impl<'a> Parser<'a> {
             Token::End => "the expression ends".to_string(),
             Token::Number(value) => format!("there is the number {value}"),
             Token::Name(name) => format!("there is '{name}'"),
+            Token::Unit(unit) => format!("there is the unit {unit}"),
             Token::Symbol(symbol) => format!("there is '{symbol}'"),
         };
         SyntaxError {
@@ -276,6 +303,9 @@ mod tests {
             "if(a < 0.5, a^2, -b)",
             "a*(b + c)/d",
             "1e-300*x",
+            "9.80665[m/s^2]*a",
+            "2[m]^2/3 [1/(m*s)]",
+            "a*[deg]",
         ] {
             assert_eq!(
                 parse(&printed(text)),
@@ -312,6 +342,10 @@ mod tests {
             "column 4: there is the number 0.3 where an operator or the end of the expression should be"
         );
         assert_eq!(fault("1e999"), "column 1: '1e999' is not a number");
+        assert!(fault("a + 2[warp]").starts_with("column 6: unknown unit 'warp'"));
+        assert!(fault("15[degC]").contains("write it in K"));
+        assert!(fault("a[deg]").starts_with("column 2: there is the unit [deg] where"));
+        assert!(fault("2[m").contains("'[' has no meaning here"));
         assert!(fault("α").contains("has no meaning"));
         assert!(
             fault("1 + (a < b)").starts_with("column 6: a comparison may stand only"),

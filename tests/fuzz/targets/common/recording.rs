@@ -9,6 +9,7 @@ pub const LIMITS: Limits = Limits {
     max_samples: 256,
     max_values: 1024,
     max_name_length: 32,
+    max_bytes: 65_536,
 };
 
 /// Looks at a recording as the service does after an upload, and reads it again from what it is handed out as.

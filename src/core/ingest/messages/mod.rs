@@ -1,0 +1,7 @@
+//! Logs of messages: tables with a time of their own, whose rows lie scattered over the file.
+
+mod log;
+mod table;
+
+pub(super) use log::Log;
+pub(super) use table::{Field, Fields, Row, Table};

@@ -1,0 +1,178 @@
+//! Definitions of messages: `vehicle_acceleration:uint64_t timestamp;float[3] xyz;`, flattened to numbers.
+
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use super::super::matrix::Stored;
+use super::super::messages::{Field, Fields};
+
+/// Definitions by name, as they are written, and what was made of those that are used.
+#[derive(Default)]
+pub(super) struct Definitions<'a> {
+    texts: HashMap<&'a str, &'a str>,
+    flat: HashMap<&'a str, Flat>,
+    /// Numbers in all definitions together.
+    count: usize,
+}
+
+/// A definition without nested ones.
+#[derive(Clone)]
+pub(super) struct Flat {
+    pub(super) fields: Fields,
+    /// Bytes of a message, padding at its end left out.
+    pub(super) length: usize,
+    /// Which field is the time stamp.
+    pub(super) time: usize,
+}
+
+/// Messages are no longer, so that nothing in one is further behind.
+const LONGEST: usize = 65_535;
+const DEEPEST: usize = 8;
+/// Numbers that all definitions in use may have.
+const MOST_FIELDS: usize = 200_000;
+
+impl<'a> Definitions<'a> {
+    /// Adds a definition; one that is no text is left out.
+    pub(super) fn add(&mut self, text: &'a [u8]) {
+        let text = std::str::from_utf8(text).ok();
+        if let Some((name, fields)) = text.and_then(|text| text.split_once(':')) {
+            self.texts.insert(name, fields);
+        }
+    }
+
+    /// The definition of this name.
+    ///
+    /// # Errors
+    /// Why there is none: it is not there, has no time stamp, or is larger than a message can be.
+    pub(super) fn find(&mut self, name: &str) -> Result<Flat, &'static str> {
+        if let Some(flat) = self.flat.get(name) {
+            return Ok(flat.clone());
+        }
+        let Some((&name, _)) = self.texts.get_key_value(name) else {
+            return Err("a topic has no definition");
+        };
+        let mut made = Made::default();
+        self.flatten(name, "", 0, &mut made)?;
+        self.count += made.fields.len();
+        if self.count > MOST_FIELDS {
+            return Err("its definitions have more fields than any aircraft");
+        }
+        let is_time = |field: &Field| field.name == "timestamp" && field.number.width == 8;
+        let time = made.fields.iter().position(is_time);
+        let flat = Flat {
+            time: time.ok_or("a topic has no timestamp")?,
+            length: made.length,
+            fields: Rc::new(made.fields),
+        };
+        self.flat.insert(name, flat.clone());
+        Ok(flat)
+    }
+
+    fn flatten(
+        &self,
+        name: &str,
+        prefix: &str,
+        depth: usize,
+        made: &mut Made,
+    ) -> Result<(), &'static str> {
+        const UNDEFINED: &str = "a definition has a field of a type that is not defined";
+        if depth > DEEPEST {
+            return Err("its definitions are nested too deep");
+        }
+        let text = self.texts.get(name).ok_or(UNDEFINED)?;
+        for field in text.split(';').filter(|field| !field.trim().is_empty()) {
+            let (kind, name) = field.trim().split_once(' ').ok_or("a field has no name")?;
+            let (kind, count) = match kind.split_once('[') {
+                Some((kind, count)) => {
+                    let count = count.strip_suffix(']').and_then(|count| count.parse().ok());
+                    (kind, Some(count.ok_or("an array has no length")?))
+                }
+                None => (kind, None),
+            };
+            let is_padding = name.starts_with("_padding");
+            for at in 0..count.unwrap_or(1usize) {
+                made.step()?;
+                let name = match count {
+                    Some(_) => format!("{prefix}{name}[{at}]"),
+                    None => format!("{prefix}{name}"),
+                };
+                match number(kind) {
+                    Some(number) => made.push(name, number, is_padding || kind == "char")?,
+                    None => self.flatten(kind, &format!("{name}."), depth + 1, made)?,
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+#[derive(Default)]
+struct Made {
+    fields: Vec<Field>,
+    at: usize,
+    length: usize,
+    /// Fields and nested definitions, empty ones too.
+    steps: usize,
+}
+
+impl Made {
+    fn step(&mut self) -> Result<(), &'static str> {
+        self.steps += 1;
+        if self.steps > LONGEST {
+            return Err("a definition is longer than a message can be");
+        }
+        Ok(())
+    }
+
+    fn push(
+        &mut self,
+        name: String,
+        number: Stored,
+        is_left_out: bool,
+    ) -> Result<(), &'static str> {
+        let at = self.at;
+        self.at += number.width;
+        if self.at > LONGEST {
+            return Err("a definition is longer than a message can be");
+        }
+        if !is_left_out {
+            self.length = self.at;
+            self.fields.push(Field {
+                name,
+                at,
+                number,
+                unit: String::new(),
+            });
+        }
+        Ok(())
+    }
+}
+
+/// How a number of this type is stored; `None` for the name of a definition.
+fn number(kind: &str) -> Option<Stored> {
+    macro_rules! little {
+        ($type:ty) => {
+            Stored {
+                width: size_of::<$type>(),
+                read: |bytes| {
+                    bytes
+                        .try_into()
+                        .map_or(f64::NAN, |bytes| <$type>::from_le_bytes(bytes) as f64)
+                },
+            }
+        };
+    }
+    Some(match kind {
+        "int8_t" => little!(i8),
+        "uint8_t" | "bool" | "char" => little!(u8),
+        "int16_t" => little!(i16),
+        "uint16_t" => little!(u16),
+        "int32_t" => little!(i32),
+        "uint32_t" => little!(u32),
+        "int64_t" => little!(i64),
+        "uint64_t" => little!(u64),
+        "float" => little!(f32),
+        "double" => little!(f64),
+        _ => return None,
+    })
+}
