@@ -101,7 +101,7 @@ impl Predicted {
 }
 
 /// An RMS error that grew by this factor is clearly worse,
-const WORSE: f64 = 1.05;
+const WORSE: f64 = 1.1;
 
 /// where that is no chance of a few samples either.
 const WORSE_GAIN: f64 = 20.0;

@@ -7,6 +7,7 @@
 use super::second_try::{Run, from_start};
 use crate::estimate::answer::Solution;
 use crate::estimate::equation_error::equation_error;
+use crate::estimate::options::error_bounds::ErrorBoundsKind;
 use crate::estimate::options::start::StartMethod;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
@@ -17,8 +18,10 @@ use crate::estimate::start::found::Start;
 use crate::estimate::start::multi_start::multi_start;
 use crate::flight::{Finding, FindingCode};
 
-/// An output of which less is explained is looked at.
+/// An output of which less is explained is looked at,
 const GOOD: f64 = 0.9;
+/// unless its residual is noise: another minimum would explain what hangs together from sample to sample.
+const NOISE: f64 = 0.3;
 /// Equation error must explain so much more of its equations.
 const FAR: f64 = 0.3;
 
@@ -94,11 +97,12 @@ struct Poor {
 }
 
 fn poor(problem: &Problem, found: &Estimate) -> Option<Poor> {
-    let worst = (found.outputs.iter()).min_by(|a, b| a.r_squared.total_cmp(&b.r_squared))?;
-    if worst.r_squared > GOOD {
-        return None;
-    }
-    let equations = equation_error(problem, &mut unobserved).ok()?.estimate;
+    let outputs = found.outputs.iter();
+    let poor = outputs.filter(|fit| fit.r_squared <= GOOD && fit.autocorrelation > NOISE);
+    let worst = poor.min_by(|a, b| a.r_squared.total_cmp(&b.r_squared))?;
+    let mut quick = problem.clone();
+    quick.options.error_bounds = ErrorBoundsKind::Conventional;
+    let equations = equation_error(&quick, &mut unobserved).ok()?.estimate;
     let least = (equations.outputs.iter()).map(|output| output.r_squared);
     let by_equations = least.fold(f64::INFINITY, f64::min);
     (by_equations.is_finite() && by_equations - worst.r_squared.max(0.0) > FAR).then(|| Poor {
