@@ -209,8 +209,10 @@ fn predictive(
     settled: &Fitted,
     least: f64,
 ) -> Result<Vec<OutputGain>, Objection> {
-    let repeats = !trial.effect.is_noise() && !trial.effect.is_local_in_time();
-    let (Some(before), true) = (&null.predicted, repeats) else {
+    // a gust comes once, and innovations are no prediction
+    let is_heard =
+        !trial.effect.is_noise() && trial.effect.kind != EffectKind::Edit(EditKind::Gust);
+    let (Some(before), true) = (&null.predicted, is_heard) else {
         return Ok(Vec::new());
     };
     let predicted = Predicted::of(settled, null.case, Role::Validation)
@@ -219,6 +221,10 @@ fn predictive(
         return Ok(Vec::new());
     };
     let gains = after.gains_over(before);
+    if trial.effect.is_local_in_time() {
+        // each flight has a size of its own, found on that flight
+        return Ok(gains);
+    }
     let gain: f64 = gains.iter().map(|gain| gain.gain).sum();
     let expected = after.gain_expected_over(before);
     if expected < HEARD && trial.likelihood_ratio < UNHEARD * least {

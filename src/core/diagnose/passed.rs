@@ -36,8 +36,11 @@ impl Passed {
     /// is slow, and plain errors take colour for signal.
     fn said(&self) -> f64 {
         let ratio = self.trial.likelihood_ratio;
-        match self.plain_gain {
-            Some(plain) => 2.0 * (ratio.max(0.0) * plain.max(0.0)).sqrt(),
+        let both = |plain: f64| 2.0 * (ratio.max(0.0) * plain.max(0.0)).sqrt();
+        match self.plain_gain.map(both) {
+            // it may be in the flights that were fitted alone
+            Some(both) if self.trial.effect.is_local_in_time() => both.max(ratio),
+            Some(both) => both,
             None => ratio,
         }
     }

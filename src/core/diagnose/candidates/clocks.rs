@@ -5,21 +5,28 @@ use crate::diagnose::effect::Effect;
 use crate::flight::{Family, PhysicalQuantity};
 use crate::model::EditKind;
 
-/// Quantities by the instrument that records them.
-const CHAINS: [&[Family]; 5] = [
-    &[Family::AirData, Family::Velocity],
-    &[Family::Accelerometer],
-    &[Family::Gyro, Family::AngularAcceleration],
-    &[Family::Attitude],
-    &[Family::Position],
-];
+/// Quantities by the instrument that records them: an air data computer; inertial sensors apart, and as one reference
+/// system has them; a satellite receiver.
+const CHAINS: [&[Family]; 8] = {
+    use Family::{Accelerometer, AirData, AngularAcceleration, Attitude, Gyro, Position, Velocity};
+    [
+        &[AirData, Velocity],
+        &[Accelerometer],
+        &[Gyro, AngularAcceleration],
+        &[Attitude],
+        &[Gyro, AngularAcceleration, Attitude],
+        &[Gyro, AngularAcceleration, Accelerometer],
+        &[Gyro, AngularAcceleration, Accelerometer, Attitude],
+        &[Position],
+    ]
+};
 
 /// Each group of two or more once; single signals are among the sensors and inputs.
 pub(super) fn candidates(subject: &Subject<'_>) -> Vec<Effect> {
     let document = subject.document;
     let outputs: Vec<&str> = document.outputs.keys().map(String::as_str).collect();
     let measured = subject.measured_inputs();
-    let sensors: Vec<(&str, Option<PhysicalQuantity>)> = (outputs.iter())
+    let sensors: Vec<Sensor<'_>> = (outputs.iter())
         .map(|name| (*name, subject.quantities.output(name)))
         .chain(
             measured
@@ -27,13 +34,7 @@ pub(super) fn candidates(subject: &Subject<'_>) -> Vec<Effect> {
                 .map(|name| (name.as_str(), subject.quantities.get(name))),
         )
         .collect();
-    let mut groups: Vec<Vec<&str>> = Vec::new();
-    for chain in CHAINS {
-        let of_chain = sensors.iter().filter(|(_, quantity)| {
-            quantity.is_some_and(|quantity| chain.contains(&quantity.family()))
-        });
-        groups.push(of_chain.map(|(name, _)| *name).collect());
-    }
+    let mut groups = chains(&sensors);
     groups.push(outputs);
     let told = subject.case.knowledge.clocks.iter();
     groups.extend(told.map(|group| group.iter().map(String::as_str).collect()));
@@ -57,4 +58,31 @@ pub(super) fn candidates(subject: &Subject<'_>) -> Vec<Effect> {
         ));
     }
     effects
+}
+
+/// A name, and what it measures.
+type Sensor<'n> = (&'n str, Option<PhysicalQuantity>);
+
+/// What each instrument records. An altitude is that of the air data, or of the receiver that gives positions.
+fn chains<'n>(sensors: &[Sensor<'n>]) -> Vec<Vec<&'n str>> {
+    let those = |belongs: &dyn Fn(PhysicalQuantity) -> bool| -> Vec<&'n str> {
+        let of = sensors
+            .iter()
+            .filter(|(_, quantity)| quantity.is_some_and(belongs));
+        of.map(|(name, _)| *name).collect()
+    };
+    let is_altitude = |quantity| quantity == PhysicalQuantity::Altitude;
+    let mut groups = Vec::new();
+    for chain in CHAINS {
+        let of_chain = |quantity: PhysicalQuantity| chain.contains(&quantity.family());
+        groups.push(those(&of_chain));
+        groups.push(those(&|quantity| {
+            of_chain(quantity) && !is_altitude(quantity)
+        }));
+    }
+    let of_receiver = |quantity: PhysicalQuantity| quantity.family() == Family::Position;
+    groups.push(those(&|quantity| {
+        of_receiver(quantity) || is_altitude(quantity)
+    }));
+    groups
 }

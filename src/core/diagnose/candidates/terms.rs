@@ -152,7 +152,7 @@ fn products(variables: &[Variable]) -> Vec<Product<'_>> {
             all.push(Product::power(v, 2));
             all.push(Product::power(v, 3));
         }
-        if v.is_rate() || deflects(v) || (v.quantity.is_flow_angle() && v.is_odd()) {
+        if v.is_rate() || deflects(v) || v.quantity.is_flow_angle() {
             all.push(Product::signed_square(v));
         }
     }
