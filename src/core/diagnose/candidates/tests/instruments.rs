@@ -78,6 +78,7 @@ fn each_clock_is_one_candidate() {
             "alpha+beta+V",
             "ax+ay+az",
             "p+q+r",
+            "ax+ay+az+p+q+r",
             "x+y+z",
             "alpha+beta+V+x+y+z"
         ]
@@ -88,9 +89,13 @@ fn each_clock_is_one_candidate() {
         found,
         [
             "V+alpha+beta+h",
+            "V+alpha+beta",
             "ax+ay+az",
             "p+q+r",
             "phi+theta+psi",
+            "p+q+r+phi+theta+psi",
+            "p+q+r+ax+ay+az",
+            "p+q+r+phi+theta+psi+ax+ay+az",
             all,
             "de+da+dr+thrust"
         ]
