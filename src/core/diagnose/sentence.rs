@@ -2,38 +2,49 @@
 
 use super::effect::{Effect, EffectKind, Treatment};
 use super::size::Size;
-use crate::flight::{Shown, five_digits, shown_in};
-use crate::model::EditKind;
+use crate::flight::{Shown, five_digits, shown_in, with_error};
+use crate::model::{AddedRole, EditKind};
 
-/// An effect in words, with its size; angles in degrees.
+/// An effect in words, with its size.
 pub(super) fn of(effect: &Effect, sizes: &[Size]) -> String {
-    let size = |size: &Size| {
-        let Shown { scale, unit } = shown_in(&size.unit);
-        let unit = if unit == "-" { "" } else { &unit };
-        let error = size
-            .standard_error
-            .map_or(String::new(), |e| format!(" ± {}", five_digits(e * scale)));
-        let segment = size
-            .segment
-            .as_ref()
-            .map_or(String::new(), |s| format!(" in {s}"));
-        let estimate = five_digits(size.own_units() * scale);
-        format!("{} = {estimate}{error} {unit}", size.name)
-            .trim_end()
-            .to_string()
-            + &segment
-    };
-    let sizes: Vec<String> = sizes.iter().map(size).collect();
-    let sizes = if sizes.is_empty() {
-        String::new()
-    } else {
-        format!(" ({})", sizes.join(", "))
-    };
-    format!("{}{sizes}", words(effect))
+    let written: Vec<String> = sizes.iter().map(written).collect();
+    let words = words(effect, sizes.first());
+    match written.is_empty() {
+        true => words,
+        false => format!("{words} ({})", written.join(", ")),
+    }
 }
 
-/// An effect in words, without its size.
-pub(super) fn words(effect: &Effect) -> String {
+/// A size with its bound: angles in degrees, frequencies in Hz.
+fn written(size: &Size) -> String {
+    let (value, error, unit) = match size.role {
+        AddedRole::Frequency => {
+            let turns = |rate: f64| rate / std::f64::consts::TAU;
+            let error = size.standard_error_si().map(turns);
+            (turns(size.value), error, "Hz".to_string())
+        }
+        _ => {
+            let Shown { scale, unit } = shown_in(&size.unit);
+            let error = size.standard_error.map(|error| error * scale);
+            (size.own_units() * scale, error, unit)
+        }
+    };
+    let value = match error {
+        Some(error) => with_error(value, error),
+        None => five_digits(value),
+    };
+    let unit = if unit == "-" {
+        String::new()
+    } else {
+        format!(" {unit}")
+    };
+    let segment = (size.segment.as_ref()).map_or(String::new(), |label| format!(" in {label}"));
+    format!("{} = {value}{unit}{segment}", size.name)
+}
+
+/// An effect in words; `first` is the size that it is called after.
+fn words(effect: &Effect, first: Option<&Size>) -> String {
+    let is_negative = first.is_some_and(|size| size.value < 0.0);
     let target = effect.target.as_str();
     let term = effect.term.as_deref().unwrap_or_default();
     let kind = match effect.kind {
@@ -55,9 +66,12 @@ pub(super) fn words(effect: &Effect) -> String {
             format!("{target} is recorded with a wrong scale")
         }
         EditKind::SensorDrift => format!("{target} drifts"),
-        EditKind::SensorDelay | EditKind::InputDelay => {
-            format!("{target} is recorded with a time shift")
+        EditKind::SensorDelay if is_negative => format!("{target} is recorded early"),
+        EditKind::SensorDelay => format!("{target} is recorded late"),
+        EditKind::InputDelay if is_negative => {
+            format!("{target} is recorded late: the aircraft follows earlier")
         }
+        EditKind::InputDelay => format!("{target} is recorded early: the aircraft follows later"),
         EditKind::MissingTerm => format!("the equation of {target} lacks a term in {term}"),
         EditKind::SensorLag => format!("{target} is recorded with a lag"),
         EditKind::SensorPosition => {

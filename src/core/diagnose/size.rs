@@ -3,12 +3,13 @@
 use super::fitted::Fitted;
 use crate::estimate::{Estimate, Problem};
 use crate::flight::Unit;
-use crate::model::Added;
+use crate::model::{Added, AddedRole};
 
 /// One parameter of an effect.
 pub(super) struct Size {
     pub name: String,
     pub segment: Option<String>,
+    pub role: AddedRole,
     /// As the document writes it.
     pub unit: String,
     scale: Unit,
@@ -36,23 +37,25 @@ pub(super) fn sizes(
     estimate: &Estimate,
     added: &[Added],
 ) -> Vec<Size> {
-    let is_added = |place: &usize| {
-        let name = &problem.parameter(*place).name;
-        added.iter().any(|added| added.name == *name)
+    let role = |place: usize| {
+        let name = &problem.parameter(place).name;
+        let found = added.iter().find(|added| added.name == *name);
+        Some((place, found?.role))
     };
-    let size = |place: usize| {
+    let size = |(place, role): (usize, AddedRole)| {
         let info = problem.parameter(place);
         let segment = problem.unknowns.at(place).segment;
         Size {
             name: info.name.clone(),
             segment: segment.map(|segment| problem.segments[segment].label.clone()),
+            role,
             unit: info.document.unit.clone(),
             scale: info.unit,
             value: theta[place],
             standard_error: estimate.parameters[problem.unknowns.free[place]].standard_error,
         }
     };
-    (0..theta.len()).filter(is_added).map(size).collect()
+    (0..theta.len()).filter_map(role).map(size).collect()
 }
 
 impl Fitted {

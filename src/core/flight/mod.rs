@@ -38,5 +38,5 @@ pub use physical::{Family, Motion, PhysicalQuantity};
 pub use quality::{Record, Series, quality, quality_of};
 pub use sampling::{GAP_FACTOR, Gap, Sampling};
 pub use severity::Severity;
-pub use shown::{Shown, five_digits, shown_in};
+pub use shown::{Shown, five_digits, shown_in, with_error};
 pub use unit::{Unit, UnitError};

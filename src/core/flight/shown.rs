@@ -1,4 +1,4 @@
-//! How quantities are shown to people: angles in degrees, numbers with five digits.
+//! How quantities are shown to people: angles in degrees, numbers with five digits, or with those that an error leaves.
 
 /// What a value in SI is multiplied by, and the unit it then has.
 #[derive(Clone, PartialEq, Debug)]
@@ -37,9 +37,39 @@ pub fn five_digits(value: f64) -> String {
     }
 }
 
+/// A number with its error: as many digits as the error leaves, of which it has two itself.
+pub fn with_error(value: f64, error: f64) -> String {
+    if !(error.is_finite() && error > 0.0 && value.is_finite()) {
+        return format!("{} ± {}", five_digits(value), five_digits(error));
+    }
+    // the place of the second digit of the error
+    let place = error.log10().floor() as i32 - 1;
+    if (-6..=0).contains(&place) {
+        let digits = place.unsigned_abs() as usize;
+        return format!("{value:.digits$} ± {error:.digits$}");
+    }
+    let first = (value.abs().max(error)).log10().floor() as i32;
+    let digits = (first - place).max(1) as usize;
+    format!("{value:.digits$e} ± {error:.1e}")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_number_has_the_digits_that_its_error_leaves() {
+        for (value, error, written) in [
+            (0.298_17, 0.003_140_8, "0.2982 ± 0.0031"),
+            (-12.345, 1.7, "-12.3 ± 1.7"),
+            (1234.5, 67.0, "1234 ± 67"),
+            (12345.0, 670.0, "1.234e4 ± 6.7e2"),
+            (2.5545e-7, 3.3e-9, "2.554e-7 ± 3.3e-9"),
+            (1.0, 0.0, "1.0000 ± 0"),
+        ] {
+            assert_eq!(with_error(value, error), written);
+        }
+    }
 
     #[test]
     fn angles_are_shown_in_degrees() {
