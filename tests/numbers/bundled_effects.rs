@@ -177,7 +177,8 @@ fn a_late_vane_shows_where_the_model_cannot_imitate_it() {
     let held = diagnosis("alpha-delay", json!({"Zq": {"start": 0.97, "fixed": true}}));
     names_the_truth("alpha-delay", &held);
     assert!(
-        held.sentence.starts_with("alpha is recorded late (alpha_delay = 0.0"),
+        held.sentence
+            .starts_with("alpha is recorded late (alpha_delay = 0.0"),
         "{}",
         held.sentence
     );

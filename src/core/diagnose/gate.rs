@@ -9,6 +9,7 @@ use super::fitted::Fitted;
 use super::null_model::NullModel;
 use super::passed::Passed;
 use super::predicted::Predicted;
+use super::refused::differs;
 use super::repeats::disagreement;
 use super::report::{OutputGain, Refusal};
 use super::stack::Layout;
@@ -79,6 +80,13 @@ fn significant(trial: &Trial, least: f64) -> Result<(), Objection> {
     let ratio = trial.likelihood_ratio;
     if ratio >= least {
         return Ok(());
+    }
+    if let Some(screened) = trial
+        .screened
+        .as_ref()
+        .filter(|screened| screened.differs())
+    {
+        return Err((Refusal::NotRepeatable, differs(ratio, screened.own)));
     }
     let why = format!(
         "a likelihood ratio of {ratio:.1} is no more than noise gives among so many candidates (critical value {least:.1})"

@@ -27,11 +27,16 @@ pub(super) fn after_trial(
     threshold: Threshold,
 ) -> RefusedEffect {
     let screened = trial.screened.as_ref();
+    // of what differs between flights, with a size for each
+    let own = screened.filter(|s| reason == Refusal::NotRepeatable && s.differs());
+    let ratio = own.map_or(trial.likelihood_ratio, |s| {
+        s.own.max(trial.likelihood_ratio)
+    });
     RefusedEffect {
         effect: trial.effect.clone(),
         reason,
         sentence,
-        likelihood_ratio: Some(trial.likelihood_ratio),
+        likelihood_ratio: Some(ratio),
         visible_fraction: screened.map(|s| s.visible),
         smallest_seen: screened.map(|s| threshold.smallest_seen(s.one_sigma)),
         held_out,
@@ -46,13 +51,25 @@ pub(super) fn after_screen(
     threshold: Threshold,
 ) -> RefusedEffect {
     let seen = reason != Refusal::Invisible;
+    let promise = match reason {
+        Refusal::NotRepeatable => screened.own,
+        _ => screened.promise,
+    };
     RefusedEffect {
         effect: effect.clone(),
         reason,
         sentence,
-        likelihood_ratio: seen.then_some(screened.promise),
+        likelihood_ratio: seen.then_some(promise),
         visible_fraction: Some(screened.visible),
         smallest_seen: seen.then(|| threshold.smallest_seen(screened.one_sigma)),
         held_out: None,
     }
+}
+
+/// Why a candidate is refused that is there in some flights alone.
+pub(super) fn differs(in_all: f64, own: f64) -> String {
+    format!(
+        "it differs between maneuvers: with a size of its own in each one linear step promises a likelihood ratio of {own:.1}, with one for all {:.1}",
+        in_all.max(0.0)
+    )
 }

@@ -10,7 +10,7 @@ use super::gate::pass;
 use super::group::group;
 use super::null_model::NullModel;
 use super::passed::Passed;
-use super::refused::{after_screen, after_trial, not_fitted};
+use super::refused::{after_screen, after_trial, differs, not_fitted};
 use super::report::{Refusal, RefusedEffect, Step};
 use super::screen::{Screen, Screened, independent_questions};
 use super::starts::{is_tried_outright, starts};
@@ -323,6 +323,10 @@ fn not_tried(seen: &Seen, passed: &[Passed], threshold: Threshold) -> RefusedEff
                 best.trial.likelihood_ratio
             ),
         ),
+        _ if seen.screened.as_ref().is_some_and(Screened::differs) => {
+            let own = seen.screened.as_ref().map_or(0.0, |screened| screened.own);
+            (Refusal::NotRepeatable, differs(promise, own))
+        }
         _ => (
             Refusal::NotSignificant,
             format!(

@@ -55,6 +55,8 @@ pub(super) struct Screened {
     pub promise: f64,
     /// N ln(σ0²/σ1²) over all outputs: what one linear step of plain least squares promises of the errors themselves.
     pub plain: f64,
+    /// What it promises with a size of its own in each flight; 0 where that asks nothing else.
+    pub own: f64,
     /// One-step sizes, SI, of what has influence.
     sizes: Vec<f64>,
     /// Standard error of the first parameter's one step, SI.
@@ -65,7 +67,16 @@ pub(super) struct Screened {
 
 type Key = (String, Option<String>);
 
+/// What a size in each flight must promise, and by how much more than one for all, to say that an effect differs.
+const OWN: f64 = 40.0;
+const BEYOND: f64 = 30.0;
+
 impl Screened {
+    /// Whether it is clearly there in some flights, and not as such in all.
+    pub(super) fn differs(&self) -> bool {
+        self.own > OWN && self.own - self.promise.max(self.score) > BEYOND
+    }
+
     /// Where fits of it begin. Of what the declared parameters imitate closely, the whole step without theirs leads far
     /// astray: then a small share of it too.
     pub(super) fn starts(&self) -> Vec<Values> {
@@ -195,7 +206,28 @@ impl<'c> Screen<'c> {
                 None => best = Some(seen),
             }
         }
-        best.ok_or_else(|| "it cannot be screened".into())
+        let own = self.own(&columns);
+        best.map(|seen| Screened { own, ..seen })
+            .ok_or_else(|| "it cannot be screened".into())
+    }
+
+    /// What a single size promises if each flight has its own.
+    fn own(&self, columns: &[Vec<f64>]) -> f64 {
+        let flights = self.base.problem.segments.len();
+        let ([one], [metric, ..], 2..) = (columns, self.metrics.as_slice(), flights) else {
+            return 0.0;
+        };
+        let of_flight = |flight: usize| {
+            let mut column = vec![0.0; self.layout.len];
+            for series in self.layout.series.iter().filter(|s| s.segment == flight) {
+                let range = series.range.clone();
+                column[range.clone()].copy_from_slice(&one[range]);
+            }
+            column
+        };
+        let each: Vec<Vec<f64>> = (0..flights).map(of_flight).collect();
+        let seen = self.in_metric(metric, &each);
+        seen.promise.min(seen.score)
     }
 
     fn in_metric(&self, metric: &Metric, columns: &[Vec<f64>]) -> Screened {
@@ -249,6 +281,7 @@ impl<'c> Screen<'c> {
             visible,
             score,
             promise,
+            own: 0.0,
             plain,
             sizes: (0..count).map(|i| sizes[i] / scale[i]).collect(),
             one_sigma: norm(&clear[0]).max(f64::MIN_POSITIVE).recip(),
