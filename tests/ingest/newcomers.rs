@@ -162,3 +162,21 @@ fn a_text_log_of_ardupilot_is_refused_with_its_name() {
         "{refused}"
     );
 }
+
+#[test]
+fn a_second_column_of_times_is_told() {
+    let text = "t_imu[s],q[deg/s],t_air[s],alpha[deg]\n0.00,1,0.001,3\n0.01,2,0.021,4\n0.02,3,,\n0.03,4,,\n";
+    let codes = |text: &str| -> Vec<String> {
+        let findings = read(text).unwrap().findings;
+        let codes = findings
+            .iter()
+            .map(|finding| finding.code.as_str().to_string());
+        codes.collect()
+    };
+    assert_eq!(codes(text), ["other_times"]);
+    // times beside the first in every row are those of a second clock
+    let full = text
+        .replace("0.02,3,,", "0.02,3,0.041,5")
+        .replace("0.03,4,,", "0.03,4,0.061,6");
+    assert!(codes(&full).is_empty());
+}

@@ -142,6 +142,19 @@ impl<'a> Titles<'a> {
         wanted.iter().any(is_there)
     }
 
+    /// Whether a column has times of other rows than all have: a unit of time, increasing, and cells without a value.
+    pub(super) fn has_other_times(&self, at: usize) -> bool {
+        let is_number = |cell: &str| cell.trim().parse::<f64>().ok();
+        let times: Vec<f64> = self
+            .held(at)
+            .filter_map(|(_, cell)| is_number(cell))
+            .collect();
+        self.any_label(at).has_unit_of_time()
+            && self.title(at).to_lowercase().starts_with('t')
+            && (2..self.first.len()).contains(&times.len())
+            && times.windows(2).all(|pair| pair[0] < pair[1])
+    }
+
     /// Whether two columns begin with the same cells.
     fn are_alike(&self, one: usize, other: usize) -> bool {
         let mut rows = self.first.iter();
