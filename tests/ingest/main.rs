@@ -12,4 +12,5 @@ mod flight_data;
 mod formats;
 mod kinds;
 mod layouts;
+mod newcomers;
 mod structs;

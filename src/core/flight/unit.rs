@@ -1,7 +1,7 @@
 //! Units as they stand in file headers and model documents: `deg/s`, `kg/m^3`, `1/rad`, `hPa`, `-`.
 
 use super::Dimension;
-use super::unit_spelling::{number_length, plain, suggestion};
+use super::unit_spelling::{number_length, other_than_written, plain, suggestion};
 use super::unit_symbols::meaning;
 
 /// A unit: how to get to SI (`si = scale * value + offset`) and what it measures.
@@ -72,6 +72,11 @@ impl Unit {
     /// # Errors
     /// Names the symbol that is not known, with what may have been meant, or what is malformed.
     pub fn parse(text: &str) -> Result<Self, UnitError> {
+        if text.len() <= LONGEST_UNIT
+            && let Some(meant) = other_than_written(text)
+        {
+            return Self::of_symbols(meant);
+        }
         let as_written = Self::of_symbols(text);
         if as_written.is_ok() || text.len() > LONGEST_UNIT {
             return as_written;
@@ -93,6 +98,11 @@ impl Unit {
 
     /// A unit in symbols: as it is written where that is symbols, else in those that are meant. What cannot be read stays.
     pub fn in_symbols(text: &str) -> String {
+        if text.len() <= LONGEST_UNIT
+            && let Some(meant) = other_than_written(text)
+        {
+            return meant.to_string();
+        }
         if Self::of_symbols(text).is_err() && text.len() <= LONGEST_UNIT {
             let plain = plain(text);
             if Self::of_symbols(&plain).is_ok() {

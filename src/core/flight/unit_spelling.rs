@@ -1,5 +1,6 @@
 //! Units as people write them, and the symbols that are meant: `DEG/SEC`, `m/s²`, `degrees per second`, `ft msl`.
 
+use super::Unit;
 use super::unit_symbols::{SYMBOLS, meaning};
 use super::unit_words::{QUALIFIERS, WHOLE, WORDS};
 
@@ -15,7 +16,28 @@ pub(super) fn plain(text: &str) -> String {
     {
         return plain(unit);
     }
-    in_symbols(text)
+    // deg (TEU +): which way is positive is said behind the unit
+    if let Some((unit, remark)) = text.rsplit_once(" (")
+        && remark.ends_with(')')
+        && Unit::parse(&remark[..remark.len() - 1]).is_err()
+    {
+        return plain(unit);
+    }
+    match text.strip_suffix('.') {
+        Some(unit) if !unit.is_empty() && !unit.contains('.') => in_symbols(unit),
+        _ => in_symbols(text),
+    }
+}
+
+/// What is meant by a text that is symbols, too, of something that is not recorded in flight: `lb/ft^2` is a pressure,
+/// `ft lb` a moment, `deg K` a temperature, `deg*100` hundredths of a degree.
+pub(super) fn other_than_written(text: &str) -> Option<&'static str> {
+    let is_compound = |c: char| matches!(c, '/' | '*' | ' ' | '-');
+    let text = without_brackets(text.trim());
+    text.contains(is_compound)
+        .then(|| as_a_whole(text))
+        .flatten()
+        .filter(|symbols| *symbols != "-")
 }
 
 fn without_brackets(text: &str) -> &str {

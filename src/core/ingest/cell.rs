@@ -119,7 +119,7 @@ pub(super) fn without_thousands(number: &str, mark: char, decimal: Decimal) -> O
 }
 
 /// What spreadsheets, R, databases, C runtimes and loggers write where there is no value.
-const MISSING: [&str; 38] = [
+const MISSING: [&str; 48] = [
     "",
     "na",
     "n/a",
@@ -158,6 +158,16 @@ const MISSING: [&str; 38] = [
     "undefined",
     "unknown",
     "~",
+    "n.d.",
+    "no_data",
+    "#n/d",
+    "#n/v",
+    "#nv",
+    "#wert!",
+    "#zahl!",
+    "#valeur!",
+    "bad",
+    "err",
 ];
 
 /// Whether a cell holds a sign for "no value".

@@ -22,6 +22,7 @@ impl<'a> Label<'a> {
             .or_else(|| in_brackets(cell, '{', '}').filter(|(_, unit)| is_unit(unit)))
             .or_else(|| in_brackets(cell, '<', '>').filter(|(_, unit)| is_unit(unit)))
             .or_else(|| cell.rsplit_once(',').filter(|(_, unit)| is_unit(unit)))
+            .or_else(|| behind_a_word(cell))
             .unwrap_or((cell, ""));
         Self {
             name: name.trim(),
@@ -85,7 +86,13 @@ impl<'a> Label<'a> {
 
     /// By one of the words that loggers have for time.
     pub(super) fn is_called_time_or_stamp(&self) -> bool {
-        self.is_called_time() || self.is_called(&CLOCKS)
+        let is_of_time = |unit: &str| {
+            let units = ["s", "ms", "us", "ns"];
+            units.iter().any(|other| unit.eq_ignore_ascii_case(other))
+        };
+        self.is_called_time()
+            || self.is_called(&CLOCKS)
+            || self.unit_in_name().is_some_and(is_of_time)
     }
 
     /// A calendar date, a column of which goes with one of times of day.
@@ -118,7 +125,7 @@ impl<'a> Label<'a> {
 }
 
 /// What loggers call the time, without what is between the words.
-const CLOCKS: [&str; 43] = [
+const CLOCKS: [&str; 45] = [
     "timestamp",
     "timestamps",
     "datetime",
@@ -162,6 +169,8 @@ const CLOCKS: [&str; 43] = [
     "missntime",
     "xvalue",
     "flighttime",
+    "offsettime",
+    "clockoffsettime",
 ];
 
 /// Words that are nothing but units.
@@ -174,6 +183,18 @@ const UNITS_IN_NAMES: [&str; 38] = [
 
 fn is_unit(text: &str) -> bool {
     !is_index(text) && Unit::parse(text).is_ok()
+}
+
+/// `Alpha - deg`, `alpha / deg`, `Alpha in deg`. A capital alone is a side or a number, not a unit.
+fn behind_a_word(cell: &str) -> Option<(&str, &str)> {
+    let is_clear = |unit: &str| {
+        let is_capital = unit.len() == 1 && unit.bytes().all(|byte| byte.is_ascii_uppercase());
+        !unit.is_empty() && unit != "-" && !is_capital && is_unit(unit)
+    };
+    [" - ", " / ", " in "].iter().find_map(|between| {
+        let (name, unit) = cell.rsplit_once(between)?;
+        (!name.trim().is_empty() && is_clear(unit.trim())).then_some((name, unit))
+    })
 }
 
 fn in_brackets(cell: &str, open: char, close: char) -> Option<(&str, &str)> {

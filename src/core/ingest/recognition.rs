@@ -113,6 +113,12 @@ const FOREIGN: &[Foreign] = &[
     ),
     foreign(
         0,
+        b"FMT, 128, 89, FMT",
+        "a log of ArduPilot as text (.log)",
+        "send the .bin that it was made from, or write one message of it as CSV, with mavlogdump.py --format csv --types ATT file.log > file.csv",
+    ),
+    foreign(
+        0,
         b"\x93NUMPY",
         "an array of NumPy (.npy)",
         "write it as text, with numpy.savetxt('file.asc', numpy.load('file.npy'))",

@@ -16,6 +16,7 @@ pub(super) fn of(titles: &Titles, repeated: Option<Repeated>, limits: &Limits) -
     let mut names = Names::new(limits);
     let mut draft = Draft::default();
     let time = (0..titles.width)
+        .filter(|&at| titles.first.is_empty() || titles.first_said(at).is_some())
         .find(|&at| titles.stamp(at).is_some() || titles.any_label(at).is_called_time_or_stamp());
     for at in 0..titles.width {
         let label = titles.any_label(at);

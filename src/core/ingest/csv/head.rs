@@ -37,6 +37,11 @@ impl<'a> Head<'a> {
         let names = (rows.iter().enumerate())
             .map(|(at, (_, cells))| (at, likeness_to_names(cells)))
             .filter(|&(_, likeness)| likeness > 0.0)
+            // of long names with units and short ones without, those with units tell more
+            .map(|(at, likeness)| match &units {
+                Some(_) => (at, likeness),
+                None => (at, likeness + 2.0 * share_with_units(&rows[at].1)),
+            })
             .reduce(first_best)
             .map(|(at, _)| rows.remove(at));
         Self {
@@ -63,6 +68,14 @@ pub(super) fn share_of_units(cells: &[&str]) -> f64 {
         return 0.0;
     }
     said.iter().filter(|cell| is_unit(cell)).count() as f64 / said.len() as f64
+}
+
+/// How many of the cells that are not empty have a unit behind their name.
+fn share_with_units(cells: &[&str]) -> f64 {
+    let said = cells.iter().filter(|cell| !cell.is_empty());
+    let labels: Vec<Label> = said.map(|cell| Label::split(cell)).collect();
+    let has_unit = |label: &&Label| !label.unit.is_empty() && Unit::parse(label.unit).is_ok();
+    labels.iter().filter(has_unit).count() as f64 / labels.len().max(1) as f64
 }
 
 /// Names that flight-test recordings usually have.

@@ -265,6 +265,7 @@ fn header_lines<'a>(
         }
         let mut cells = rows.titles(looked);
         if looked.is_plain() && rows.count > 2 && is_heading(&cells) {
+            above.extend(units_of_labview(lines, rows));
             break;
         }
         if rows.delimiter == Delimiter::Blanks && cells.len() != rows.count {
@@ -285,6 +286,18 @@ fn header_lines<'a>(
     }
     above.reverse();
     (above, misfit)
+}
+
+/// The line of units in the block that stands before the titles of a file of LabVIEW.
+fn units_of_labview<'a>(
+    lines: &[Looked<'a>],
+    rows: &SampleRows,
+) -> Option<(Line<'a>, Vec<&'a str>)> {
+    let is_of_units = |looked: &&Looked| looked.line.text.starts_with("Y_Unit_Label");
+    let looked = lines.iter().rev().find(is_of_units)?;
+    let mut cells = rows.titles(looked);
+    *cells.first_mut()? = "";
+    (width(&cells) <= rows.count).then_some((looked.line, cells))
 }
 
 /// Whether only the first cell says something, and no unit: it parts what is above from the table.

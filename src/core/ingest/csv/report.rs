@@ -6,7 +6,7 @@ use super::super::{
     note::{absent, listed, note},
     text::quoted,
 };
-use super::{plan::Plan, table::Table};
+use super::{column::Use, plan::Plan, table::Table};
 
 /// What is odd about the columns.
 pub(super) fn findings(table: &Table, plan: &Plan, left_out: &[(String, Fault)]) -> Vec<Finding> {
@@ -34,6 +34,25 @@ pub(super) fn findings(table: &Table, plan: &Plan, left_out: &[(String, Fault)])
         let mut finding = note(FindingCode::LeftOut, message, remedy);
         finding.count = left_out.len();
         findings.push(finding);
+    }
+    let titles = &table.titles;
+    let is_read = |at: usize| {
+        plan.columns
+            .iter()
+            .any(|column| column.at == at && column.used == Use::Channel)
+    };
+    let others: Vec<String> = (0..titles.width)
+        .filter(|&at| is_read(at) && titles.has_other_times(at))
+        .map(|at| quoted(titles.title(at)))
+        .collect();
+    if !others.is_empty() {
+        let message = format!(
+            "{} has times, too, in fewer rows: the columns that belong to it are read at the times of the first",
+            listed(others.into_iter())
+        );
+        let remedy =
+            "say with a mapping which these are: alpha = {from = \"alpha\", time = \"t_air\"}";
+        findings.push(note(FindingCode::OtherTimes, message, remedy));
     }
     if !plan.renamed.is_empty() {
         let pairs = plan

@@ -74,6 +74,9 @@ impl<'a> Looked<'a> {
     /// What is to be parted into cells: of a comment, what it says.
     pub(super) fn said(&self) -> &'a str {
         match self.kind {
+            Kind::Comment if is_comment_of_a_program(self.line.text) => {
+                self.line.text.trim_start_matches(marks_a_comment)
+            }
             Kind::Comment => said_in_comment(self.line.text),
             _ => self.line.text,
         }
@@ -108,12 +111,25 @@ pub(super) fn lines<'a>(text: &'a str, skip: usize) -> Vec<Looked<'a>> {
     looked
 }
 
+fn marks_a_comment(c: char) -> bool {
+    matches!(c, '/' | '!' | ';' | ' ')
+}
+
+/// `// alpha`, `! alpha`, and `; alpha` where no semicolon parts cells.
+fn is_comment_of_a_program(line: &str) -> bool {
+    line.starts_with("//")
+        || line.starts_with("! ")
+        || (line.starts_with("; ") && !line[1..].contains(';'))
+}
+
 fn kind(line: &str) -> Kind {
     if is_blank(line) {
         Kind::Blank
-    } else if is_comment(line) || line.starts_with("//") {
+    } else if is_comment(line) || is_comment_of_a_program(line) {
         Kind::Comment
-    } else if line.len() > 2 && line.bytes().all(|byte| b"-+=_|: \t".contains(&byte)) {
+    } else if line.trim_end() == "$DATA"
+        || line.len() > 2 && line.bytes().all(|byte| b"-+=_|: \t".contains(&byte))
+    {
         Kind::Rule
     } else {
         Kind::Plain

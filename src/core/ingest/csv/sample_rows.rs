@@ -53,7 +53,13 @@ impl SampleRows {
 
     /// The cells of a header's line. Rows without a remark have no cell for it: its title does not count.
     pub(super) fn titles<'a>(&self, looked: &Looked<'a>) -> Vec<&'a str> {
-        let mut cells = self.delimiter.cells(looked.said());
+        let said = looked.said();
+        // FlySight 2 says with a word of its own which line of the header is which
+        let said = ["$COL,", "$UNIT,"]
+            .iter()
+            .find_map(|word| said.strip_prefix(word))
+            .unwrap_or(said);
+        let mut cells = self.delimiter.cells(said);
         if cells.len() == self.count + 1 && cells.last().is_some_and(|last| is_remark(last)) {
             cells.pop();
         }

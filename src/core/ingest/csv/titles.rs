@@ -142,6 +142,25 @@ impl<'a> Titles<'a> {
         wanted.iter().any(is_there)
     }
 
+    /// Whether a column has times of other rows than all have: a unit of time, increasing, and cells without a value.
+    pub(super) fn has_other_times(&self, at: usize) -> bool {
+        let is_number = |cell: &str| cell.trim().parse::<f64>().ok();
+        let times: Vec<f64> = self
+            .held(at)
+            .filter_map(|(_, cell)| is_number(cell))
+            .collect();
+        self.any_label(at).has_unit_of_time()
+            && self.title(at).to_lowercase().starts_with('t')
+            && (2..self.first.len()).contains(&times.len())
+            && times.windows(2).all(|pair| pair[0] < pair[1])
+    }
+
+    /// Whether two columns begin with the same cells.
+    fn are_alike(&self, one: usize, other: usize) -> bool {
+        let mut rows = self.first.iter();
+        self.first.len() > 1 && rows.all(|row| row.get(one) == row.get(other))
+    }
+
     fn find_one(&self, wanted: &str) -> Result<usize, Why> {
         let same = |one: &str, other: &str| one == other;
         let alike = |one: &str, other: &str| letters(one) == letters(other);
@@ -156,6 +175,13 @@ impl<'a> Titles<'a> {
                     .filter(of);
                 match (found.next(), found.next()) {
                     (Some(at), None) => return Ok(at),
+                    // LabVIEW writes the same times before each channel
+                    (Some(at), Some(second))
+                        if self.are_alike(at, second)
+                            && found.all(|other| self.are_alike(at, other)) =>
+                    {
+                        return Ok(at);
+                    }
                     (Some(_), Some(second)) => {
                         let message = format!(
                             "{} is the title of several columns; say which by its number, as (:,{})",

@@ -19,7 +19,7 @@ impl Draft {
     /// Time that no column has: its step is to be said.
     pub(in super::super) fn even_time(&mut self) {
         self.0.time = MappedTime {
-            unit: "s".to_string(),
+            unit: "?".to_string(),
             step: Some(1.0),
             ..MappedTime::default()
         };

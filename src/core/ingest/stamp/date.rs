@@ -18,6 +18,12 @@ pub(super) fn date(text: &str) -> Option<Readings> {
         .collect();
     let only = |day: i64| Some([Some(day); 2]);
     match *fields.as_slice() {
+        // 21NOV2026
+        [packed] if packed.len() == 9 && packed.is_ascii() => {
+            let (of, rest) = packed.split_at(2);
+            let (name, year) = rest.split_at(3);
+            only(day(number(year)?, month(name)?, number(of)?)?)
+        }
         [compact] if compact.len() == 8 => {
             let (year, rest) = (number(&compact[..4])?, &compact[4..]);
             only(day(year, number(&rest[..2])?, number(&rest[2..])?)?)

@@ -39,13 +39,12 @@ impl Stamp {
         if text.len() > LONGEST_STAMP || !text.is_ascii() {
             return None;
         }
-        let is_compact = || text.len() >= 15 && text.as_bytes()[8].eq_ignore_ascii_case(&b'T');
+        let is_compact = || text.len() >= 15 && b"Tt _-".contains(&text.as_bytes()[8]);
         if !text.contains(':') {
-            return if is_compact() {
-                compact(text)
-            } else {
-                elapsed(text).map(|at| of(Kind::Elapsed, at))
-            };
+            let compact = is_compact().then(|| compact(text)).flatten();
+            return compact
+                .or_else(|| for_file_names(text))
+                .or_else(|| elapsed(text).map(|at| of(Kind::Elapsed, at)));
         }
         let (text, zone) = without_zone(text);
         let stamp = without_a_zone(text)?;
@@ -107,6 +106,25 @@ fn compact(text: &str) -> Option<Stamp> {
     on(date(&text[..8])?, time)
 }
 
+/// `2026-11-21_10-15-00.123`, as names of files have it.
+fn for_file_names(text: &str) -> Option<Stamp> {
+    let (day, clock) = text.split_once(['_', 'T'])?;
+    let fields: Vec<&str> = clock.split('-').collect();
+    let [hours, minutes, seconds] = *fields.as_slice() else {
+        return None;
+    };
+    let time = time_of_day(&format!("{hours}:{minutes}:{seconds}"))?;
+    on(date(day)?, time)
+}
+
+/// `0 days 00:00:00.02`: days before a time.
+fn days(text: &str) -> Option<Stamp> {
+    let (count, time) = text.split_once(" day")?;
+    let time = time.trim_start_matches(['s', ',', ' ']);
+    let at = number(count)?.checked_mul(DAY)?;
+    Some(of(Kind::Elapsed, at.checked_add(time_of_day(time)?)?))
+}
+
 /// The text before its time zone, and how far that is ahead of UTC.
 fn without_zone(text: &str) -> (&str, Option<i64>) {
     for word in ["UTC", "GMT", "Z", "z"] {
@@ -138,10 +156,13 @@ fn without_a_zone(text: &str) -> Option<Stamp> {
     let (first, rest) = text.split_once(':')?;
     match colons {
         1 => minutes(text).map(|at| of(Kind::OfHour, at)),
-        // a year and its day: 2026:325:10:15:00
+        // 325:10:15:00:123
+        4 if first.len() == 3 => day_of_year(first, rest),
+        // a year and its day: 2026:325:10:15:00, 26:325:10:15:00
         4 => {
             let (day, time) = rest.split_once(':')?;
-            let days = date(&format!("{first}-{day}"))?;
+            let century = if first.len() == 2 { "20" } else { "" };
+            let days = date(&format!("{century}{first}-{day}"))?;
             on(days, time_of_day(time)?)
         }
         3 if first.len() == 3 => day_of_year(first, rest),
@@ -152,7 +173,10 @@ fn without_a_zone(text: &str) -> Option<Stamp> {
                 None => dated(text),
             }
         }
-        _ => time_of_day(text).map_or_else(|| dated(text), |at| Some(of(Kind::TimeOfDay, at))),
+        _ => match time_of_day(text) {
+            Some(at) => Some(of(Kind::TimeOfDay, at)),
+            None => days(text).or_else(|| dated(text)),
+        },
     }
 }
 
@@ -173,7 +197,7 @@ fn dated(text: &str) -> Option<Stamp> {
         return None;
     }
     let (before, time) = text.split_at(hours - digits);
-    let day = before.trim_end_matches([' ', ',', '_', '-']);
+    let day = before.trim_end_matches([' ', ',', '_', '-', '/']);
     let day = if day.len() == before.len() {
         before.strip_suffix(['T', 't'])?
     } else {
