@@ -10,8 +10,9 @@ use super::super::{
 use super::{
     delimiter::Delimiter,
     head::share_of_units,
+    labview::units_of_labview,
     sample::{self, Held, Kind, Looked},
-    sample_rows::SampleRows,
+    sample_rows::{SampleRows, width},
 };
 
 /// What a mapping, or nobody, says of the layout.
@@ -239,14 +240,6 @@ impl Block {
     }
 }
 
-/// The number of cells, an empty one behind the last delimiter left out.
-fn width(cells: &[&str]) -> usize {
-    match cells {
-        [_, .., last] if last.trim().is_empty() => cells.len() - 1,
-        _ => cells.len(),
-    }
-}
-
 type Above<'a> = Vec<(Line<'a>, Vec<&'a str>)>;
 
 /// The lines above the rows with as many cells as they, from the top; or where there is none, the one above them.
@@ -286,18 +279,6 @@ fn header_lines<'a>(
     }
     above.reverse();
     (above, misfit)
-}
-
-/// The line of units in the block that stands before the titles of a file of LabVIEW.
-fn units_of_labview<'a>(
-    lines: &[Looked<'a>],
-    rows: &SampleRows,
-) -> Option<(Line<'a>, Vec<&'a str>)> {
-    let is_of_units = |looked: &&Looked| looked.line.text.starts_with("Y_Unit_Label");
-    let looked = lines.iter().rev().find(is_of_units)?;
-    let mut cells = rows.titles(looked);
-    *cells.first_mut()? = "";
-    (width(&cells) <= rows.count).then_some((looked.line, cells))
 }
 
 /// Whether only the first cell says something, and no unit: it parts what is above from the table.

@@ -14,6 +14,7 @@ mod draft;
 mod ending;
 mod head;
 mod inspection;
+mod labview;
 mod layout;
 mod own_times;
 mod plan;

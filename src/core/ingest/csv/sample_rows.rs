@@ -6,6 +6,14 @@ use super::{
     sample::{Held, Looked},
 };
 
+/// The number of cells, an empty one behind the last delimiter left out.
+pub(super) fn width(cells: &[&str]) -> usize {
+    match cells {
+        [_, .., last] if last.trim().is_empty() => cells.len() - 1,
+        _ => cells.len(),
+    }
+}
+
 /// The rows of a sample: lines of one number of cells, with numbers where most rows have them.
 pub(super) struct SampleRows {
     pub(super) delimiter: Delimiter,
