@@ -1,6 +1,5 @@
 //! Units as people write them, and the symbols that are meant: `DEG/SEC`, `m/s²`, `degrees per second`, `ft msl`.
 
-use super::Unit;
 use super::unit_symbols::{SYMBOLS, meaning};
 use super::unit_words::{QUALIFIERS, WHOLE, WORDS};
 
@@ -18,8 +17,9 @@ pub(super) fn plain(text: &str) -> String {
     }
     // deg (TEU +): which way is positive is said behind the unit
     if let Some((unit, remark)) = text.rsplit_once(" (")
-        && remark.ends_with(')')
-        && Unit::parse(&remark[..remark.len() - 1]).is_err()
+        && let Some(remark) = remark.strip_suffix(')')
+        && !remark.contains(['/', '^', '*'])
+        && meaning(remark).is_none()
     {
         return plain(unit);
     }
