@@ -204,3 +204,23 @@ fn nothing_where_nothing_is_missing() {
         assert!(diagnosis.effects.is_empty(), "{model}: {said}");
     }
 }
+
+/// A yaw gyro whose scale is wrong in one flight of three has no size that holds in all.
+#[test]
+fn what_is_in_one_flight_alone_is_no_effect_of_all() {
+    let files = [
+        ("yaw-gyro-scale-fit.csv", "estimation"),
+        ("../aileron.csv", "estimation"),
+        ("../rudder.csv", "estimation"),
+    ];
+    let files = files.map(|(file, role)| (file.to_string(), role));
+    let diagnosis = diagnosis_of("lateral-directional-4", &files, json!({}));
+    let said = &diagnosis.sentence;
+    assert_eq!(diagnosis.verdict, Verdict::Unexplained, "{said}");
+    assert!(
+        said.contains("but not as such in all") || diagnosis.effects.is_empty(),
+        "{said}"
+    );
+    let gyro = |named: &NamedEffect| named.effect.name() == "sensor_scale of r";
+    assert!(!diagnosis.effects.iter().any(gyro), "{said}");
+}
