@@ -26,8 +26,9 @@ fn plain(name: &str) -> String {
 
 /// The word before the first underscore, unless what follows makes it something else.
 fn before_suffix(name: &str) -> Option<&str> {
-    const OTHERWISE: [&str; 10] = [
-        "dot", "ddot", "rate", "bias", "eq", "ref", "trim", "error", "hat", "0",
+    const OTHERWISE: [&str; 16] = [
+        "dot", "ddot", "rate", "bias", "eq", "ref", "trim", "error", "hat", "0", "cmd", "command",
+        "target", "sp", "des", "desired",
     ];
     let (word, suffix) = name.split_once('_')?;
     (word.len() > 1 && !OTHERWISE.contains(&suffix)).then_some(word)
@@ -38,6 +39,7 @@ fn by_letter(name: &str, dimension: Dimension) -> Option<PhysicalQuantity> {
     use PhysicalQuantity::*;
     let letter = match name.split_once('_') {
         None => name,
+        Some(("V" | "v", "tas" | "TAS")) => "V",
         // `V_true`, `q_true`, `p_m`: the letter is what is measured
         Some((letter, "true" | "m" | "meas" | "measured" | "tas" | "TAS" | "t" | "raw")) => letter,
         Some(_) => return None,
@@ -73,7 +75,7 @@ fn by_word(word: &str) -> Option<PhysicalQuantity> {
         "vtas" | "tas" | "va" | "vt" | "vtrue" | "airspeed" | "trueairspeed" | "vair" => Airspeed,
         "mach" | "ma" | "machnumber" => Mach,
         "qbar" | "qdyn" | "qinf" | "qc" | "dynamicpressure" | "pdyn" => DynamicPressure,
-        "rho" | "airdensity" => AirDensity,
+        "rho" | "density" | "airdensity" => AirDensity,
         "ub" | "ubody" => VelocityX,
         "vb" | "vbody" => VelocityY,
         "wb" | "wbody" => VelocityZ,
@@ -87,7 +89,7 @@ fn by_word(word: &str) -> Option<PhysicalQuantity> {
         "ay" | "ny" | "aym" | "aycg" | "accy" | "accely" | "ayb" | "fy" => AccelerationY,
         "az" | "nz" | "azm" | "azcg" | "accz" | "accelz" | "azb" | "fz" => AccelerationZ,
         "phi" | "roll" | "bank" | "rollangle" | "bankangle" => RollAngle,
-        "theta" | "pitch" | "pitchangle" => PitchAngle,
+        "theta" | "the" | "pitch" | "pitchangle" => PitchAngle,
         "psi" | "yaw" | "heading" | "headingangle" | "yawangle" => HeadingAngle,
         "xe" | "xn" | "north" | "positionx" | "posx" => PositionX,
         "ye" | "east" | "positiony" | "posy" => PositionY,

@@ -11,45 +11,13 @@ const POWERS: [f64; 23] = [
 /// [`number`], found faster.
 #[inline]
 pub(super) fn quick_number(bytes: &[u8], delimiter: u8, point: u8) -> Option<(f64, usize)> {
-    let mut at = 0;
-    while bytes.get(at) == Some(&b' ') {
-        at += 1;
-    }
-    let is_negative = match bytes.get(at) {
-        Some(b'-') => {
-            at += 1;
-            true
-        }
-        Some(b'+') => {
-            at += 1;
-            false
-        }
-        _ => false,
-    };
-    let first = at;
-    let mut mantissa: u64 = 0;
-    while let Some(digit) = bytes
-        .get(at)
-        .map(|byte| byte.wrapping_sub(b'0'))
-        .filter(|&digit| digit < 10)
-    {
-        mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
-        at += 1;
-    }
-    let mut digits = at - first;
+    let mut at = blanks(bytes);
+    let is_negative = sign(bytes, &mut at);
+    let (mut mantissa, mut digits) = whole(bytes, &mut at, 0);
     let mut fraction = 0;
     if bytes.get(at) == Some(&point) {
         at += 1;
-        let behind_point = at;
-        while let Some(digit) = bytes
-            .get(at)
-            .map(|byte| byte.wrapping_sub(b'0'))
-            .filter(|&digit| digit < 10)
-        {
-            mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
-            at += 1;
-        }
-        fraction = at - behind_point;
+        (mantissa, fraction) = whole(bytes, &mut at, mantissa);
         digits += fraction;
     }
     if digits == 0 || digits > 18 || mantissa > (1 << 53) {
@@ -58,35 +26,18 @@ pub(super) fn quick_number(bytes: &[u8], delimiter: u8, point: u8) -> Option<(f6
     let mut exponent = -(fraction as i64);
     if matches!(bytes.get(at), Some(b'e' | b'E')) {
         at += 1;
-        let is_below_one = match bytes.get(at) {
-            Some(b'-') => {
-                at += 1;
-                true
-            }
-            Some(b'+') => {
-                at += 1;
-                false
-            }
-            _ => false,
-        };
-        let begin = at;
-        let mut power: i64 = 0;
-        while let Some(digit) = bytes
-            .get(at)
-            .map(|byte| byte.wrapping_sub(b'0'))
-            .filter(|&digit| digit < 10)
-        {
-            power = power.wrapping_mul(10).wrapping_add(i64::from(digit));
-            at += 1;
-        }
-        if at == begin || at - begin > 3 {
+        let is_below_one = sign(bytes, &mut at);
+        let (power, digits) = whole(bytes, &mut at, 0);
+        if digits == 0 || digits > 3 {
             return None;
         }
-        exponent += if is_below_one { -power } else { power };
+        exponent += if is_below_one {
+            -(power as i64)
+        } else {
+            power as i64
+        };
     }
-    while bytes.get(at) == Some(&b' ') {
-        at += 1;
-    }
+    at += blanks(&bytes[at..]);
     if bytes.get(at).is_some_and(|&byte| byte != delimiter) {
         return None;
     }
@@ -97,6 +48,31 @@ pub(super) fn quick_number(bytes: &[u8], delimiter: u8, point: u8) -> Option<(f6
         mantissa as f64 * power
     };
     Some((if is_negative { -value } else { value }, at))
+}
+
+fn blanks(bytes: &[u8]) -> usize {
+    bytes.iter().take_while(|&&byte| byte == b' ').count()
+}
+
+/// Whether it is a minus; a sign is passed over.
+#[inline]
+fn sign(bytes: &[u8], at: &mut usize) -> bool {
+    let sign = bytes.get(*at).filter(|byte| matches!(byte, b'+' | b'-'));
+    *at += usize::from(sign.is_some());
+    sign == Some(&b'-')
+}
+
+/// Digits put behind those of `before`, and how many; past 18 they may have overflown.
+#[inline]
+fn whole(bytes: &[u8], at: &mut usize, before: u64) -> (u64, usize) {
+    let begin = *at;
+    let mut number = before;
+    while let Some(digit) = (bytes.get(*at).map(|byte| byte.wrapping_sub(b'0'))).filter(|&d| d < 10)
+    {
+        number = number.wrapping_mul(10).wrapping_add(u64::from(digit));
+        *at += 1;
+    }
+    (number, *at - begin)
 }
 
 #[cfg(test)]

@@ -3,26 +3,22 @@
 //! In steady flight specific force is the reaction to gravity: a_x = g sin θ, a_y ≈ 0, a_z = −g cos θ cos φ with x
 //! forward, y right, z down.
 
+use crate::flight::PhysicalQuantity::{AccelerationX, AccelerationY, AccelerationZ, PitchAngle};
 use crate::flight::{Finding, FindingCode};
 
-use super::record::{Kind, Record, Series};
+use super::record::{Record, Series};
 use super::statistics::median;
 
 /// m/s².
 const G: f64 = 9.80665;
 
 pub(super) fn disagreements(record: &Record<'_>) -> Vec<Finding> {
-    let find = |names: &[&str]| record.find(names, Kind::Acceleration);
-    let axes = [
-        find(&["ax", "a_x", "accx", "acc_x", "axb"]),
-        find(&["ay", "a_y", "accy", "acc_y", "ayb"]),
-        find(&["az", "a_z", "accz", "acc_z", "azb"]),
-    ];
+    let axes = [AccelerationX, AccelerationY, AccelerationZ].map(|axis| record.of_quantity(axis));
     let used = axes.iter().flatten().any(|series| series.is_used);
     let [ax, ay, Some(az)] = axes else {
         return Vec::new();
     };
-    let theta = record.find(&["theta", "pitch", "the"], Kind::Angle);
+    let theta = record.of_quantity(PitchAngle);
     let usual = |series: &Series<'_>| median(series.values.iter().copied());
     let tilt = theta.and_then(|theta| median(theta.values.iter().map(|theta| theta.sin())));
     // on its tail or its nose other axes carry the weight

@@ -1,37 +1,32 @@
 //! Air data against each other: dynamic pressure, airspeed, Mach number and speed over ground.
 
+use crate::flight::PhysicalQuantity::{AirDensity, Airspeed, DynamicPressure, Mach};
 use crate::flight::{Finding, FindingCode};
 
-use super::record::{Kind, Record, Series};
+use super::record::{Record, Series};
 use super::statistics::median;
 
 /// kg/m³, at sea level.
 const RHO_0: f64 = 1.225;
 
-const AIRSPEED: [&str; 7] = ["V", "tas", "vtas", "v_tas", "vt", "v_t", "airspeed"];
+/// No quantity of a model: speeds over ground are recorded beside it.
+const GROUND_SPEED: [&str; 6] = [
+    "gs",
+    "v_gs",
+    "vg",
+    "ground_speed",
+    "groundspeed",
+    "v_ground",
+];
 
 pub(super) fn disagreements(record: &Record<'_>) -> Vec<Finding> {
-    let speed = record.find(&AIRSPEED, Kind::Speed);
-    let Some(speed) = speed else {
+    let Some(speed) = record.of_quantity(Airspeed) else {
         return Vec::new();
     };
-    let pressure = record.find(
-        &["qbar", "q_dyn", "qdyn", "q_bar", "qc", "q_c"],
-        Kind::Pressure,
-    );
-    let density = record.find(&["rho", "density"], Kind::Density);
-    let mach = record.find(&["mach", "ma", "m_a"], Kind::Number);
-    let ground = record.find(
-        &[
-            "gs",
-            "v_gs",
-            "vg",
-            "ground_speed",
-            "groundspeed",
-            "v_ground",
-        ],
-        Kind::Speed,
-    );
+    let pressure = record.of_quantity(DynamicPressure);
+    let density = record.of_quantity(AirDensity);
+    let mach = record.of_quantity(Mach);
+    let ground = record.speed_named(&GROUND_SPEED);
     let mut findings = Vec::new();
     if let Some(pressure) = pressure {
         let ratio = |k: usize| {

@@ -9,9 +9,9 @@
 //! Biases are straight lines in the integrals and are taken out. A flow angle answers to its own integral, too, and where
 //! its vane is ahead of the centre of gravity, to the rate itself: both are columns of the regression.
 
-use crate::flight::{Finding, FindingCode};
+use crate::flight::{Finding, FindingCode, PhysicalQuantity};
 
-use super::record::{Kind, Record, Series};
+use super::record::{Record, Series};
 use super::statistics::{Regression, integral};
 
 /// Samples of a window: long enough for a motion to turn, short enough for biases to be straight lines.
@@ -43,74 +43,58 @@ pub(super) fn disagreements(record: &Record<'_>) -> Vec<Finding> {
 }
 
 fn pairs<'r>(record: &'r Record<'_>) -> Vec<Pair<'r>> {
-    let angle = |names: &[&str]| record.find(names, Kind::Angle);
-    let rate = |names: &[&str]| record.find(names, Kind::Rate);
-    let (p, q, r) = (
-        rate(&["p", "roll_rate", "rollrate"]),
-        rate(&["q", "pitch_rate", "pitchrate"]),
-        rate(&["r", "yaw_rate", "yawrate"]),
-    );
-    let theta = angle(&["theta", "pitch", "the"]);
-    let phi = angle(&["phi", "roll", "bank"]);
-    let psi = angle(&["psi", "heading", "yaw"]);
-    let alpha = angle(&["alpha", "aoa", "alfa", "alpha_v", "alpha_vane"]);
-    let beta = angle(&["beta", "aos", "beta_v", "beta_vane"]);
+    use PhysicalQuantity::{
+        AngleOfAttack, AngleOfSideslip, HeadingAngle, PitchAngle, PitchRate, RollAngle, RollRate,
+        YawRate,
+    };
+    let of = |quantity| record.of_quantity(quantity);
+    let (p, q, r) = (of(RollRate), of(PitchRate), of(YawRate));
+    let (phi, theta, psi) = (of(RollAngle), of(PitchAngle), of(HeadingAngle));
+    let (alpha, beta) = (of(AngleOfAttack), of(AngleOfSideslip));
     let at = |series: Option<&'r Series<'r>>| {
         move |k: usize| series.map_or(0.0, |series| series.values[k])
     };
     let (p_at, q_at, r_at, theta_at, phi_at) = (at(p), at(q), at(r), at(theta), at(phi));
     let about_vertical = move |k: usize| q_at(k) * phi_at(k).sin() + r_at(k) * phi_at(k).cos();
-    let mut pairs = Vec::new();
-    if let (Some(angle), Some(rate)) = (theta, q) {
-        let turns = Box::new(move |k| q_at(k) * phi_at(k).cos() - r_at(k) * phi_at(k).sin());
-        pairs.push(Pair {
-            angle,
-            rate,
-            turns,
-            flows: false,
-            beside: Vec::new(),
-        });
-    }
-    if let (Some(angle), Some(rate)) = (phi, p) {
-        let turns = Box::new(move |k| p_at(k) + theta_at(k).tan() * about_vertical(k));
-        pairs.push(Pair {
-            angle,
-            rate,
-            turns,
-            flows: false,
-            beside: Vec::new(),
-        });
-    }
-    if let (Some(angle), Some(rate)) = (psi, r) {
-        let turns = Box::new(move |k| about_vertical(k) / theta_at(k).cos());
-        pairs.push(Pair {
-            angle,
-            rate,
-            turns,
-            flows: false,
-            beside: Vec::new(),
-        });
-    }
-    if let (Some(angle), Some(rate)) = (alpha, q) {
-        pairs.push(Pair {
-            angle,
-            rate,
-            turns: Box::new(q_at),
-            flows: true,
-            beside: Vec::new(),
-        });
-    }
-    if let (Some(angle), Some(rate)) = (beta, r) {
-        let beside = [p, phi].into_iter().flatten().collect();
-        pairs.push(Pair {
-            angle,
-            rate,
-            turns: Box::new(move |k| -r_at(k)),
+    let attitudes = [
+        pair(theta, q, move |k| {
+            q_at(k) * phi_at(k).cos() - r_at(k) * phi_at(k).sin()
+        }),
+        pair(phi, p, move |k| {
+            p_at(k) + theta_at(k).tan() * about_vertical(k)
+        }),
+        pair(psi, r, move |k| about_vertical(k) / theta_at(k).cos()),
+    ];
+    let flow_angles = [
+        (pair(alpha, q, q_at), Vec::new()),
+        (
+            pair(beta, r, move |k| -r_at(k)),
+            [p, phi].into_iter().flatten().collect(),
+        ),
+    ];
+    let flowing = flow_angles.into_iter().filter_map(|(pair, beside)| {
+        Some(Pair {
             flows: true,
             beside,
-        });
-    }
-    pairs
+            ..pair?
+        })
+    });
+    attitudes.into_iter().flatten().chain(flowing).collect()
+}
+
+/// An angle that its rate alone turns, where both are recorded.
+fn pair<'r>(
+    angle: Option<&'r Series<'r>>,
+    rate: Option<&'r Series<'r>>,
+    turns: impl Fn(usize) -> f64 + 'r,
+) -> Option<Pair<'r>> {
+    Some(Pair {
+        angle: angle?,
+        rate: rate?,
+        turns: Box::new(turns),
+        flows: false,
+        beside: Vec::new(),
+    })
 }
 
 /// The angle over the integral of its rate; `None` where the data do not tell.

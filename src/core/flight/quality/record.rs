@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use crate::flight::{Dimension, Maneuver, Sampling, Unit};
+use crate::flight::{Dimension, Family, Maneuver, PhysicalQuantity, Sampling, Unit, by_name};
 
 /// Time and series of one recording, SI.
 pub struct Record<'a> {
@@ -54,42 +54,27 @@ impl<'a> Record<'a> {
         self.sampling.segments()
     }
 
-    /// The series of one of these names and this kind. A name in lower case is that of any case; `V` is not `v`.
-    pub(super) fn find(&self, names: &[&str], kind: Kind) -> Option<&Series<'a>> {
+    /// The series of a quantity, by its name and unit; of several that with the shortest name, which has no qualifier.
+    pub(super) fn of_quantity(&self, quantity: PhysicalQuantity) -> Option<&Series<'a>> {
+        let is_angle = quantity.is_flow_angle() || quantity.family() == Family::Attitude;
         let is_one = |series: &&Series<'_>| {
-            let name = series.name.to_ascii_lowercase();
-            let is_named = names.contains(&name.as_str()) || names.contains(&series.name);
-            is_named && kind.is_of(series)
+            let dimension = series.unit.dimension;
+            // a load factor is no acceleration in m/s²
+            let is_pure = dimension.is_none() && quantity.family() == Family::Accelerometer;
+            by_name(series.name, dimension) == Some(quantity)
+                && is_angle == series.is_angle
+                && !is_pure
         };
-        self.series.iter().find(is_one)
+        let those = self.series.iter().filter(is_one);
+        those.min_by_key(|series| series.name.len())
     }
-}
 
-/// What a series measures.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    Angle,
-    Rate,
-    Speed,
-    Acceleration,
-    Pressure,
-    Density,
-    Number,
-}
-
-impl Kind {
-    fn is_of(self, series: &Series<'_>) -> bool {
-        let per_second = Dimension::NONE.over(Dimension::SECOND);
-        let speed = Dimension::METRE.times(per_second);
-        let (dimension, is_angle) = (series.unit.dimension, series.is_angle);
-        match self {
-            Self::Angle => is_angle,
-            Self::Number => !is_angle && dimension == Dimension::NONE,
-            Self::Rate => dimension == per_second,
-            Self::Speed => dimension == speed,
-            Self::Acceleration => dimension == speed.times(per_second),
-            Self::Pressure => Unit::parse("Pa").is_ok_and(|unit| unit.dimension == dimension),
-            Self::Density => Unit::parse("kg/m^3").is_ok_and(|unit| unit.dimension == dimension),
-        }
+    /// The speed that has one of these names, in upper or lower case.
+    pub(super) fn speed_named(&self, names: &[&str]) -> Option<&Series<'a>> {
+        let speed = Dimension::METRE.over(Dimension::SECOND);
+        self.series.iter().find(|series| {
+            let name = series.name.to_ascii_lowercase();
+            names.contains(&name.as_str()) && series.unit.dimension == speed
+        })
     }
 }
