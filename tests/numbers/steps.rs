@@ -402,8 +402,8 @@ fn many_steps_are_the_exact_solution() {
     }
 }
 
-/// The filter takes the same steps: with little process noise its estimate is that of output error, and with more steps
-/// the gradient is still that of differences of the cost.
+/// The filter takes the same steps: with little process noise its estimate is that of the exact fit, but for what its noise
+/// model takes: half a standard error.
 #[test]
 fn filter_error_takes_as_many_steps() {
     let (far, result) = {
@@ -450,4 +450,30 @@ fn a_stiff_model_is_refused_by_name() {
     // ten thousand times slower it is integrated
     let (far, _) = distance(&ROLL, &["a", "b"], &[300.0, 2100.0], 10.0, json!({}));
     assert!(far < 0.1, "{far}");
+}
+
+/// A flight that is predicted is stepped as finely as those that were fitted: its error is that of the noise, not of the
+/// integration.
+#[test]
+fn a_prediction_takes_the_steps_of_the_estimate() {
+    let truth = [20.0, 140.0];
+    let [fitted, predicted] = [1e-4, 1.1e-4].map(|noise| recorded(&ROLL, &truth, 10.0, noise).2);
+    let uses = json!([
+        {"id": fitted.digest(), "label": "fitted"},
+        {"id": predicted.digest(), "label": "predicted", "role": "validation"},
+    ]);
+    let plan = plan(
+        (ROLL.model)(&truth),
+        json!({"maneuvers": uses}),
+        &[fitted, predicted],
+    );
+    let result = job::run(&plan, &mut |_| ControlFlow::Continue(())).expect("a result");
+    let steps = result.estimate.integration.as_ref().expect("steps");
+    // two are within reach of the fastest motion
+    assert!(steps.most_steps() > 2, "{steps:?}");
+    let rms = [
+        result.estimate.outputs[0].rms,
+        result.estimate.prediction[0].outputs[0].rms,
+    ];
+    assert!(rms[1] < 1.5 * rms[0], "{rms:?}");
 }

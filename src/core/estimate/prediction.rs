@@ -8,10 +8,12 @@ use crate::estimate::options::Noise;
 use crate::estimate::options::role::Role;
 use crate::estimate::output_error::output_error;
 use crate::estimate::problem::Problem;
+use crate::estimate::problem::substeps::no_longer;
 use crate::estimate::problem::unknowns::Unknowns;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::estimate::Estimate;
 use crate::estimate::report::history::TimeHistory;
+use crate::estimate::report::integration::Integration;
 use crate::estimate::report::iteration::Outcome;
 use crate::estimate::report::prediction::Prediction;
 use crate::model::Per;
@@ -24,6 +26,22 @@ pub struct Validation {
     pub segment: Segment,
     /// Of this segment alone.
     pub unknowns: Unknowns,
+}
+
+impl Validation {
+    /// With integration steps no longer than those that the estimate took more than one of from sample to sample: what is
+    /// fitted and what is predicted are stepped alike.
+    #[must_use]
+    pub fn stepped_as(mut self, problem: &Problem, integration: &Integration) -> Self {
+        let counts = integration.steps_per_sample.iter();
+        let steps = (problem.segments.iter().zip(counts))
+            .filter(|(_, count)| **count > 1)
+            .map(|(segment, count)| segment.steps.longest() / *count as f64);
+        if let Some(longest) = steps.reduce(f64::min) {
+            self.segment.substeps = no_longer(&self.segment, longest);
+        }
+        self
+    }
 }
 
 /// Predicts a segment with the estimate of `problem`: θ and R, SI.

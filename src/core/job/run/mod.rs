@@ -42,7 +42,11 @@ fn fit(
     } = estimate(problem, watcher).map_err(|why| no_start(problem, why))?;
     if result.outcome != Outcome::Cancelled {
         for validation in &plan.validation {
-            let (prediction, history) = predict(problem, &theta, &covariance, validation);
+            let mut validation = validation.clone();
+            if let Some(integration) = &result.integration {
+                validation = validation.stepped_as(problem, integration);
+            }
+            let (prediction, history) = predict(problem, &theta, &covariance, &validation);
             result.prediction.push(prediction);
             histories.extend(history);
         }
