@@ -1,6 +1,5 @@
 //! Integration steps as short as an estimate is worth: shorter ones where halving them would move a parameter noticeably.
 
-use crate::estimate::options::steps::StepsPerSample;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::substeps::{REACH, is_automatic, shortened};
 use crate::estimate::report::estimate::Estimate;
@@ -46,9 +45,10 @@ pub(crate) fn with_finer(problem: &Problem, found: &Estimate) -> Option<Problem>
     for segment in &mut finer.segments {
         segment.substeps = shortened(segment, factor);
     }
-    let most = finer.segments.iter().map(|segment| segment.most_substeps());
     let steps: usize = (finer.segments.iter())
         .map(|segment| segment.most_substeps() * segment.len())
         .sum();
-    (most.max()? < StepsPerSample::MOST && steps <= MOST_STEPS).then_some(finer)
+    let is_finer = (finer.segments.iter().zip(&problem.segments))
+        .any(|(now, before)| now.most_substeps() > before.most_substeps());
+    (is_finer && steps <= MOST_STEPS).then_some(finer)
 }

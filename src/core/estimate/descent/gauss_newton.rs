@@ -10,6 +10,9 @@ use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::progress::Observer;
 
+/// A minimum is another one where -ln L differs by more than this.
+const ANOTHER: f64 = 0.1;
+
 /// Goes down from a θ until there is a reason to stop. Where one method has not ended when half of the budget is used up,
 /// the other begins at the start again.
 ///
@@ -28,8 +31,8 @@ pub(crate) fn descend<'p>(
     let mut search = Search::new(problem, fallback.method());
     let mut taken = Taken::default();
     let mut iteration = 0;
-    let mut spent: Option<Iterate> = None;
-    let stopped = loop {
+    let mut spent: Option<(Iterate, f64)> = None;
+    let mut stopped = loop {
         if observer(&current.report(problem, iteration, &taken)).is_break() {
             break Stopped::OnRequest;
         }
@@ -47,7 +50,7 @@ pub(crate) fn descend<'p>(
             && let Ok(first) = Iterate::at(problem, &mut evaluator, start.clone())
         {
             search = Search::new(problem, fallback.method());
-            spent = Some(std::mem::replace(&mut current, first));
+            spent = Some((std::mem::replace(&mut current, first), distance));
             taken = Taken::default();
             iteration += 1;
             continue;
@@ -67,12 +70,16 @@ pub(crate) fn descend<'p>(
             Err(Nothing { in_range: false }) => break Stopped::Diverged,
         }
     };
-    // neither method has ended: what came nearest
+    // what came nearest; a minimum that lies above where the first method had come is a false one, and no end
     let ended = matches!(stopped, Stopped::Minimum { .. });
-    if let Some(spent) =
-        spent.filter(|spent| !ended && spent.weighting.cost < current.weighting.cost)
+    let margin = if ended { ANOTHER } else { 0.0 };
+    if let Some((nearest, distance)) =
+        spent.filter(|(spent, _)| spent.weighting.cost < current.weighting.cost - margin)
     {
-        current = spent;
+        current = nearest;
+        if ended {
+            stopped = Stopped::Budget { distance };
+        }
     }
     Ok(Descent {
         evaluator,

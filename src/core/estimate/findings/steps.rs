@@ -35,7 +35,9 @@ fn too_long(problem: &Problem, found: &Estimate) -> Option<Finding> {
         integration.most_steps()
     );
     let remedy = match problem.options.steps_per_sample {
-        StepsPerSample::Number(_) => "say \"steps_per_sample\": \"auto\", or a larger number",
+        StepsPerSample::Number(_) => {
+            "say \"steps_per_sample\" with a larger number, or, in an estimation, \"auto\""
+        }
         StepsPerSample::Auto(_) => {
             "use the integrator \"rk4\", say \"steps_per_sample\" with a larger number, or record at a higher rate"
         }

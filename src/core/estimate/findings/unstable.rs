@@ -5,6 +5,7 @@ use crate::estimate::options::estimator::Estimator;
 use crate::estimate::options::technique::Derivatives;
 use crate::estimate::problem::Problem;
 use crate::estimate::report::estimate::Estimate;
+use crate::estimate::report::iteration::Outcome;
 use crate::estimate::report::progress::unobserved;
 use crate::flight::{Finding, FindingCode, five_digits};
 use crate::simulate::{Rates, StateMatrixAt, Steps};
@@ -20,7 +21,8 @@ const MOST_ITERATIONS: usize = 50;
 
 /// With the start values the model grows so fast that no simulation follows it.
 pub(super) fn finding(problem: &Problem, found: &Estimate) -> Option<Finding> {
-    if problem.options.estimator != Estimator::OutputError {
+    let by_simulation = problem.options.estimator == Estimator::OutputError;
+    if !by_simulation || found.outcome == Outcome::Cancelled {
         return None;
     }
     let (theta, mut parameters) = (problem.unknowns.start(), Vec::new());

@@ -22,7 +22,7 @@ pub enum StepsPerSample {
 pub enum Auto {
     /// With `rk4`: one, or more where the fastest eigenvalue times the step would be above 1, and where halving the step
     /// would move a parameter by more than 0.05 of its standard errors. With `euler` and `rk2`, which are there for
-    /// comparison: one.
+    /// comparison: one. A diagnosis keeps the steps with which it begins, so that all models are stepped alike.
     #[default]
     Auto,
 }
