@@ -62,10 +62,7 @@ fn cut<'m>(
 ) -> Result<Vec<Stretch<'m>>, Fault> {
     let usage = &spec.maneuvers[index];
     let sampling = maneuver.sampling();
-    let name = usage
-        .label
-        .clone()
-        .unwrap_or_else(|| (index + 1).to_string());
+    let name = spec.label(index);
     let gaps: Vec<&Gap> = (sampling.gaps.iter())
         .filter(|gap| rows.start < gap.before && gap.before < rows.end)
         .collect();
@@ -105,9 +102,7 @@ fn cut<'m>(
             message,
         ));
     }
-    for (gap, done) in gaps.iter().zip(&done) {
-        findings.push(finding(&name, index, gap, sampling.step, done));
-    }
+    findings.extend(told(&name, index, sampling.step, &gaps, &done));
     let mut parts: Vec<(Range<usize>, Vec<Bridge>)> = vec![(rows.start..rows.start, Vec::new())];
     for (gap, done) in gaps.iter().zip(&done) {
         let last = parts.len() - 1;
@@ -202,6 +197,21 @@ fn short_lag(values: &[f64], segments: &[Range<usize>]) -> Option<usize> {
         lag += (lag / 8).max(1);
     }
     None
+}
+
+/// What was done with each gap; of those that are integrated through, which may be many, the first ones, and how many more.
+fn told(name: &str, index: usize, step: f64, gaps: &[&Gap], done: &[Done]) -> Vec<Finding> {
+    let is_through = |(_, done): &(&&Gap, &Done)| matches!(done, Done::Through(_));
+    let (through, others): (Vec<_>, Vec<_>) = gaps.iter().zip(done).partition(is_through);
+    let tell = |(gap, done): (&&Gap, &Done)| finding(name, index, gap, step, done);
+    let mut findings: Vec<Finding> = others.into_iter().map(tell).collect();
+    let more = through.len().saturating_sub(Finding::ROWS_LISTED);
+    findings.extend(through.into_iter().take(Finding::ROWS_LISTED).map(tell));
+    if let Some(last) = findings.last_mut().filter(|_| more > 0) {
+        last.message = format!("{}; so are {more} more gaps", last.message);
+        last.count += more;
+    }
+    findings
 }
 
 fn finding(name: &str, index: usize, gap: &Gap, step: f64, done: &Done) -> Finding {

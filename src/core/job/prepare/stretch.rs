@@ -76,6 +76,8 @@ pub(super) struct Stretch<'m> {
 struct Filled {
     time: Vec<f64>,
     channels: IndexMap<String, Vec<f64>>,
+    /// By sample the row that it is, if any.
+    origin: Vec<Option<usize>>,
     /// The samples that were put in.
     inserted: Vec<Range<usize>>,
 }
@@ -106,17 +108,17 @@ impl<'m> Stretch<'m> {
         }
     }
 
-    /// With samples put into gaps, evenly between the rows at both sides.
+    /// With samples put into gaps, evenly between the rows at both sides; gaps stand in their order.
     pub(super) fn through(mut self, bridges: &[Bridge]) -> Self {
         if bridges.is_empty() {
             return self;
         }
         let recorded = self.maneuver.time();
         let (mut time, mut inserted) = (Vec::new(), Vec::new());
-        // by sample: the row that it is, if any
         let mut origin: Vec<Option<usize>> = Vec::new();
+        let mut bridges = bridges.iter().peekable();
         for row in self.rows.clone() {
-            if let Some(bridge) = bridges.iter().find(|bridge| bridge.before == row) {
+            if let Some(bridge) = bridges.next_if(|bridge| bridge.before == row) {
                 let (from, to) = (recorded[row - 1], recorded[row]);
                 let count = bridge.samples;
                 inserted.push(time.len()..time.len() + count);
@@ -137,6 +139,7 @@ impl<'m> Stretch<'m> {
         self.filled = Some(Filled {
             channels: channels.collect(),
             time,
+            origin,
             inserted,
         });
         self
@@ -157,19 +160,22 @@ impl<'m> Stretch<'m> {
 
     /// The row of the recording that a sample is, from 0; of one that was put in, the row behind it.
     pub(super) fn row(&self, sample: usize) -> usize {
-        let before = self.inserted().iter();
-        let put_in: usize = before
-            .map(|range| sample.min(range.end).saturating_sub(range.start))
-            .sum();
-        self.rows.start + sample - put_in
+        let mut onwards = sample..self.len();
+        onwards
+            .find_map(|sample| self.own_row(sample))
+            .unwrap_or(self.rows.end)
     }
 
     /// The samples that are rows of the recording, with their rows.
     pub(super) fn recorded(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let is_row = |sample: &usize| !self.inserted().iter().any(|range| range.contains(sample));
-        (0..self.len())
-            .filter(is_row)
-            .map(|sample| (sample, self.row(sample)))
+        (0..self.len()).filter_map(|sample| Some((sample, self.own_row(sample)?)))
+    }
+
+    fn own_row(&self, sample: usize) -> Option<usize> {
+        match &self.filled {
+            Some(filled) => filled.origin[sample],
+            None => Some(self.rows.start + sample),
+        }
     }
 }
 
