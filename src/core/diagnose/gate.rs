@@ -241,11 +241,9 @@ fn predictive(
         );
         return Err((Refusal::NotPredictive, why));
     }
-    let by_chance = expected - SPREADS * expected.sqrt();
-    let least_gain = by_chance.min(LEAST_GAIN + LEAST_SHARE * expected);
     // what speaks for it on all flights together
     let in_all = trial.likelihood_ratio + gain;
-    if expected >= HEARD && (gain < least_gain || in_all < least) {
+    if expected >= HEARD && (gain < least_gain(expected) || in_all < least) {
         let why = format!(
             "it differs between maneuvers: flights that were not fitted are not predicted better with it (gain {gain:.1}, where {expected:.1} is expected)"
         );
@@ -260,8 +258,14 @@ fn predictive(
     Ok(gains)
 }
 
-/// What smaller plain errors are worth: on flights that were not fitted, or where all were, on these. `None` of what does
-/// not repeat, and of innovations, which are no such errors.
+/// The gain below which flights that were not fitted speak against an effect that should bring `expected`.
+fn least_gain(expected: f64) -> f64 {
+    let by_chance = expected - SPREADS * expected.sqrt();
+    by_chance.min(LEAST_GAIN + LEAST_SHARE * expected)
+}
+
+/// What smaller plain errors are worth: on flights that were not fitted, or where all were, on these. `None` of a gust,
+/// which other flights do not have, and of innovations, which are no such errors.
 fn plain_gain(
     null: &NullModel<'_>,
     effect: &Effect,
@@ -281,4 +285,17 @@ fn decides(effect: &Effect, role: AddedRole) -> bool {
     use AddedRole::{Delay, Steepness, TimeConstant};
     let is_stall = effect.kind == EffectKind::Edit(EditKind::StallHysteresis);
     !(is_stall && matches!(role, Steepness | TimeConstant | Delay))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A gain is by chance as far below E as six spreads of √E; where E is large a tenth of it must be there.
+    #[test]
+    fn what_chance_makes_is_not_held_against_an_effect() {
+        for (expected, least) in [(9.0, -9.0), (36.0, 0.0), (49.0, 6.9), (400.0, 42.0)] {
+            assert!((least_gain(expected) - least).abs() < 1e-12, "{expected}");
+        }
+    }
 }

@@ -3,7 +3,7 @@
 //! [`diagnose`] fits the declared model, and goes in rounds: it screens the catalogue of effects against the residual
 //! (projecting out all that the declared parameters can imitate, the residual whitened), fits what is promising,
 //! accepts an effect that is significant by a colour-aware likelihood, within its physical range, alike in all parts
-//! of the data, and that helps to predict flights which were not fitted. What the data cannot tell apart is one alias
+//! of the data, and that is borne out by flights which were not fitted, as far as chance allows. What the data cannot tell apart is one alias
 //! group, what they cannot show is reported as invisible. An [`Effect`] is an edit of the model document, so that
 //! what results is a document again.
 //!

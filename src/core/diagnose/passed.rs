@@ -18,7 +18,8 @@ pub(super) struct Passed {
     pub settled: Fitted,
     /// By output, N ln(σ0²/σ1²) on flights that were not fitted; empty where there are none.
     pub gains: Vec<OutputGain>,
-    /// Their sum; where all flights were fitted, that of these. `None` of what does not repeat.
+    /// Their sum; where all flights were fitted, that of these. `None` of what no flight can tell: process noise, and a gust
+    /// of flights that were not fitted.
     pub plain_gain: Option<f64>,
 }
 

@@ -349,7 +349,7 @@ fn choose(mut passed: Vec<Passed>, threshold: Threshold, result: &mut Round) {
     let group = group(&best, &others);
     for other in &others {
         let why = format!(
-            "{} explains the data and predicts the flights that were not fitted better, by {:.1}",
+            "{} is the better explanation, by {:.1} (gains of the likelihood and of plain errors, less the price of parameters and of an unusual size)",
             best.trial.effect.name(),
             best.merit() - other.merit()
         );

@@ -15,6 +15,17 @@ const BEFORE: [&str; 9] = [
     "corrected ",
 ];
 
+/// Words with which a motion is not what is described, but what is wanted or wrong of it.
+const NOT_ITSELF: [&str; 7] = [
+    "bias",
+    "error",
+    "command",
+    "commanded",
+    "demand",
+    "demanded",
+    "reference",
+];
+
 /// What a description begins with, and what that is. Of two that begin alike the longer comes first.
 #[rustfmt::skip]
 const WORDS: [(&str, PhysicalQuantity); 71] = {
@@ -106,7 +117,9 @@ pub fn by_description(description: &str, dimension: Dimension) -> Option<Physica
         rest.strip_prefix(words).is_some_and(ends)
     };
     let (_, quantity) = WORDS.iter().find(begins)?;
-    quantity.measures(dimension).then_some(*quantity)
+    let mut words = rest.split(|c: char| !c.is_alphanumeric());
+    let is_another = !quantity.is_control() && words.any(|word| NOT_ITSELF.contains(&word));
+    (!is_another && quantity.measures(dimension)).then_some(*quantity)
 }
 
 #[cfg(test)]
@@ -134,6 +147,9 @@ mod tests {
             // not in this unit, not at the beginning, no whole word
             ("pitch rate", "rad", None),
             ("bias of the pitch rate", "rad/s", None),
+            ("pitch rate bias", "rad/s", None),
+            ("commanded pitch rate", "rad/s", None),
+            ("pitch attitude command", "rad", None),
             ("pitch rates", "rad/s", None),
             ("", "rad/s", None),
         ] {

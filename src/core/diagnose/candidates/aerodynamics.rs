@@ -101,11 +101,12 @@ impl Subject<'_> {
 }
 
 /// Whether a definition of which nothing else is known can be a force or a moment: a coefficient, or over mass or inertia.
+/// An angle is none.
 fn may_be_a_force(unit: &str) -> bool {
     let per_second = |dimension: Dimension| dimension.over(Dimension::SECOND);
-    Unit::parse(unit).is_ok_and(|unit| {
-        let dimension = unit.dimension;
-        dimension.is_none()
+    Unit::parse(unit).is_ok_and(|parsed| {
+        let dimension = parsed.dimension;
+        (dimension.is_none() && Unit::si_name(unit) != "rad")
             || dimension == per_second(per_second(Dimension::NONE))
             || dimension == per_second(per_second(Dimension::METRE))
     })

@@ -61,7 +61,7 @@ const TABLE: [(EditKind, Instrument, f64, f64, f64); 25] = {
         (SensorPosition, Vane, -15.0, 15.0, 5.0),
         (SensorPosition, Accelerometer, -3.0, 3.0, 1.0),
         (SensorLag, Vane, 0.0, 1.0, 0.1),
-        (SensorLag, Airspeed, 0.0, 3.0, 0.3),
+        (SensorLag, Airspeed, 0.0, 2.0, 0.3),
         (SensorLag, Gyro, 0.0, 1.0, 0.05),
         (SensorLag, Accelerometer, 0.0, 1.0, 0.05),
         (ActuatorLag, Control, 0.0, 1.0, 0.1),
