@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use super::Failure;
 use super::mapping::MappingOption;
+use super::notes;
 use super::recording::{format_of, read_bytes, refused};
 use super::table::bordered;
-use crate::flight::Finding;
 use crate::ingest::{self, IngestError, Inspection, Limits, Reading, summary};
 
 /// Prints what is found in a recording: of a table how it is written, its columns, what they are read as, and a draft
@@ -82,11 +82,11 @@ fn recording(reading: &Reading) -> String {
         summary.segments,
         names.join(", ")
     );
-    let say = |finding: &Finding| {
-        let channel = finding.channel.as_ref();
-        let channel = channel.map_or(String::new(), |name| format!("{name}: "));
-        format!("note: {channel}{}; {}\n", finding.message, finding.remedy)
-    };
-    text.extend(reading.findings.iter().chain(&summary.findings).map(say));
+    let findings = [reading.findings.as_slice(), summary.findings.as_slice()].concat();
+    text.extend(
+        notes::lines(&findings)
+            .iter()
+            .map(|line| format!("{line}\n")),
+    );
     text
 }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::Failure;
+use super::notes;
 use crate::flight::{Finding, Maneuver};
 use crate::ingest::{self, Format, IngestError, Limits, Mapping};
 
@@ -33,9 +34,8 @@ pub(super) fn read_recording(file: &Path, mapping: Option<&Mapping>) -> Result<M
 }
 
 fn say(file: &Path, findings: &[Finding]) {
-    for finding in findings {
-        let file = file.display();
-        eprintln!("note: {file}: {}; {}", finding.message, finding.remedy);
+    for line in notes::lines(findings) {
+        eprintln!("{}: {line}", file.display());
     }
 }
 
