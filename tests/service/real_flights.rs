@@ -147,6 +147,7 @@ fn lateral_motion_is_predicted_better() {
     let diagnosis = diagnosis.unwrap();
     assert!(!diagnosis.effects.is_empty());
     assert_eq!(diagnosis.verdict, Verdict::Unexplained);
+    // 4 % worse: a delay of p and r, and a term in p, do nothing for the side force, which lacks something else
     assert_eq!(
         not_better(&diagnosis),
         (vec!["ay of aileron-final".into()], 6)
