@@ -25,22 +25,26 @@ pub(super) fn text<'a>(bytes: &'a [u8], charset: Option<&str>) -> Result<Decoded
     };
     let mut findings = Vec::new();
     let text = match encoding {
-        Encoding::Utf8 => without_zeros(bytes, &mut findings)?,
+        Encoding::Utf8 => match without_zeros(bytes, &mut findings) {
+            Cow::Borrowed(bytes) => Cow::Borrowed(decode(bytes)?),
+            Cow::Owned(bytes) => Cow::Owned(decode(&bytes)?.to_string()),
+        },
         Encoding::Utf16 { is_big } => {
             let body = bytes
                 .strip_prefix(if is_big { b"\xfe\xff" } else { b"\xff\xfe" })
                 .unwrap_or(bytes);
-            Cow::Owned(utf16(body, is_big)?)
+            let units = without_zeros(&utf16_units(body, is_big), &mut findings).into_owned();
+            Cow::Owned(utf16(units)?)
         }
         Encoding::Windows1252 => {
             if charset.is_none() {
                 findings.push(note(
                     FindingCode::Encoding,
                     "the file is not UTF-8; it was read as Windows-1252 (Latin-1)".to_string(),
-                    "where titles look wrong, say the charset, as Content-Type: text/csv; charset=utf-16",
+                    "where it is, say so, as Content-Type: text/csv; charset=iso-8859-1; where titles look wrong, save it as UTF-8",
                 ));
             }
-            Cow::Owned(windows_1252(bytes))
+            Cow::Owned(windows_1252(&without_zeros(bytes, &mut findings)))
         }
     };
     if text.trim().is_empty() {
@@ -130,35 +134,37 @@ impl Encoding {
     }
 }
 
-/// UTF-8 with each run of zero bytes taken for the end of a line.
-fn without_zeros<'a>(bytes: &'a [u8], findings: &mut Vec<Finding>) -> Result<Cow<'a, str>, Fault> {
-    if memchr::memchr(0, bytes).is_none() {
-        return decode(bytes).map(Cow::Borrowed);
+/// Bytes, or units of UTF-16, with each run of zeros taken for the end of a line.
+fn without_zeros<'a, U>(units: &'a [U], findings: &mut Vec<Finding>) -> Cow<'a, [U]>
+where
+    U: Copy + PartialEq + From<u8>,
+{
+    let is_zero = |unit: &U| *unit == U::from(0);
+    let zeros = units.iter().filter(|unit| is_zero(unit)).count();
+    if zeros == 0 {
+        return Cow::Borrowed(units);
     }
-    let zeros = bytes.iter().filter(|&&byte| byte == 0).count();
-    if zeros == bytes.len() {
-        return Err(empty());
-    }
-    let message = format!("{zeros} zero bytes are left out: blocks that were never written");
+    let message = format!(
+        "{} zero bytes are left out: blocks that were never written",
+        zeros * size_of::<U>()
+    );
     findings.push(note(
         FindingCode::ZeroBytes,
         message,
         "nothing needs to be done where the recording ends before them",
     ));
-    let mut kept = Vec::with_capacity(bytes.len() - zeros + 1);
-    for part in bytes
-        .split(|&byte| byte == 0)
-        .filter(|part| !part.is_empty())
-    {
-        if !kept.is_empty() && !kept.ends_with(b"\n") {
-            kept.push(b'\n');
+    let end_of_line = U::from(b'\n');
+    let mut kept = Vec::with_capacity(units.len() - zeros + 1);
+    for part in units.split(is_zero).filter(|part| !part.is_empty()) {
+        if kept.last().is_some_and(|last| *last != end_of_line) {
+            kept.push(end_of_line);
         }
         kept.extend_from_slice(part);
     }
-    decode(&kept).map(|text| Cow::Owned(text.to_string()))
+    Cow::Owned(kept)
 }
 
-fn utf16(body: &[u8], is_big: bool) -> Result<String, Fault> {
+fn utf16_units(body: &[u8], is_big: bool) -> Vec<u16> {
     let units = body.chunks_exact(2).map(|pair| {
         let pair = [pair[0], pair[1]];
         if is_big {
@@ -167,10 +173,13 @@ fn utf16(body: &[u8], is_big: bool) -> Result<String, Fault> {
             u16::from_le_bytes(pair)
         }
     });
-    let text: Result<String, _> = char::decode_utf16(units).collect();
-    let text =
-        text.map_err(|_| of_file(code::NOT_UTF8, "this is not UTF-16; save the file as UTF-8"))?;
-    Ok(text.trim_start_matches('\u{feff}').replace('\0', ""))
+    units.collect()
+}
+
+fn utf16(units: Vec<u16>) -> Result<String, Fault> {
+    let text = String::from_utf16(&units)
+        .map_err(|_| of_file(code::NOT_UTF8, "this is not UTF-16; save the file as UTF-8"))?;
+    Ok(text.trim_start_matches('\u{feff}').to_string())
 }
 
 /// What 0x80 to 0x9f are; 0 where it is no character.
@@ -188,11 +197,7 @@ fn windows_1252(bytes: &[u8]) -> String {
         },
         _ => char::from(byte),
     };
-    bytes
-        .iter()
-        .filter(|&&byte| byte != 0)
-        .map(character)
-        .collect()
+    bytes.iter().map(character).collect()
 }
 
 #[cfg(test)]
@@ -241,6 +246,19 @@ mod tests {
             text(b"t,a\n0,1\0\0\x001,2\n", None).unwrap().text,
             "t,a\n0,1\n1,2\n"
         );
+        let block = "20;1\0\0\0\02.5;\u{b0}\0";
+        let latin: Vec<u8> = block.chars().map(|c| c as u8).collect();
+        let little: Vec<u8> = block.encode_utf16().flat_map(u16::to_le_bytes).collect();
+        for (bytes, charset, zeros) in [(latin, "latin1", "5"), (little, "utf-16", "10")] {
+            let decoded = text(&bytes, Some(charset)).unwrap();
+            assert_eq!(decoded.text, "20;1\n2.5;\u{b0}", "{charset}");
+            let told = &decoded.findings[0];
+            assert_eq!(told.code, "zero_bytes", "{charset}");
+            assert!(
+                told.message.starts_with(&format!("{zeros} zero bytes")),
+                "{told:?}"
+            );
+        }
         assert_eq!(text(&[0; 99], None).err().unwrap().code, code::EMPTY_BODY);
     }
 }

@@ -60,8 +60,11 @@ impl<'a> Lines<'a> {
 fn with_quoted_breaks(bytes: &[u8], first_end: usize) -> (usize, usize) {
     let mut end = first_end;
     let mut breaks = 0;
+    let mut quotes = 0;
+    let mut counted = 0;
     loop {
-        let quotes = memchr::memchr_iter(b'"', &bytes[..end]).count();
+        quotes += memchr::memchr_iter(b'"', &bytes[counted..end]).count();
+        counted = end;
         if quotes.is_multiple_of(2) {
             return (end, breaks);
         }
@@ -171,6 +174,11 @@ mod tests {
     fn a_quoted_cell_may_hold_line_ends() {
         let text = "a,\"one\ntwo\",b\nc,\"3\",d\n";
         assert_eq!(numbered(text), [(1, "a,\"one\ntwo\",b"), (3, "c,\"3\",d")]);
+        let chain = format!("\"x\n{}y\"\nz\n", "y\",\"x\n".repeat(3));
+        assert_eq!(
+            numbered(&chain),
+            [(1, chain[..chain.len() - 3].trim_end()), (6, "z")]
+        );
         let forgotten = "a,\"1\nb,2\nc,3\n";
         assert_eq!(numbered(forgotten).len(), 3);
     }

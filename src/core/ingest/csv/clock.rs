@@ -83,7 +83,7 @@ impl Clock {
             None => (self.number(cell)? * 1e9) as i128,
         };
         let first = *self.first.get_or_insert(now);
-        Ok(unit.to_si((now - first) as f64 / 1e9))
+        Ok(unit.to_si(now.saturating_sub(first) as f64 / 1e9))
     }
 
     /// Seconds since the first time stamp.
@@ -134,6 +134,14 @@ mod tests {
         assert_eq!(clock.read("1795255200.123456789", ""), Ok(0.0));
         assert_eq!(clock.read("\"1795255201.123456799\"", ""), Ok(1.000_000_01));
         assert_eq!(clock.read("", ""), Err(None));
+    }
+
+    #[test]
+    fn an_epoch_has_no_end() {
+        let unit = Unit::parse("s").unwrap();
+        let mut clock = Clock::new(Time::Epoch { at: 0, unit }, Marks::POINT);
+        assert_eq!(clock.read("-1e300", ""), Ok(0.0));
+        assert!(clock.read("1e300", "").is_ok_and(f64::is_finite));
     }
 
     #[test]

@@ -197,3 +197,32 @@ fn channels_with_a_column_of_times_keep_their_samples() {
     let tables = "[tables]\nAIR = {from = \"t_air\"}\n";
     assert_eq!(refused(tables), ["invalid_mapping /tables"]);
 }
+
+#[test]
+fn units_that_a_file_states_go_before_those_of_a_recognised_mapping() {
+    let first = |text: &str, name: &str| {
+        let maneuver = read_text(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+        let channel = &maneuver.channels()[name];
+        (channel.values[0], channel.recorded_unit.clone())
+    };
+    let sky_view = "Session Time,GPS Fix Quality,True Airspeed (km/h),Pressure Altitude (m),Pitch\n1,2,180,1000,180\n2,2,180,1000,180\n";
+    assert_eq!(first(sky_view, "V"), (50.0, "km/h".to_string()));
+    assert_eq!(first(sky_view, "h"), (1000.0, "m".to_string()));
+    // where it states none, or none that can be read, the mapping's
+    assert_eq!(
+        first(sky_view, "theta"),
+        (std::f64::consts::PI, "deg".to_string())
+    );
+    let unread = sky_view.replace("Pitch", "Pitch (furlong)");
+    assert_eq!(first(&unread, "theta"), first(sky_view, "theta"));
+    let jsbsim =
+        "Time (ms),Altitude ASL (ft),Alpha (rad),Q (rad/s)\n0,4200,0.25,0.5\n20,4200,0.25,0.5\n";
+    assert_eq!(first(jsbsim, "alpha"), (0.25, "rad".to_string()));
+    assert_eq!(first(jsbsim, "q"), (0.5, "rad/s".to_string()));
+    assert_eq!(read_text(jsbsim).unwrap().time(), [0.0, 0.02]);
+    // a mapping that was given says it
+    let given = "time = {from = \"Time\", unit = \"s\"}\n[channels]\nalpha = {from = \"Alpha\", unit = \"deg\"}\n";
+    let maneuver = mapped(given, jsbsim).unwrap();
+    assert_eq!(maneuver.channels()["alpha"].recorded_unit, "deg");
+    assert_eq!(maneuver.time(), [0.0, 20.0]);
+}

@@ -8,7 +8,8 @@ use super::super::{
     code,
     fault::of_file,
     lines::{Line, Lines},
-    mapping::Mapping,
+    mapping::{Mapping, Titles as Wanted},
+    units::RecordedUnit,
 };
 use super::{
     decimal,
@@ -80,7 +81,9 @@ impl<'a> Table<'a> {
             .flatten();
         let (recognised, mapping) = match (mapping, recognised) {
             (Some(mapping), _) => (None, Cow::Borrowed(mapping)),
-            (None, Some((name, mapping))) => (Some(name), Cow::Borrowed(mapping)),
+            (None, Some((name, mapping))) => {
+                (Some(name), Cow::Owned(without_units_of(&titles, mapping)))
+            }
             (None, None) => (None, Cow::Owned(Mapping::default())),
         };
         Ok(Self {
@@ -138,6 +141,26 @@ impl<'a> Table<'a> {
             is_cut_off: !self.rows.rest().ends_with(['\n', '\r']),
         }
     }
+}
+
+/// A mapping that was only recognised says no unit where the file states one that can be read.
+fn without_units_of(titles: &Titles, mapping: &Mapping) -> Mapping {
+    let stated = |from: &Wanted| {
+        let label = titles.find(from).and_then(|at| titles.label(at)).ok()?;
+        Some(label.unit).filter(|unit| !unit.is_empty())
+    };
+    let mut mapping = mapping.clone();
+    let time = &mut mapping.time;
+    let of_time = time.from.as_ref().and_then(stated);
+    if of_time.is_some_and(|unit| RecordedUnit::parse_time(unit).is_ok()) {
+        time.unit.clear();
+    }
+    for channel in mapping.channels.values_mut() {
+        if stated(&channel.from).is_some_and(|unit| RecordedUnit::parse(unit).is_ok()) {
+            channel.unit.clear();
+        }
+    }
+    mapping
 }
 
 fn said(mapping: Option<&Mapping>) -> Result<Said, Fault> {

@@ -303,6 +303,37 @@ fn faults_of_time_stamps_name_their_line() {
 }
 
 #[test]
+fn a_date_of_any_characters_is_a_fault() {
+    let text = "Date,Time,a\n2026-11-21,10:15:19,1\nabc€de,10:15:20,1.5\n2026-11-21,10:15:21,2\n";
+    assert_eq!(faults(text), ["not_a_number /rows/2/Time"]);
+}
+
+#[test]
+fn no_repetition_takes_long() {
+    let length = 1 << 20;
+    for piece in [
+        "\"x\ny\",",
+        "\"",
+        "\"\n",
+        "a,\"",
+        ",",
+        ";",
+        "| ",
+        "\r",
+        "#\n",
+        "[",
+        "x\n",
+        "1 ",
+        "\0",
+    ] {
+        let repeated = piece.repeat(length / piece.len());
+        for text in [format!("t[s],a\n0,1\n1,2\n{repeated}"), repeated] {
+            let _ = read_text(&text);
+        }
+    }
+}
+
+#[test]
 fn a_refusal_brings_the_draft_of_a_mapping() {
     let error = read_text("Zeit,Elev Pos,mode\n0,1,a\n1,2,b\n").unwrap_err();
     let draft = Mapping::from_json(error.draft().unwrap())

@@ -12,6 +12,9 @@ const MONTHS: [&str; 12] = [
 
 /// Reads a date; `None` if the text is none.
 pub(super) fn date(text: &str) -> Option<Readings> {
+    if !text.is_ascii() {
+        return None;
+    }
     let fields: Vec<&str> = text
         .split(['-', '/', '.', ' ', ','])
         .filter(|field| !field.is_empty())
@@ -19,7 +22,7 @@ pub(super) fn date(text: &str) -> Option<Readings> {
     let only = |day: i64| Some([Some(day); 2]);
     match *fields.as_slice() {
         // 21NOV2026
-        [packed] if packed.len() == 9 && packed.is_ascii() => {
+        [packed] if packed.len() == 9 => {
             let (of, rest) = packed.split_at(2);
             let (name, year) = rest.split_at(3);
             only(day(number(year)?, month(name)?, number(of)?)?)
@@ -116,6 +119,8 @@ mod tests {
             "2026-13-01",
             "a-b-2026",
             "99999999",
+            "abc€de",
+            "€-abc",
         ] {
             assert_eq!(date(text), None, "{text}");
         }

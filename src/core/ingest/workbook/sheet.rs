@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 
 use super::super::{Limits, code, fault::of_file};
+use super::damaged;
 use super::stamp::stamp;
 use super::strings::Strings;
 use super::styles::{Shows, Styles};
@@ -18,6 +19,8 @@ pub(super) struct Look {
 
 /// Columns that a sheet can have.
 const MOST_COLUMNS: usize = 16_384;
+/// Rows that a sheet can have.
+const MOST_ROWS: usize = 1_048_576;
 /// Empty rows that are written, so that lines have the numbers of rows.
 const MOST_EMPTY: usize = 1000;
 
@@ -28,7 +31,7 @@ const MOST_EMPTY: usize = 1000;
 pub(super) fn to_csv(part: &str, look: &Look, limits: &Limits) -> Result<Option<String>, Fault> {
     let mut used: Option<RangeInclusive<usize>> = None;
     let mut rows = 0;
-    cells(part, look, |row| {
+    cells(part, look, limits, |row| {
         let columns = row
             .cells
             .iter()
@@ -49,7 +52,7 @@ pub(super) fn to_csv(part: &str, look: &Look, limits: &Limits) -> Result<Option<
     };
     let mut csv = String::new();
     let mut line = 1;
-    cells(part, look, |row| {
+    cells(part, look, limits, |row| {
         // rows in wrong order have no number that lines could have
         if row.number > line {
             let empty = row.number - line;
@@ -68,15 +71,19 @@ pub(super) fn to_csv(part: &str, look: &Look, limits: &Limits) -> Result<Option<
         (next..*used.end()).for_each(|_| csv.push(','));
         csv.push('\n');
         if csv.len() > limits.max_bytes {
-            let message = format!(
-                "the sheet is longer than {} bytes as CSV, the longest body that is taken; send fewer rows or columns",
-                limits.max_bytes
-            );
-            return Err(of_file(code::UNPACKED_TOO_LARGE, message));
+            return Err(too_long(limits));
         }
         Ok(())
     })?;
     Ok(Some(csv))
+}
+
+fn too_long(limits: &Limits) -> Fault {
+    let message = format!(
+        "the sheet is longer than {} bytes as CSV, the longest body that is taken; send fewer rows or columns",
+        limits.max_bytes
+    );
+    of_file(code::UNPACKED_TOO_LARGE, message)
 }
 
 /// A row with its cells as CSV writes them, by column from 0.
@@ -87,9 +94,13 @@ struct Row {
 }
 
 /// Goes through the rows of a sheet.
+///
+/// # Errors
+/// Those of `each`; the cells are longer than `max_bytes`, or more in a row than a sheet has columns.
 fn cells(
     part: &str,
     look: &Look,
+    limits: &Limits,
     mut each: impl FnMut(&Row) -> Result<(), Fault>,
 ) -> Result<(), Fault> {
     let mut row = Row {
@@ -97,6 +108,23 @@ fn cells(
         cells: Vec::new(),
     };
     let mut cell = Cell::default();
+    let mut length = 0;
+    let mut take = |row: &mut Row, cell: &Cell| {
+        if cell.column >= MOST_COLUMNS {
+            return Ok(());
+        }
+        if row.cells.len() == MOST_COLUMNS {
+            let message = format!("row {} has more than {MOST_COLUMNS} cells", row.number);
+            return Err(damaged(&message));
+        }
+        let csv = cell.csv(look);
+        length += csv.len();
+        if length > limits.max_bytes {
+            return Err(too_long(limits));
+        }
+        row.cells.push((cell.column, csv));
+        Ok(())
+    };
     for event in Events::of(part) {
         match event {
             Event::Open {
@@ -105,6 +133,7 @@ fn cells(
                 is_empty,
             } => {
                 let number = attribute(attributes, "r").and_then(|number| number.parse().ok());
+                let number = number.filter(|&number| number <= MOST_ROWS);
                 row.number = number.unwrap_or(row.number + 1);
                 row.cells.clear();
                 if is_empty {
@@ -115,7 +144,7 @@ fn cells(
             Event::Open {
                 name: "c",
                 attributes,
-                ..
+                is_empty,
             } => {
                 let next = row.cells.last().map_or(0, |(column, _)| column + 1);
                 let place = attribute(attributes, "r").and_then(column);
@@ -126,6 +155,9 @@ fn cells(
                     value: String::new(),
                     is_value: false,
                 };
+                if is_empty {
+                    take(&mut row, &cell)?;
+                }
             }
             Event::Open {
                 name: "v" | "t",
@@ -135,9 +167,7 @@ fn cells(
             Event::Close("v" | "t") => cell.is_value = false,
             Event::Text(written) if cell.is_value => cell.value.push_str(&text(written)),
             Event::Plain(plain) if cell.is_value => cell.value.push_str(plain),
-            Event::Close("c") if cell.column < MOST_COLUMNS => {
-                row.cells.push((cell.column, cell.csv(look)));
-            }
+            Event::Close("c") => take(&mut row, &cell)?,
             _ => {}
         }
     }

@@ -128,6 +128,104 @@ fn what_has_no_table_or_too_much_is_refused() {
 }
 
 #[test]
+fn a_row_of_more_than_a_sheet_can_have_is_refused() {
+    let limits = Limits {
+        max_bytes: 500_000,
+        ..Limits::default()
+    };
+    let refused = |row: &str, code: &str, expected: &str| {
+        let sheet = format!("<worksheet><row>{row}</row></worksheet>");
+        let strings = format!("<sst><si><t>{}</t></si></sst>", "a".repeat(1000));
+        let parts = [
+            ("xl/worksheets/sheet1.xml", sheet.as_str()),
+            ("xl/sharedStrings.xml", strings.as_str()),
+        ];
+        let error = read(&workbook(OUTLINE, &parts), Format::Unstated, &limits).unwrap_err();
+        assert_eq!(error.faults()[0].code, code, "{error}");
+        assert!(error.to_string().contains(expected), "{error}");
+    };
+    // one row, which is no table
+    let shared = r#"<c t="s"><v>0</v></c>"#.repeat(1000);
+    refused(
+        &shared,
+        code::UNPACKED_TOO_LARGE,
+        "longer than 500000 bytes as CSV",
+    );
+    let repeated = r#"<c r="A1"/>"#.repeat(16_385);
+    refused(&repeated, code::DAMAGED_FILE, "more than 16384 cells");
+}
+
+#[test]
+fn cells_and_rows_without_a_place_go_behind_the_last() {
+    let csv = |rows: &str| {
+        let sheet = format!("<worksheet>{rows}</worksheet>");
+        let bytes = workbook(OUTLINE, &[("xl/worksheets/sheet1.xml", &sheet)]);
+        super::table(&bytes, &Limits::default()).unwrap()
+    };
+    let cells = |cells: [&str; 3]| {
+        cells.map(|cell| match cell {
+            "" => "<c/>".to_string(),
+            _ => format!(r#"<c t="str"><v>{cell}</v></c>"#),
+        })
+    };
+    let row = |of: [&str; 3]| format!("<row>{}</row>", cells(of).concat());
+    let rows = [
+        ["t[s]", "a", "b"],
+        ["0", "1", "2"],
+        ["1", "", "3"],
+        ["2", "1", ""],
+    ]
+    .map(row);
+    assert_eq!(csv(&rows.concat()), "t[s],a,b\n0,1,2\n1,,3\n2,1,\n");
+    // a number that no row has is none
+    let last = rows[3].replace("<row>", "<row r=\"18446744073709551615\">");
+    let expected = "t[s],a,b\n0,1,2\n2,1,\n1,,3\n";
+    assert_eq!(
+        csv(&[&rows[0], &rows[1], &last, &rows[2]]
+            .map(String::as_str)
+            .concat()),
+        expected
+    );
+}
+
+#[test]
+fn no_repetition_takes_long() {
+    let length = 1 << 20;
+    for piece in [
+        "&",
+        "&#",
+        "<",
+        "<c>",
+        "<c/>",
+        "<c r=\"A1\"><v>1</v></c>",
+        "<row>",
+        "<row/>",
+        "<v>",
+        "<!--",
+        "<![CDATA[",
+        "<a b='",
+        "<sheet r:id='rId9'/>",
+        "<Relationship/>",
+        "<si/>",
+        "<xf/>",
+    ] {
+        let repeated = format!("<si><row><c><t>{}", piece.repeat(length / piece.len()));
+        let parts = [
+            ("xl/worksheets/sheet1.xml", repeated.as_str()),
+            ("xl/sharedStrings.xml", &repeated),
+            ("xl/styles.xml", &repeated),
+        ];
+        for outline in [OUTLINE, &repeated] {
+            let _ = read(
+                &workbook(outline, &parts),
+                Format::Unstated,
+                &Limits::default(),
+            );
+        }
+    }
+}
+
+#[test]
 fn no_damage_to_a_part_panics() {
     let sheet = data();
     let limits = Limits::default();

@@ -115,13 +115,18 @@ pub(super) fn attribute<'a>(attributes: &'a str, name: &str) -> Option<&'a str> 
     }
 }
 
+/// Bytes of the longest name behind an `&`, with its `;`: `#x0010FFFF;`.
+const LONGEST_NAME: usize = 12;
+
 /// Text as it is meant: `&lt;` is `<`.
 pub(super) fn text(written: &str) -> String {
     let mut text = String::with_capacity(written.len());
     let mut rest = written;
     while let Some((before, behind)) = rest.split_once('&') {
         text.push_str(before);
-        let known = behind.split_once(';').and_then(|(name, next)| {
+        let near = &behind.as_bytes()[..behind.len().min(LONGEST_NAME)];
+        let known = memchr::memchr(b';', near).and_then(|end| {
+            let (name, next) = (&behind[..end], &behind[end + 1..]);
             let code = match name.strip_prefix('#') {
                 Some(number) => match number.strip_prefix(['x', 'X']) {
                     Some(digits) => u32::from_str_radix(digits, 16).ok()?,
