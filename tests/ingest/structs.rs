@@ -1,5 +1,7 @@
 //! MAT files with arrays of structs and with tables of different rates, written here as the format's description has them.
 
+use std::io::Write;
+
 use trimtab_core::flight::Maneuver;
 use trimtab_core::ingest::{Format, IngestError, Limits, Mapping, code, read_mapped};
 
@@ -208,6 +210,53 @@ fn tables_of_other_rates_keep_their_samples() {
             .contains("has 10 values where the time axis has 50; where it has"),
         "{error}"
     );
+}
+
+/// A name of one byte each, none of which is there: lists of them are much larger than the file.
+#[test]
+fn a_struct_has_no_more_fields_than_any() {
+    let parts = [element(5, &words(&[1])), element(1, &vec![0; 70_000])];
+    let bytes = file(&[array("rec", 2, 1, 1, &parts.concat())]);
+    let error = read(&bytes, "rec.time", &[("a", r#""rec.alpha""#)]).unwrap_err();
+    assert_eq!(error.faults()[0].code, code::DAMAGED_FILE, "{error}");
+    assert!(
+        error.to_string().contains("more fields than any"),
+        "{error}"
+    );
+}
+
+/// The variable as `save -v7` writes it.
+fn compressed(variable: &[u8]) -> Vec<u8> {
+    let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
+    encoder.write_all(variable).unwrap();
+    let packed = encoder.finish().unwrap();
+    [words(&[15, packed.len() as u32]), packed].concat()
+}
+
+/// What is unpacked counts once, however often a mapping looks into it.
+#[test]
+fn sources_to_choose_from_do_not_use_up_the_limit() {
+    const ROWS: u32 = 20_000;
+    let series: Vec<f64> = (0..ROWS).map(f64::from).collect();
+    let column = || matrix("", 1, &series);
+    let fields = ["time", "alpha"];
+    let first = structs("first", &fields, &[vec![column(), column()]]);
+    let second = matrix("second", 1, &series);
+    let bytes = file(&[compressed(&first), compressed(&second)]);
+    let channels: Vec<String> = (0..7)
+        .map(|at| format!(r#""c{at}": {{"unit": "-", "from": ["first.beta", "second"]}}"#))
+        .collect();
+    let text = format!(
+        r#"{{"time": {{"from": "first.time", "unit": "s"}}, "channels": {{{}}}}}"#,
+        channels.join(",")
+    );
+    let mapping = Mapping::from_json(&text).unwrap();
+    let limits = Limits {
+        max_values: 8 * ROWS as usize,
+        ..Limits::default()
+    };
+    let maneuver = read_mapped(&bytes, Format::Mat, Some(&mapping), &limits).unwrap();
+    assert_eq!(maneuver.channels()["c6"].values, series);
 }
 
 #[test]

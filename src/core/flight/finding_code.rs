@@ -55,6 +55,8 @@ codes! {
     RepeatedHeader "repeated_header" Note;
     /// Rows have the time of the row before them.
     RepeatedTime "repeated_time" Note;
+    /// Messages of a log are not in the order of their times: those that do not fit were left out.
+    OutOfOrder "out_of_order" Warning;
     /// A second column of the table has times, of fewer rows: channels that belong to it were read at those of the first.
     OtherTimes "other_times" Warning;
     /// Rows at the beginning have no time yet, and were left out.

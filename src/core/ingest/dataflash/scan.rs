@@ -229,6 +229,8 @@ fn of_kind(
         time,
         time_unit,
         rows,
+        repeated: 0,
+        late: 0,
     };
     by_instance.into_iter().map(table).collect()
 }

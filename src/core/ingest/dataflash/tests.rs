@@ -2,7 +2,7 @@
 
 use super::super::{Format, Limits, Mapping, code, fault::places, read_mapped};
 use crate::flight::Maneuver;
-use crate::ingest::IngestError;
+use crate::ingest::{IngestError, read_recording};
 
 /// A log in the making.
 struct Writer(Vec<u8>);
@@ -138,6 +138,28 @@ fn bytes_that_are_no_message_are_passed_over() {
     // a message that comes again is one
     let again = [&log[..], &log[..]].concat();
     assert_eq!(read(&again, None).unwrap().digest(), whole.digest());
+}
+
+/// A clock that starts again: the longer part is read, and what was left out is told.
+#[test]
+fn messages_out_of_order_are_told() {
+    let mut log = Writer(Vec::new());
+    log.define(20, 15, "IMU", "Qf", "TimeUS,GyrY");
+    for k in (900..930u64).chain(0..100) {
+        log.message(
+            20,
+            &[&(20_000 * k).to_le_bytes(), &(k as f32).to_le_bytes()],
+        );
+    }
+    let limits = Limits::default();
+    let reading = read_recording(&log.0, Format::Unstated, None, None, &limits).unwrap();
+    assert_eq!(reading.maneuver.len(), 100);
+    assert_eq!(reading.maneuver.channels()["q"].values[99], 99.0);
+    let told = reading.findings.iter();
+    let told: Vec<_> = told
+        .map(|finding| (&*finding.code, finding.count))
+        .collect();
+    assert_eq!(told, [("out_of_order", 30)]);
 }
 
 #[test]

@@ -65,7 +65,7 @@ impl Mapping {
         })
     }
 
-    /// Takes channels and axes in the order of paths, so that every variable is unpacked once.
+    /// Takes channels and axes, all of one path together.
     fn take(
         &self,
         archive: &mut impl Archive,

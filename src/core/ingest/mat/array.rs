@@ -16,6 +16,8 @@ const STRUCT: u8 = 2;
 const OBJECT: u8 = 3;
 const OPAQUE: u8 = 17;
 const COMPLEX: u32 = 1 << 11;
+/// Fields of a struct. Their names in memory are larger than in the file.
+const MOST_FIELDS: usize = 65_535;
 
 /// MATLAB's classes by number, from 1.
 const CLASSES: [&str; 17] = [
@@ -199,6 +201,9 @@ impl<'a> Fields<'a> {
         let width = elements.order.u32(width.bytes).filter(|&width| width > 0);
         let width = width.ok_or("the fields of a struct have no names")? as usize;
         let names = elements.expect()?.bytes.chunks(width);
+        if names.len() > MOST_FIELDS {
+            return Err("a struct has more fields than any");
+        }
         let name = |bytes: &[u8]| {
             let end = bytes
                 .iter()

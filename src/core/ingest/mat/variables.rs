@@ -1,6 +1,5 @@
-//! The variables of a MAT file, unpacked one at a time and within bounds.
+//! The variables of a MAT file, each unpacked once, when it is asked for, and all of them within bounds.
 
-use std::borrow::Cow;
 use std::io::Read;
 
 use flate2::read::ZlibDecoder;
@@ -27,6 +26,8 @@ pub(super) struct Variables<'a> {
 pub(super) struct Variable<'a> {
     pub(super) head: Head,
     element: Element<'a>,
+    /// Its elements, where they were compressed and have been asked for.
+    unpacked: Option<Vec<u8>>,
 }
 
 impl<'a> Variables<'a> {
@@ -44,7 +45,11 @@ impl<'a> Variables<'a> {
             let head = head(element, order).map_err(damaged)?;
             // data of MATLAB's own have no name
             if !head.name.is_empty() {
-                list.push(Variable { head, element });
+                list.push(Variable {
+                    head,
+                    element,
+                    unpacked: None,
+                });
             }
         }
         Ok(Self {
@@ -66,34 +71,46 @@ impl<'a> Variables<'a> {
     ///
     /// # Errors
     /// It is damaged, or has more values than the limit.
-    pub(super) fn unpack(&mut self, at: usize) -> Result<Cow<'a, [u8]>, Fault> {
-        let Variable { head, element } = &self.list[at];
-        if element.kind == kind::MATRIX {
-            return Ok(Cow::Borrowed(element.bytes));
+    pub(super) fn unpack(&mut self, at: usize) -> Result<&[u8], Fault> {
+        let variable = &mut self.list[at];
+        if variable.element.kind == kind::MATRIX {
+            return Ok(variable.element.bytes);
         }
+        let unpacked = match variable.unpacked.take() {
+            Some(unpacked) => unpacked,
+            None => {
+                let unpacked = variable.unpack(self.order, self.budget, self.max_values)?;
+                self.budget -= unpacked.len();
+                unpacked
+            }
+        };
+        Ok(variable.unpacked.insert(unpacked))
+    }
+}
+
+impl Variable<'_> {
+    fn unpack(&self, order: Order, budget: usize, max_values: usize) -> Result<Vec<u8>, Fault> {
+        let Self { head, element, .. } = self;
         let mut unpacked = Vec::new();
-        let room = self.budget as u64 + 1;
         let read = ZlibDecoder::new(element.bytes)
-            .take(room)
+            .take(budget as u64 + 1)
             .read_to_end(&mut unpacked);
-        if unpacked.len() > self.budget || head.count().is_none_or(|count| count > self.max_values)
-        {
+        if unpacked.len() > budget || head.count().is_none_or(|count| count > max_values) {
             let message = format!(
-                "with '{}' the file unpacks to more than max_values = {} values; leave out what the estimation does not need",
-                head.name, self.max_values
+                "with '{}' the file unpacks to more than max_values = {max_values} values; leave out what the estimation does not need",
+                head.name
             );
             return Err(of_file(code::TOO_MANY_VALUES, message));
         }
         read.map_err(|_| damaged(NOT_UNPACKED))?;
-        self.budget -= unpacked.len();
         let mut inside = Elements {
             rest: &unpacked,
-            order: self.order,
+            order,
         };
         let length = inside.expect().map_err(damaged)?.bytes.len();
         unpacked.drain(..8);
         unpacked.truncate(length);
-        Ok(Cow::Owned(unpacked))
+        Ok(unpacked)
     }
 }
 

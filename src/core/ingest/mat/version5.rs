@@ -1,6 +1,4 @@
-//! A MAT file of version 5 as a mapping sees it: variables by name, unpacked one at a time.
-
-use std::borrow::Cow;
+//! A MAT file of version 5 as a mapping sees it: variables by name, unpacked when they are asked for.
 
 use super::super::{
     Limits, code,
@@ -19,8 +17,6 @@ use crate::flight::Fault;
 pub(super) struct Version5<'a> {
     order: Order,
     variables: Variables<'a>,
-    /// The variable that was unpacked last, and its elements.
-    unpacked: Option<(usize, Cow<'a, [u8]>)>,
     /// What an array of structs has in one of its fields.
     gathered: Gathered,
 }
@@ -32,7 +28,6 @@ impl<'a> Version5<'a> {
         Ok(Self {
             order,
             variables: Variables::of(body, order, limits)?,
-            unpacked: None,
             gathered: Gathered::default(),
         })
     }
@@ -76,17 +71,7 @@ impl Archive for Version5<'_> {
     fn matrix(&mut self, path: &[String]) -> Result<Matrix<'_>, (&'static str, String)> {
         let at = self.find(path)?;
         let of_fault = |fault: Fault| (code_of(&fault), fault.message);
-        if self
-            .unpacked
-            .as_ref()
-            .is_none_or(|&(unpacked, _)| unpacked != at)
-        {
-            // the one before goes first
-            self.unpacked = None;
-            let bytes = self.variables.unpack(at).map_err(of_fault)?;
-            self.unpacked = Some((at, bytes));
-        }
-        let bytes = self.unpacked.as_ref().map_or(&[][..], |(_, bytes)| bytes);
+        let bytes = self.variables.unpack(at).map_err(of_fault)?;
         let found = structs::find(bytes, self.order, path)?;
         match found {
             Found::Matrix(matrix) => Ok(matrix),

@@ -1,11 +1,14 @@
 //! A log as a mapping sees it: tables by name, columns by field, each table with its own time.
 
+use std::collections::BTreeSet;
+
 use super::super::mapping::{Archive, Mapping, OwnTime};
 use super::super::matrix::Matrix;
 use super::super::reading::Reading;
 use super::super::text::{quoted, short_message};
-use super::super::{IngestError, Limits, code, fault::of_file};
+use super::super::{IngestError, Limits, code, fault::of_file, note};
 use super::table::Table;
+use crate::flight::{Finding, FindingCode};
 
 /// The tables of a log.
 pub(in super::super) struct Log<'a> {
@@ -13,6 +16,8 @@ pub(in super::super) struct Log<'a> {
     tables: Vec<Table>,
     /// What was asked for last, row by row.
     values: Vec<f64>,
+    /// The titles of the tables that were asked for.
+    used: BTreeSet<String>,
     limits: Limits,
 }
 
@@ -20,7 +25,7 @@ pub(in super::super) struct Log<'a> {
 const LISTED: usize = 60;
 
 impl<'a> Log<'a> {
-    /// Of tables without messages out of order; those without any message are left out.
+    /// Of tables, of which messages out of order are left out; those without any message are left out.
     pub(in super::super) fn of(bytes: &'a [u8], mut tables: Vec<Table>, limits: &Limits) -> Self {
         for table in &mut tables {
             table.in_order(bytes);
@@ -31,6 +36,7 @@ impl<'a> Log<'a> {
             bytes,
             tables,
             values: Vec::new(),
+            used: BTreeSet::new(),
             limits: *limits,
         }
     }
@@ -46,20 +52,56 @@ impl<'a> Log<'a> {
     ) -> Result<Reading, IngestError> {
         let limits = self.limits;
         if let Some(mapping) = mapping {
-            return mapping.apply(&mut self, &limits);
+            let mut reading = mapping.apply(&mut self, &limits)?;
+            reading.findings.extend(self.left_out());
+            return Ok(reading);
         }
         let usual = Mapping::named_or_json(usual)?;
         match usual.apply(&mut self, &limits) {
             Err(error) if error.faults()[0].code == code::NO_CHANNELS => {}
             Err(error) => return Err(error),
-            // no log has everything that is usual
-            Ok(reading) => return Ok(reading.maneuver.into()),
+            Ok(mut reading) => {
+                // no log has everything that is usual
+                let absent = FindingCode::Absent.name();
+                reading.findings.retain(|finding| finding.code != absent);
+                reading.findings.extend(self.left_out());
+                return Ok(reading);
+            }
         }
         let message = format!(
             "the log has nothing of what its usual mapping takes; say with a mapping which fields are wanted, as {{\"channels\": {{\"q\": {{\"from\": \"IMU.GyrY\", \"unit\": \"rad/s\"}}}}}}. It has {}",
             self.contents()
         );
         Err(of_file(code::MAPPING_NEEDED, message).into())
+    }
+
+    /// What was left out of the tables that were asked for.
+    fn left_out(&self) -> impl Iterator<Item = Finding> {
+        let told = |code, count: fn(&Table) -> usize, why, remedy| {
+            let is_told = |table: &&Table| count(table) > 0 && self.used.contains(&table.title());
+            let tables: Vec<&Table> = self.tables.iter().filter(is_told).collect();
+            let counts = tables.iter();
+            let counts = counts.map(|table| format!("{} of {}", count(table), table.title()));
+            let message = format!("messages were left out, {}: {why}", note::listed(counts));
+            let finding = Finding {
+                count: tables.iter().map(|table| count(table)).sum(),
+                ..note::note(code, message, remedy)
+            };
+            (!tables.is_empty()).then_some(finding)
+        };
+        let repeated = told(
+            FindingCode::RepeatedTime,
+            |table| table.repeated,
+            "another has the same time",
+            "nothing needs to be done where they are the same messages again",
+        );
+        let late = told(
+            FindingCode::OutOfOrder,
+            |table| table.late,
+            "their times are not in order with those of the others",
+            "a few are damaged times; many mean that the clock was set: cut the log there, and upload its parts one by one",
+        );
+        repeated.into_iter().chain(late)
     }
 
     fn contents(&self) -> String {
@@ -127,6 +169,8 @@ impl Archive for Log<'_> {
             let of_row = fields.iter().map(|&at| table.fields[at].value(bytes, row));
             values.extend(of_row);
         }
+        let title = table.title();
+        self.used.insert(title);
         self.values = values;
         Ok(Matrix::of_rows(&self.values, fields.len()))
     }

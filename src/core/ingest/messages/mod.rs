@@ -1,6 +1,7 @@
 //! Logs of messages: tables with a time of their own, whose rows lie scattered over the file.
 
 mod log;
+mod order;
 mod table;
 
 pub(super) use log::Log;

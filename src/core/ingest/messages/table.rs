@@ -3,6 +3,7 @@
 use std::rc::Rc;
 
 use super::super::matrix::Stored;
+use super::order::longest_in_order;
 
 /// A number of a message.
 #[derive(Clone, Debug)]
@@ -33,21 +34,31 @@ pub(in super::super) struct Table {
     pub(in super::super) time: usize,
     pub(in super::super) time_unit: &'static str,
     pub(in super::super) rows: Vec<Row>,
+    /// Messages that were left out: of a time that another has, and of one that does not fit between the others.
+    pub(in super::super) repeated: usize,
+    pub(in super::super) late: usize,
 }
 
 impl Table {
-    /// Leaves out messages that are not later than one before them: they are repeated, or late.
-    pub(in super::super) fn in_order(&mut self, bytes: &[u8]) {
+    /// Leaves out messages whose times are none, or not in order.
+    pub(super) fn in_order(&mut self, bytes: &[u8]) {
         let field = self.fields[self.time].clone();
-        let mut latest = f64::NEG_INFINITY;
-        self.rows.retain(|&row| {
-            let time = field.value(bytes, row);
-            let is_later = time > latest;
-            if is_later {
-                latest = time;
-            }
-            is_later
-        });
+        let time = |row: Row| field.value(bytes, row);
+        let count = self.rows.len();
+        self.rows.retain(|&row| time(row).is_finite());
+        let kept = match self.rows.is_sorted_by(|&a, &b| time(a) < time(b)) {
+            true => std::mem::take(&mut self.rows),
+            false => longest_in_order(&self.rows, time),
+        };
+        let is_known = |row: &&Row| {
+            let time_of_row = time(**row);
+            kept.binary_search_by(|&row| time(row).total_cmp(&time_of_row))
+                .is_ok()
+        };
+        let again = self.rows.iter().filter(is_known).count();
+        self.repeated = again.saturating_sub(kept.len());
+        self.late = count - kept.len() - self.repeated;
+        self.rows = kept;
     }
 
     /// As a mapping writes it.

@@ -11,8 +11,8 @@ use super::super::messages::{Field, Fields};
 pub(super) struct Definitions<'a> {
     texts: HashMap<&'a str, &'a str>,
     flat: HashMap<&'a str, Flat>,
-    /// Numbers in all definitions together.
-    count: usize,
+    /// Steps of making all definitions that are in use.
+    steps: usize,
 }
 
 /// A definition without nested ones.
@@ -28,8 +28,10 @@ pub(super) struct Flat {
 /// Messages are no longer, so that nothing in one is further behind.
 const LONGEST: usize = 65_535;
 const DEEPEST: usize = 8;
-/// Numbers that all definitions in use may have.
-const MOST_FIELDS: usize = 200_000;
+/// Numbers and fields that all definitions in use may have.
+const MOST_STEPS: usize = 200_000;
+/// Bytes of a name of a field, with those that it is nested in.
+const LONGEST_NAME: usize = 256;
 
 impl<'a> Definitions<'a> {
     /// Adds a definition; one that is no text is left out.
@@ -53,8 +55,8 @@ impl<'a> Definitions<'a> {
         };
         let mut made = Made::default();
         self.flatten(name, "", 0, &mut made)?;
-        self.count += made.fields.len();
-        if self.count > MOST_FIELDS {
+        self.steps += made.steps;
+        if self.steps > MOST_STEPS {
             return Err("its definitions have more fields than any aircraft");
         }
         let is_time = |field: &Field| field.name == "timestamp" && field.number.width == 8;
@@ -80,7 +82,14 @@ impl<'a> Definitions<'a> {
             return Err("its definitions are nested too deep");
         }
         let text = self.texts.get(name).ok_or(UNDEFINED)?;
-        for field in text.split(';').filter(|field| !field.trim().is_empty()) {
+        for field in text.split(';') {
+            made.step()?;
+            if prefix.len() + field.len() > LONGEST_NAME {
+                return Err("a field has a longer name than any");
+            }
+            if field.trim().is_empty() {
+                continue;
+            }
             let (kind, name) = field.trim().split_once(' ').ok_or("a field has no name")?;
             let (kind, count) = match kind.split_once('[') {
                 Some((kind, count)) => {
@@ -111,7 +120,7 @@ struct Made {
     fields: Vec<Field>,
     at: usize,
     length: usize,
-    /// Fields and nested definitions, empty ones too.
+    /// Fields as they are written, empty ones too, and the elements of each.
     steps: usize,
 }
 

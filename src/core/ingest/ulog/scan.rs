@@ -187,6 +187,8 @@ impl<'a> Scan<'a> {
             time,
             time_unit: "us",
             rows: Vec::new(),
+            repeated: 0,
+            late: 0,
         };
         let topic = Topic { table, length };
         let before = self.topics.insert(u16::from_le_bytes([low, high]), topic);

@@ -2,7 +2,7 @@
 
 use super::super::{Format, Limits, Mapping, code, fault::places, read_mapped};
 use crate::flight::Maneuver;
-use crate::ingest::IngestError;
+use crate::ingest::{IngestError, Reading, read_recording};
 
 /// A log in the making.
 pub(super) struct Writer(pub(super) Vec<u8>);
@@ -213,11 +213,75 @@ fn what_a_log_says_of_itself_does_not_grow() {
         &["a:uint64_t timestamp;float[9999999] x;"],
         "longer than a message",
     );
+    let long = format!(
+        "a:uint64_t timestamp;uint8_t[20000] {};",
+        "x".repeat(40_000)
+    );
+    refused(&[&long], "a field has a longer name than any");
+    let prefix = format!("a:uint64_t timestamp;b[2000] {};", "x".repeat(200));
+    let nested = format!("b:uint8_t {};", "y".repeat(200));
+    refused(&[&prefix, &nested], "a field has a longer name than any");
+    let nothing = format!("b:{}", "char[0] a;".repeat(6000));
+    refused(
+        &["a:uint64_t timestamp;b[6000] x;", &nothing],
+        "longer than a message",
+    );
     refused(&["a:float x;"], "no timestamp");
     refused(&["a:uint64_t timestamp;nothing x;"], "not defined");
     refused(&[], "no definition");
     let only_a_header = b"ULog\x01\x12\x35\x01\0\0\0\0\0\0\0\0";
     assert_eq!(places(read(only_a_header, None)), ["damaged_file "]);
+}
+
+#[test]
+fn definitions_together_have_a_bound() {
+    let mut log = Writer::new();
+    log.message(b'F', format!("b:{}", "char[0] a;".repeat(6000)).as_bytes());
+    for number in 0..40 {
+        let name = format!("a{number}");
+        log.message(
+            b'F',
+            format!("{name}:uint64_t timestamp;b[9] x;").as_bytes(),
+        );
+        log.subscribe(0, number, &name);
+    }
+    log.data(1, 5, &[1.0]);
+    let error = read(&log.0, None).unwrap_err();
+    assert!(
+        error.to_string().contains("more fields than any"),
+        "{error}"
+    );
+}
+
+/// One bit of one time is wrong: its message is left out, not all those behind it.
+#[test]
+fn one_wrong_time_costs_one_message() {
+    let mut log = Writer::new();
+    log.message(
+        b'F',
+        b"airspeed:uint64_t timestamp;float true_airspeed_m_s;",
+    );
+    log.message(b'F', b"unused:uint64_t timestamp;float x;");
+    log.subscribe(0, 1, "airspeed");
+    log.subscribe(0, 2, "unused");
+    for k in 0..1000u64 {
+        let wrong = if k == 10 { 1 << 60 } else { 0 };
+        log.data(1, (4000 * k) | wrong, &[k as f32]);
+        log.data(2, 4000 * (k % 2), &[0.0]);
+    }
+    let reading = read_recording(&log.0, Format::Unstated, None, None, &Limits::default());
+    let Reading { maneuver, findings } = reading.unwrap();
+    assert_eq!((maneuver.len(), maneuver.duration()), (999, 3.996));
+    assert_eq!(maneuver.channels()["V_true"].values[10], 11.0);
+    let [finding] = &findings[..] else {
+        panic!("{findings:#?}");
+    };
+    assert_eq!((&*finding.code, finding.count), ("out_of_order", 1));
+    assert!(
+        finding.message.contains("1 of airspeed"),
+        "{}",
+        finding.message
+    );
 }
 
 #[test]

@@ -37,7 +37,12 @@ impl Value {
         }
     }
 
+    /// Of two values one that is missing makes the result missing, whatever `f` makes of it.
     fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        let f = |a: f64, b: f64| match a.is_nan() || b.is_nan() {
+            true => f64::NAN,
+            false => f(a, b),
+        };
         match (self, other) {
             (Self::One(a), b) => b.map(|b| f(a, b)),
             (a, Self::One(b)) => a.map(|a| f(a, b)),
@@ -142,7 +147,11 @@ fn call_many(
             let (yes, no) = (yes.into_values(count), no.into_values(count));
             let mut condition = condition.into_values(count);
             for ((chosen, yes), no) in condition.iter_mut().zip(yes).zip(no) {
-                *chosen = if *chosen != 0.0 { yes } else { no };
+                *chosen = match *chosen {
+                    missing if missing.is_nan() => missing,
+                    0.0 => no,
+                    _ => yes,
+                };
             }
             Value::Each(condition)
         }

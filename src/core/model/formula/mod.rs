@@ -243,6 +243,28 @@ mod tests {
     }
 
     #[test]
+    fn what_is_missing_stays_missing() {
+        for text in [
+            "min(right, 9)",
+            "max(0, right)",
+            "right < 9",
+            "9 >= right",
+            "right^0",
+            "1^right",
+            "sign(right)",
+            "if(right, 1, 2)",
+            "if(right > 0, 1, 2)",
+        ] {
+            let values = ChannelFormula::parse(text).unwrap().samples(&Two).unwrap();
+            assert!(values[3].is_nan(), "{text}: {values:?}");
+            assert!(values[..3].iter().all(|value| value.is_finite()), "{text}");
+        }
+        // what is not chosen may be missing
+        let chosen = ChannelFormula::parse("if(left < 4, right, 7)").unwrap();
+        assert_eq!(chosen.samples(&Two).unwrap(), [5.0, 4.0, 3.0, 7.0]);
+    }
+
+    #[test]
     fn names_what_is_not_recorded() {
         let error = ChannelFormula::parse("left - middle")
             .unwrap()
