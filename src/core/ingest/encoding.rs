@@ -246,7 +246,7 @@ mod tests {
             text(b"t,a\n0,1\0\0\x001,2\n", None).unwrap().text,
             "t,a\n0,1\n1,2\n"
         );
-        let block = "20;1\0\0\0\02.5;\u{b0}\0";
+        let block = "20;1\0\0\0\x002.5;\u{b0}\0";
         let latin: Vec<u8> = block.chars().map(|c| c as u8).collect();
         let little: Vec<u8> = block.encode_utf16().flat_map(u16::to_le_bytes).collect();
         for (bytes, charset, zeros) in [(latin, "latin1", "5"), (little, "utf-16", "10")] {

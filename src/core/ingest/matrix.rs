@@ -1,5 +1,7 @@
 //! A matrix of numbers as a file holds it, and the rows and columns taken out of it.
 
+use super::stored::Stored;
+
 /// Numbers by row and column; they are made into doubles when they are taken out.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Matrix<'a> {
@@ -14,15 +16,6 @@ enum Values<'a> {
     Rows(&'a [f64]),
     /// Column by column.
     Stored { bytes: &'a [u8], number: Stored },
-}
-
-/// How a file stores a number.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Stored {
-    /// Bytes of one.
-    pub(super) width: usize,
-    /// Reads one from so many bytes.
-    pub(super) read: fn(&[u8]) -> f64,
 }
 
 impl<'a> Matrix<'a> {

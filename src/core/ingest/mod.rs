@@ -45,6 +45,7 @@ mod reading;
 mod recognition;
 mod recording;
 mod stamp;
+mod stored;
 mod summary;
 mod text;
 mod ulog;

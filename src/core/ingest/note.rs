@@ -1,6 +1,6 @@
 //! What was odd about the writing of a file that was read all the same.
 
-use super::text::short_message;
+use super::text;
 use crate::flight::{Finding, FindingCode};
 
 /// A finding about the file as a whole.
@@ -25,22 +25,12 @@ pub(super) fn note_of_rows(
     }
 }
 
-/// Names are listed up to this many.
+/// Names or sentences are listed up to this many.
 const LISTED: usize = 12;
 
 /// The first of several names or sentences, and how many more there are.
-pub(super) fn listed(names: impl ExactSizeIterator<Item = String>) -> String {
-    let more = names.len().saturating_sub(LISTED);
-    let names: Vec<String> = names
-        .take(LISTED)
-        .map(|name| short_message(&name))
-        .collect();
-    let names = names.join(", ");
-    if more > 0 {
-        format!("{names} and {more} more")
-    } else {
-        names
-    }
+pub(super) fn listed(names: impl Iterator<Item = String>) -> String {
+    text::listed(names, LISTED)
 }
 
 /// That a file does not have channels of a mapping which it need not have.

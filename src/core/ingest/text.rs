@@ -55,6 +55,20 @@ pub(super) fn short_message(text: &str) -> String {
     clipped(text, LONGEST_MESSAGE)
 }
 
+/// The first `most` of several names or sentences, and how many more there are.
+pub(super) fn listed(mut names: impl Iterator<Item = String>, most: usize) -> String {
+    let list: Vec<String> = names
+        .by_ref()
+        .take(most)
+        .map(|name| short_message(&name))
+        .collect();
+    match (list.join(", "), names.count()) {
+        (list, _) if list.is_empty() => "nothing".to_string(),
+        (list, 0) => list,
+        (list, more) => format!("{list} and {more} more"),
+    }
+}
+
 fn clipped(text: &str, longest: usize) -> String {
     let mut characters = text.chars();
     let mut clipped: String = characters

@@ -1,7 +1,7 @@
 //! Kinds of messages as a log defines them (FMT), and the units of their fields (FMTU, UNIT, MULT).
 
-use super::super::matrix::Stored;
 use super::super::messages::Field;
+use super::super::stored::{Order, Stored, stored};
 
 /// A kind of message.
 pub(super) struct Definition {
@@ -120,39 +120,23 @@ fn width(letter: u8) -> Option<usize> {
 
 /// How a number of this letter is stored; `None` for text.
 fn number(letter: u8) -> Option<Stored> {
-    macro_rules! little {
-        ($type:ty) => {
-            little!($type, |value: f64| value)
-        };
-        ($type:ty, $scaled:expr) => {
-            Stored {
-                width: size_of::<$type>(),
-                read: |bytes| {
-                    let scaled: fn(f64) -> f64 = $scaled;
-                    bytes.try_into().map_or(f64::NAN, |bytes| {
-                        scaled(<$type>::from_le_bytes(bytes) as f64)
-                    })
-                },
-            }
-        };
-    }
     Some(match letter {
-        b'b' => little!(i8),
-        b'B' | b'M' => little!(u8),
-        b'a' | b'h' => little!(i16),
-        b'H' => little!(u16),
-        b'i' => little!(i32),
-        b'I' => little!(u32),
-        b'q' => little!(i64),
-        b'Q' => little!(u64),
-        b'f' => little!(f32),
-        b'd' => little!(f64),
-        b'c' => little!(i16, |hundredths| hundredths / 100.0),
-        b'C' => little!(u16, |hundredths| hundredths / 100.0),
-        b'e' => little!(i32, |hundredths| hundredths / 100.0),
-        b'E' => little!(u32, |hundredths| hundredths / 100.0),
+        b'b' => stored!(i8, Order::Little),
+        b'B' | b'M' => stored!(u8, Order::Little),
+        b'a' | b'h' => stored!(i16, Order::Little),
+        b'H' => stored!(u16, Order::Little),
+        b'i' => stored!(i32, Order::Little),
+        b'I' => stored!(u32, Order::Little),
+        b'q' => stored!(i64, Order::Little),
+        b'Q' => stored!(u64, Order::Little),
+        b'f' => stored!(f32, Order::Little),
+        b'd' => stored!(f64, Order::Little),
+        b'c' => stored!(i16, Order::Little, / 100.0),
+        b'C' => stored!(u16, Order::Little, / 100.0),
+        b'e' => stored!(i32, Order::Little, / 100.0),
+        b'E' => stored!(u32, Order::Little, / 100.0),
         // latitude and longitude
-        b'L' => little!(i32, |value| value / 1e7),
+        b'L' => stored!(i32, Order::Little, / 1e7),
         b'g' => Stored {
             width: 2,
             read: |bytes| {

@@ -1,7 +1,8 @@
 //! Arrays of a MAT file: what each is, the numbers of a numeric one, the fields of a struct.
 
-use super::super::matrix::{Matrix, Stored};
-use super::element::{Damage, Element, Elements, Order, kind};
+use super::super::matrix::Matrix;
+use super::super::stored::{Order, Stored, stored};
+use super::element::{Damage, Element, Elements, kind};
 
 /// What stands before the content of an array.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -156,35 +157,17 @@ fn dimensions(elements: &mut Elements) -> Result<Vec<usize>, Damage> {
 
 /// How the numbers of an element are stored.
 fn number(element: Element, order: Order) -> Option<Stored> {
-    macro_rules! reader {
-        ($type:ty) => {{
-            fn little(bytes: &[u8]) -> f64 {
-                bytes
-                    .try_into()
-                    .map_or(f64::NAN, |bytes| <$type>::from_le_bytes(bytes) as f64)
-            }
-            fn big(bytes: &[u8]) -> f64 {
-                bytes
-                    .try_into()
-                    .map_or(f64::NAN, |bytes| <$type>::from_be_bytes(bytes) as f64)
-            }
-            Stored {
-                width: size_of::<$type>(),
-                read: if order == Order::Little { little } else { big },
-            }
-        }};
-    }
     Some(match element.kind {
-        kind::INT8 => reader!(i8),
-        kind::UINT8 => reader!(u8),
-        kind::INT16 => reader!(i16),
-        kind::UINT16 => reader!(u16),
-        kind::INT32 => reader!(i32),
-        kind::UINT32 => reader!(u32),
-        kind::SINGLE => reader!(f32),
-        kind::DOUBLE => reader!(f64),
-        kind::INT64 => reader!(i64),
-        kind::UINT64 => reader!(u64),
+        kind::INT8 => stored!(i8, order),
+        kind::UINT8 => stored!(u8, order),
+        kind::INT16 => stored!(i16, order),
+        kind::UINT16 => stored!(u16, order),
+        kind::INT32 => stored!(i32, order),
+        kind::UINT32 => stored!(u32, order),
+        kind::SINGLE => stored!(f32, order),
+        kind::DOUBLE => stored!(f64, order),
+        kind::INT64 => stored!(i64, order),
+        kind::UINT64 => stored!(u64, order),
         _ => return None,
     })
 }

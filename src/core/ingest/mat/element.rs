@@ -1,6 +1,6 @@
 //! Data elements of a MAT file: a tag of kind and length, bytes, padding to eight.
 
-use super::super::{code, fault::of_file};
+use super::super::{code, fault::of_file, stored::Order};
 use crate::flight::Fault;
 
 /// What is not as the format has it.
@@ -9,23 +9,6 @@ pub(super) type Damage = &'static str;
 pub(super) fn damaged(why: Damage) -> Fault {
     let message = format!("the MAT file is damaged: {why}; save it or upload it again");
     of_file(code::DAMAGED_FILE, message)
-}
-
-/// Which byte of a number comes first.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Order {
-    Little,
-    Big,
-}
-
-impl Order {
-    pub(super) fn u32(self, bytes: &[u8]) -> Option<u32> {
-        let bytes = bytes.get(..4)?.try_into().ok()?;
-        Some(match self {
-            Self::Little => u32::from_le_bytes(bytes),
-            Self::Big => u32::from_be_bytes(bytes),
-        })
-    }
 }
 
 /// Kinds of elements (`mi` in the format's description).

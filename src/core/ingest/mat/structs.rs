@@ -1,9 +1,15 @@
 //! The way into a variable along a path: fields of structs, elements of arrays of structs.
 
-use super::super::{code, mapping::element as element_of, matrix::Matrix, text::quoted};
+use super::super::{
+    code,
+    mapping::element as element_of,
+    matrix::Matrix,
+    stored::Order,
+    text::{listed, quoted},
+};
+use super::LISTED;
 use super::array::{Fields, Head};
-use super::element::{Damage, Elements, Order, damaged};
-use super::list::listed;
+use super::element::{Damage, Elements, damaged};
 
 /// What is at the end of a path.
 pub(super) enum Found<'a> {
@@ -58,7 +64,7 @@ pub(super) fn find<'a>(
         }
         let fields = Fields::read(&mut elements).map_err(of_damage)?;
         let Some(place) = fields.names.iter().position(|name| name == field) else {
-            let names = listed(fields.names.iter().map(|name| quoted(name)));
+            let names = listed(fields.names.iter().map(|name| quoted(name)), LISTED);
             let message = format!("'{here}' has no field '{field}'; it has {names}");
             return Err((code::UNKNOWN_SOURCE, message));
         };

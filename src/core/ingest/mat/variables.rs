@@ -4,9 +4,10 @@ use std::io::Read;
 
 use flate2::read::ZlibDecoder;
 
+use super::super::stored::Order;
 use super::super::{Limits, code, fault::of_file};
 use super::array::Head;
-use super::element::{Damage, Element, Elements, Order, damaged, kind};
+use super::element::{Damage, Element, Elements, damaged, kind};
 use crate::flight::Fault;
 
 /// Room for the head of an array: flags, dimensions, and a name of up to 63 characters.

@@ -4,9 +4,11 @@ use super::super::{
     Limits, code,
     fault::of_file,
     mapping::Archive,
-    matrix::{Matrix, Stored},
+    matrix::Matrix,
+    stored::{Order, Stored, stored},
+    text::listed,
 };
-use super::list::listed;
+use super::LISTED;
 use crate::flight::Fault;
 
 /// The matrices of a file.
@@ -28,7 +30,7 @@ const HEAD: usize = 20;
 
 /// A header: how its numbers are stored, and what follows.
 struct Head {
-    is_big: bool,
+    order: Order,
     precision: u32,
     kind: u32,
     rows: usize,
@@ -41,21 +43,14 @@ impl Head {
     /// `None` where the bytes are no header.
     fn read(bytes: &[u8]) -> Option<Self> {
         let bytes = bytes.get(..HEAD)?;
-        let word = |at: usize, is_big: bool| {
-            let word = bytes.get(4 * at..4 * at + 4)?.try_into().ok()?;
-            Some(if is_big {
-                u32::from_be_bytes(word)
-            } else {
-                u32::from_le_bytes(word)
-            })
-        };
+        let word = |at: usize, order: Order| order.u32(bytes.get(4 * at..)?);
         // thousands: 0 of little-endian numbers, 1 of big-endian ones
-        let is_big = match (word(0, false)?, word(0, true)?) {
-            (0..=52, _) => false,
-            (_, 1000..=1052) => true,
+        let order = match (word(0, Order::Little)?, word(0, Order::Big)?) {
+            (0..=52, _) => Order::Little,
+            (_, 1000..=1052) => Order::Big,
             _ => return None,
         };
-        let of = |at: usize| word(at, is_big);
+        let of = |at: usize| word(at, order);
         let kind = of(0)? % 1000;
         let (precision, kind) = (kind / 10, kind % 10);
         let size = |at| {
@@ -65,7 +60,7 @@ impl Head {
         };
         let is_known = precision <= 5 && kind <= 2 && of(3)? <= 1;
         is_known.then_some(Self {
-            is_big,
+            order,
             precision,
             kind,
             rows: size(1)?,
@@ -76,31 +71,13 @@ impl Head {
     }
 
     fn number(&self) -> Stored {
-        macro_rules! reader {
-            ($type:ty) => {{
-                fn little(bytes: &[u8]) -> f64 {
-                    bytes
-                        .try_into()
-                        .map_or(f64::NAN, |b| <$type>::from_le_bytes(b) as f64)
-                }
-                fn big(bytes: &[u8]) -> f64 {
-                    bytes
-                        .try_into()
-                        .map_or(f64::NAN, |b| <$type>::from_be_bytes(b) as f64)
-                }
-                Stored {
-                    width: size_of::<$type>(),
-                    read: if self.is_big { big } else { little },
-                }
-            }};
-        }
         match self.precision {
-            0 => reader!(f64),
-            1 => reader!(f32),
-            2 => reader!(i32),
-            3 => reader!(i16),
-            4 => reader!(u16),
-            _ => reader!(u8),
+            0 => stored!(f64, self.order),
+            1 => stored!(f32, self.order),
+            2 => stored!(i32, self.order),
+            3 => stored!(i16, self.order),
+            4 => stored!(u16, self.order),
+            _ => stored!(u8, self.order),
         }
     }
 }
@@ -180,7 +157,7 @@ impl<'a> Version4<'a> {
                 variable.other.unwrap_or("numbers")
             )
         };
-        listed(self.variables.iter().map(of))
+        listed(self.variables.iter().map(of), LISTED)
     }
 }
 

@@ -4,11 +4,11 @@ use super::super::{
     Limits, code,
     mapping::{Archive, element},
     matrix::Matrix,
-    text::quoted,
+    stored::Order,
+    text::{listed, quoted},
 };
+use super::LISTED;
 use super::array::Head;
-use super::element::Order;
-use super::list::listed;
 use super::structs::{self, Found, Gathered};
 use super::variables::Variables;
 use crate::flight::Fault;
@@ -36,7 +36,7 @@ impl<'a> Version5<'a> {
     pub(super) fn contents(&self) -> String {
         let variables = self.variables.list().iter();
         let name = |head: &Head| format!("{} ({})", quoted(&head.name), head.description());
-        listed(variables.map(|variable| name(&variable.head)))
+        listed(variables.map(|variable| name(&variable.head)), LISTED)
     }
 
     /// Which variable is meant.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::super::mapping::{Archive, Mapping, OwnTime};
 use super::super::matrix::Matrix;
 use super::super::reading::Reading;
-use super::super::text::{quoted, short_message};
+use super::super::text::{listed, quoted, short_message};
 use super::super::{IngestError, Limits, code, fault::of_file, note};
 use super::table::Table;
 use crate::flight::{Finding, FindingCode};
@@ -106,7 +106,7 @@ impl<'a> Log<'a> {
 
     fn contents(&self) -> String {
         let titles = self.tables.iter().map(Table::title);
-        listed(titles)
+        listed(titles, LISTED)
     }
 
     fn find(&self, path: &[String]) -> Result<&Table, String> {
@@ -128,18 +128,6 @@ impl<'a> Log<'a> {
     }
 }
 
-fn listed(mut names: impl Iterator<Item = String>) -> String {
-    let mut list: Vec<String> = names.by_ref().take(LISTED).collect();
-    if list.is_empty() {
-        return "no messages".to_string();
-    }
-    match names.count() {
-        0 => {}
-        more => list.push(format!("and {more} more")),
-    }
-    list.join(", ")
-}
-
 impl Archive for Log<'_> {
     fn matrix(&mut self, path: &[String]) -> Result<Matrix<'_>, (&'static str, String)> {
         let unknown = |why: String| (code::UNKNOWN_SOURCE, why);
@@ -151,7 +139,7 @@ impl Archive for Log<'_> {
                 "" => field.name.clone(),
                 unit => format!("{} [{unit}]", field.name),
             };
-            let all = listed(table.fields.iter().map(of_field));
+            let all = listed(table.fields.iter().map(of_field), LISTED);
             return Err(unknown(format!(
                 "{} has no field {}; it has {}",
                 table.title(),

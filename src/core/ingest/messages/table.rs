@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::super::matrix::Stored;
+use super::super::stored::Stored;
 use super::order::longest_in_order;
 
 /// A number of a message.

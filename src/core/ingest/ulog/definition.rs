@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use super::super::matrix::Stored;
 use super::super::messages::{Field, Fields};
+use super::super::stored::{Order, Stored, stored};
 
 /// Definitions by name, as they are written, and what was made of those that are used.
 #[derive(Default)]
@@ -159,29 +159,17 @@ impl Made {
 
 /// How a number of this type is stored; `None` for the name of a definition.
 fn number(kind: &str) -> Option<Stored> {
-    macro_rules! little {
-        ($type:ty) => {
-            Stored {
-                width: size_of::<$type>(),
-                read: |bytes| {
-                    bytes
-                        .try_into()
-                        .map_or(f64::NAN, |bytes| <$type>::from_le_bytes(bytes) as f64)
-                },
-            }
-        };
-    }
     Some(match kind {
-        "int8_t" => little!(i8),
-        "uint8_t" | "bool" | "char" => little!(u8),
-        "int16_t" => little!(i16),
-        "uint16_t" => little!(u16),
-        "int32_t" => little!(i32),
-        "uint32_t" => little!(u32),
-        "int64_t" => little!(i64),
-        "uint64_t" => little!(u64),
-        "float" => little!(f32),
-        "double" => little!(f64),
+        "int8_t" => stored!(i8, Order::Little),
+        "uint8_t" | "bool" | "char" => stored!(u8, Order::Little),
+        "int16_t" => stored!(i16, Order::Little),
+        "uint16_t" => stored!(u16, Order::Little),
+        "int32_t" => stored!(i32, Order::Little),
+        "uint32_t" => stored!(u32, Order::Little),
+        "int64_t" => stored!(i64, Order::Little),
+        "uint64_t" => stored!(u64, Order::Little),
+        "float" => stored!(f32, Order::Little),
+        "double" => stored!(f64, Order::Little),
         _ => return None,
     })
 }
