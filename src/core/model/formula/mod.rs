@@ -247,12 +247,10 @@ mod tests {
         for text in [
             "min(right, 9)",
             "max(0, right)",
-            "right < 9",
-            "9 >= right",
+            "if(9 >= right, 1, 2)",
             "right^0",
             "1^right",
             "sign(right)",
-            "if(right, 1, 2)",
             "if(right > 0, 1, 2)",
         ] {
             let values = ChannelFormula::parse(text).unwrap().samples(&Two).unwrap();
