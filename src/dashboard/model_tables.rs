@@ -1,5 +1,7 @@
 //! The quantities of a model in tables: parameters, constants, inputs and outputs.
 
+use std::borrow::Cow;
+
 use maud::{Markup, html};
 
 use super::mathml;
@@ -42,12 +44,13 @@ pub(super) fn parameters(document: &ModelDocument, notation: &Notation) -> Marku
 }
 
 /// Whether a parameter is free, and how many values it has.
-fn freedom(parameter: &Parameter) -> &'static str {
+fn freedom(parameter: &Parameter) -> Cow<'static, str> {
     match (parameter.fixed, parameter.per) {
-        (true, Per::Job) => "fixed",
-        (true, Per::Maneuver) => "fixed in each maneuver",
-        (false, Per::Job) => "free",
-        (false, Per::Maneuver) => "free in each maneuver",
+        (true, Per::Job) => "fixed".into(),
+        (true, Per::Maneuver) => "fixed in each maneuver".into(),
+        (false, Per::Job) => "free".into(),
+        (false, Per::Maneuver) if parameter.only_in.is_empty() => "free in each maneuver".into(),
+        (false, Per::Maneuver) => format!("free in {}", parameter.only_in.join(", ")).into(),
     }
 }
 

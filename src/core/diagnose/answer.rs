@@ -276,8 +276,9 @@ fn estimated_document(problem: &Problem, theta: &[f64]) -> ModelDocument {
     let mut document = problem.model.document.clone();
     for (place, &value) in theta.iter().enumerate() {
         let info = problem.parameter(place);
-        let is_shared = problem.unknowns.at(place).segment.is_none();
-        if is_shared && let Some(parameter) = document.parameters.get_mut(&info.name) {
+        let is_one =
+            problem.unknowns.at(place).segment.is_none() || info.document.only_in.len() == 1;
+        if is_one && let Some(parameter) = document.parameters.get_mut(&info.name) {
             parameter.start = Start::Value(info.unit.from_si(value));
         }
     }

@@ -99,7 +99,7 @@ pub(super) fn compile(document: &ModelDocument) -> Result<Model, Unfit> {
 }
 
 fn unknowns(model: &Model, flights: &[&Flight], values: &Values) -> Result<Unknowns, Unfit> {
-    Unknowns::new(model, flights.len(), |parameter, segment| {
+    let unknowns = Unknowns::new(model, flights.len(), |parameter, segment| {
         let info = &model.parameters[parameter];
         let of_segment = || values.get(&(info.name.clone(), Some(flights[segment].label.clone())));
         if let Some(value) = values.get(&(info.name.clone(), None)).or_else(of_segment) {
@@ -111,7 +111,8 @@ fn unknowns(model: &Model, flights: &[&Flight], values: &Values) -> Result<Unkno
                 .and_then(|formula| formula.number(flights[segment]))
                 .map_err(|error| Unfit(format!("start of {}: {error}", info.name))),
         }
-    })
+    })?;
+    Ok(unknowns.held_elsewhere(model, |segment| &flights[segment].label))
 }
 
 /// The values of all parameters at a θ, for another fit to start from.

@@ -162,22 +162,27 @@ impl<'c> Screen<'c> {
         let theta = problem.unknowns.start();
         let columns =
             sensitivities(&problem, &self.layout, &theta, &added).map_err(|why| why.to_string())?;
-        // a parameter without influence at no effect (a time constant) waits for the trial
-        let counts = |index: &usize| match model.parameters[*index].document.per {
-            Per::Job => 1,
-            Per::Maneuver => problem.segments.len(),
-        };
-        let keys = added.iter().flat_map(|index| {
-            let info = &model.parameters[*index];
-            let label = |segment: usize| match info.document.per {
-                Per::Job => None,
-                Per::Maneuver => Some(problem.segments[segment].label.clone()),
+        let places = added.iter().flat_map(|&index| {
+            let count = match model.parameters[index].document.per {
+                Per::Job => 1,
+                Per::Maneuver => problem.segments.len(),
             };
-            (0..counts(index)).map(move |segment| (info.name.clone(), label(segment)))
+            (0..count).map(move |segment| (index, segment))
         });
-        let (keys, columns): (Vec<Key>, Vec<Vec<f64>>) = keys
+        // a parameter without influence at no effect (a time constant) waits for the trial
+        let counts = |((index, segment), column): &((usize, usize), Vec<f64>)| {
+            problem.unknowns.place(*segment, *index).is_some() && column.iter().any(|v| *v != 0.0)
+        };
+        let key = |(index, segment): (usize, usize)| {
+            let info = &model.parameters[index];
+            let own = info.document.per == Per::Maneuver;
+            let label = own.then(|| problem.segments[segment].label.clone());
+            (info.name.clone(), label)
+        };
+        let (keys, columns): (Vec<Key>, Vec<Vec<f64>>) = places
             .zip(columns)
-            .filter(|(_, column)| column.iter().any(|v| *v != 0.0))
+            .filter(counts)
+            .map(|(place, column)| (key(place), column))
             .unzip();
         if columns.is_empty() {
             return Err("it has no influence at no effect".into());

@@ -91,7 +91,8 @@ fn words(effect: &Effect, first: Option<&Size>) -> String {
                 "the flow separates, and comes back late (stall hysteresis), which {target} shows"
             )
         }
-        EditKind::Gust => format!("{target} meets a gust"),
+        EditKind::Gust if term.is_empty() => format!("{target} meets a gust in each maneuver"),
+        EditKind::Gust => format!("{target} meets a gust in {term}"),
         EditKind::Wind => format!("there is wind along {target} ({term})"),
         EditKind::InitialState => format!("{target} does not begin where the model has it"),
         EditKind::StructuralMode => {

@@ -2,9 +2,13 @@
 
 use super::case::{Case, Values};
 use super::effect::{Effect, EffectKind};
+use super::flight::Flight;
 use crate::estimate::Role;
 use crate::flight::Unit;
 use crate::model::{Added, AddedRole, EditKind, Edited, Start};
+
+/// A gust is looked for from no more starts.
+const MOST_STARTS: usize = 200;
 
 /// Whether a kind has no derivative at no effect, so that a screen cannot see it.
 pub(super) fn is_tried_outright(kind: EffectKind) -> bool {
@@ -35,7 +39,7 @@ pub(super) fn starts(case: &Case, effect: &Effect, edited: &Edited) -> Vec<Value
         }
         EditKind::UnsteadyAero | EditKind::StallHysteresis => &[0.4, 1.0, 2.5],
         EditKind::StructuralMode => &[0.6, 0.8, 1.0, 1.3, 1.7, 2.2, 2.9],
-        EditKind::Gust => return gust_starts(case, &edited.added),
+        EditKind::Gust => return gust_starts(case, effect, &edited.added),
         _ => return vec![Values::new()],
     };
     let scaled = |factor: &f64| {
@@ -69,7 +73,7 @@ fn first_at(added: &[Added], values: &[f64]) -> Vec<Values> {
 
 fn in_samples(case: &Case, counts: &[f64]) -> Vec<f64> {
     let first = case.flights.first();
-    let step = first.map_or(0.0, super::flight::Flight::step);
+    let step = first.map_or(0.0, Flight::step);
     counts.iter().map(|count| count * step).collect()
 }
 
@@ -119,7 +123,7 @@ pub(super) fn starts_of_delay(case: &Case, effect: &Effect, added: &[Added]) -> 
 }
 
 /// A gust may come at any time: every half length of one, of two lengths.
-fn gust_starts(case: &Case, added: &[Added]) -> Vec<Values> {
+fn gust_starts(case: &Case, effect: &Effect, added: &[Added]) -> Vec<Values> {
     let of_role = |role: AddedRole| {
         let found = added.iter().find(|added| added.role == role);
         found.map(|added| added.name.clone())
@@ -128,15 +132,21 @@ fn gust_starts(case: &Case, added: &[Added]) -> Vec<Values> {
     else {
         return vec![Values::new()];
     };
-    let flights: Vec<_> = case.of_role(Role::Estimation).collect();
+    let flights: Vec<&Flight> = case.of_role(Role::Estimation).collect();
+    let meets = |flight: &&&Flight| {
+        effect
+            .term
+            .as_ref()
+            .is_none_or(|term| *term == flight.label)
+    };
     let mut starts = Vec::new();
-    for flight in &flights {
+    for flight in flights.iter().filter(meets) {
         let duration = flight.step() * flight.time.len() as f64;
         for seconds in [1.0, 3.0] {
             let mut at = 0.0;
-            while at + seconds < duration && starts.len() < 200 {
+            while at + seconds < duration && starts.len() < MOST_STARTS {
                 // in the other flights it is out of sight, behind the end
-                let of = |other: &&super::flight::Flight| {
+                let of = |other: &&Flight| {
                     let begin = if other.label == flight.label { at } else { 1e6 };
                     [
                         ((time.clone(), Some(other.label.clone())), begin),

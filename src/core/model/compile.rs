@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use super::affine::Affine;
-use super::document::{ModelDocument, Start};
+use super::document::{ModelDocument, Per, Start};
 use super::equations::Equations;
 use super::expression::{self, BinaryOperator, Expression, Function, Kind};
 use super::graph::{Graph, MOST_GRAPH_NODES, NodeId};
@@ -122,6 +122,11 @@ fn parameters(document: &ModelDocument, faults: &mut Vec<Fault>) -> Vec<Paramete
                 "not_finite",
                 "start and bounds must be finite numbers",
             ));
+        }
+        if !parameter.only_in.is_empty() && parameter.per == Per::Job {
+            let message =
+                "only_in is of a parameter that each maneuver has; give it per = \"maneuver\"";
+            faults.push(Fault::new(&pointer, "bad_only_in", message));
         }
         if let (Some(lower), Some(upper)) = (parameter.lower, parameter.upper)
             && lower >= upper

@@ -230,6 +230,11 @@ pub struct Parameter {
     /// `job`: one value for all maneuvers; `maneuver`: each segment has its own (initial states, biases, wind).
     #[serde(default, skip_serializing_if = "Per::is_job")]
     pub per: Per,
+    /// Of a parameter `per = "maneuver"`: the labels of the maneuvers in which it is free. In others it is held at its
+    /// start. Empty: all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(example = json!(["flight 2"]))]
+    pub only_in: Vec<String>,
     /// What is known of it before the data, from a wind tunnel or an earlier flight: it counts in the estimate
     /// and in its error bounds. Of a parameter `per = "maneuver"` it holds for each of its values.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -2,6 +2,7 @@
 
 use super::subject::Subject;
 use crate::diagnose::effect::{Effect, Treatment};
+use crate::estimate::Role;
 use crate::flight::{Family, PhysicalQuantity};
 use crate::model::expression;
 use crate::model::{Edit, EditKind, Per};
@@ -55,7 +56,7 @@ fn winds(subject: &Subject<'_>) -> Vec<Effect> {
     constant.into_iter().chain(changing).collect()
 }
 
-/// Gusts meet the flow angles. Turbulence disturbs the states that they are, or are made of.
+/// Gusts meet the flow angles, of one flight each. Turbulence disturbs the states that they are, or are made of.
 fn air(subject: &Subject<'_>) -> Vec<Effect> {
     use PhysicalQuantity::{AngleOfAttack, AngleOfSideslip, VelocityY, VelocityZ};
     let document = subject.document;
@@ -66,7 +67,10 @@ fn air(subject: &Subject<'_>) -> Vec<Effect> {
         let is_state = |name: &&str| document.states.contains_key(*name);
         let carries = !subject.aerodynamic().is_empty();
         if let Some(name) = name.filter(|name| carries || is_state(name)) {
-            effects.push(Effect::edit(EditKind::Gust, name, None));
+            let flights = subject.case.of_role(Role::Estimation);
+            effects.extend(
+                flights.map(|flight| Effect::edit(EditKind::Gust, name, Some(&flight.label))),
+            );
         }
         let velocity = || subject.quantities.all_of(velocity).find(is_state);
         let disturbed = name

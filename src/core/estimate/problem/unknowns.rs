@@ -108,6 +108,19 @@ impl Unknowns {
         Self::of(self.all.iter().map(hold).collect(), self.places.clone())
     }
 
+    /// The same, with unknowns that are free in other segments only ([`Parameter::only_in`]) held at their start; `label`
+    /// of a segment.
+    ///
+    /// [`Parameter::only_in`]: crate::model::Parameter::only_in
+    #[must_use]
+    pub fn held_elsewhere<'l>(&self, model: &Model, label: impl Fn(usize) -> &'l str) -> Self {
+        self.with_held(|unknown| {
+            let only_in = &model.parameters[unknown.parameter].document.only_in;
+            let own = unknown.segment.map(&label);
+            !only_in.is_empty() && own.is_some_and(|own| only_in.iter().all(|label| label != own))
+        })
+    }
+
     /// Unknowns that `is_meant` picks are no less than `least`, and start no lower.
     pub fn raise_lower(&mut self, least: f64, is_meant: impl Fn(&Unknown) -> bool) {
         for unknown in self.all.iter_mut().filter(|unknown| is_meant(unknown)) {

@@ -64,7 +64,8 @@ impl Regression {
                 .parameters(segment, &start, &mut parameters);
             Ok::<f64, ()>(parameters[parameter])
         })
-        .ok()?;
+        .ok()?
+        .held_elsewhere(&model, |segment| &segments[segment].label);
         let places = unknowns
             .free
             .iter()

@@ -256,6 +256,7 @@ fn restricted(problem: &Problem, count: usize) -> Problem {
         Ok(unknown.map_or(0.0, |unknown| unknown.start))
     };
     let Ok(unknowns) = Unknowns::new(&model, problem.segments.len(), start);
+    let unknowns = unknowns.held_elsewhere(&model, |segment| &problem.segments[segment].label);
     Problem::new(
         model,
         problem.segments.clone(),

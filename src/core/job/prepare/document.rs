@@ -70,6 +70,7 @@ fn of_each_maneuver(
             upper: None,
             fixed: true,
             per: Per::Maneuver,
+            only_in: Vec::new(),
             prior: None,
             quantity: constant.quantity,
             description: constant.description,

@@ -38,7 +38,8 @@ pub(super) fn unknowns(
         start_from_data(text, &on, info.unit.dimension)
             .map_err(|(code, message)| Fault::new(pointer, code, message))
     };
-    Unknowns::new(model, resolved.len(), start).map_err(|fault| vec![fault])
+    let unknowns = Unknowns::new(model, resolved.len(), start).map_err(|fault| vec![fault])?;
+    Ok(unknowns.held_elsewhere(model, |segment| &resolved[segment].0.label))
 }
 
 /// Where a parameter's start was given.

@@ -269,6 +269,7 @@ pub(super) fn unknown(
         upper: bounds.map(|(_, upper)| upper),
         fixed: false,
         per: Per::Job,
+        only_in: Vec::new(),
         prior: None,
         quantity: None,
         description,

@@ -3,11 +3,12 @@
 use super::edited::AddedRole;
 use super::error::EditError;
 use super::sheet::{Sheet, unknown};
-use super::text::{laws, names, replace_name};
+use super::text::names;
 use crate::flight::{Dimension, PhysicalQuantity, wind as by_name};
 use crate::model::document::{Definition, Parameter, Per};
 
-/// One 1 - cos gust on an angle, a state or a definition, wherever the equations of states and definitions read it.
+/// One 1 - cos gust on an angle, a state or a definition, in the maneuver that the term names or in each: wherever
+/// equations read it, those of outputs too, for a vane feels the gust. Where an aircraft goes, it does not tell.
 pub(super) fn gust(sheet: &mut Sheet) -> Result<(), EditError> {
     let target = sheet.target();
     let document = &sheet.document;
@@ -19,8 +20,10 @@ pub(super) fn gust(sheet: &mut Sheet) -> Result<(), EditError> {
         let known = document.states.keys().chain(document.definitions.keys());
         return Err(sheet.no_target("state or definition", target, known));
     };
+    let only_in: Vec<String> = sheet.edit.term.iter().cloned().collect();
     let each = |parameter: Parameter| Parameter {
         per: Per::Maneuver,
+        only_in: only_in.clone(),
         ..parameter
     };
     let name = sheet.name(&format!("{target}_gust"))?;
@@ -45,8 +48,10 @@ pub(super) fn gust(sheet: &mut Sheet) -> Result<(), EditError> {
         each(unknown("s", 1.0, Some((0.1, 5.0)), words)),
     );
     let definition = sheet.free(&format!("{target}_air"));
-    for equation in laws(&mut sheet.document) {
-        *equation = replace_name(equation, target, &definition);
+    let ways = ways(sheet);
+    sheet.document.substitute(target, &definition);
+    for (state, derivative) in ways {
+        sheet.document.states[&state].derivative = derivative;
     }
     let passed = format!("min(max((t - {time})/{length}, 0), 1)");
     let equation = format!("{target} + {name}/2*(1 - cos(2*pi*{passed}))");
@@ -58,6 +63,19 @@ pub(super) fn gust(sheet: &mut Sheet) -> Result<(), EditError> {
     };
     sheet.document.definitions.insert(definition, added);
     Ok(())
+}
+
+/// The states that say where an aircraft is, and their equations.
+fn ways(sheet: &Sheet) -> Vec<(String, String)> {
+    use PhysicalQuantity::{Altitude, PositionX, PositionY, PositionZ};
+    let quantities = sheet.quantities();
+    let states = [Altitude, PositionX, PositionY, PositionZ]
+        .into_iter()
+        .flat_map(|quantity| quantities.all_of(quantity))
+        .filter_map(|name| Some((name, sheet.document.states.get(name)?)));
+    states
+        .map(|(name, state)| (name.to_string(), state.derivative.clone()))
+        .collect()
 }
 
 /// A component of the wind, and where the document has it or would feel it.

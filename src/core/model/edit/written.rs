@@ -24,8 +24,8 @@ pub struct Edit {
     pub target: String,
     /// What else the kind needs: the term of a `missing_term` (`alpha^2`, `de*abs(de)`, `alphadot`, `qbar`), the arm of a
     /// `sensor_position` (`x`, `y`, `z`), the channel of an `unrecorded_input` (`dt` or `dt[rad]`), the angle of
-    /// `unsteady_aero` and `stall_hysteresis` (`alpha`), the course of a `wind` (`constant`, `ramp`, `shear`), the input
-    /// that drives a `structural_mode`.
+    /// `unsteady_aero` and `stall_hysteresis` (`alpha`), the course of a `wind` (`constant`, `ramp`, `shear`), the label
+    /// of the maneuver that meets a `gust` (absent: each meets one), the input that drives a `structural_mode`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "alpha^2")]
     pub term: Option<String>,

@@ -318,6 +318,7 @@ fn edited(document: &ModelDocument) -> ModelDocument {
         upper: None,
         fixed: false,
         per: Per::Job,
+        only_in: Vec::new(),
         prior: None,
         quantity: None,
         description: String::new(),
