@@ -6,6 +6,8 @@ use crate::flight::Fault;
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 const LONGEST_QUOTE: usize = 60;
 const LONGEST_MESSAGE: usize = 300;
+/// Variables of a file, or fields of one, are listed up to this many.
+pub(super) const LISTED: usize = 20;
 
 /// The text of a file without its byte order mark.
 pub(super) fn decode(bytes: &[u8]) -> Result<&str, Fault> {

@@ -26,8 +26,6 @@ pub(super) use version4::is_version_4;
 use version5::Version5;
 
 const HEADER: usize = 128;
-/// Variables, or fields of one, are listed up to this many.
-const LISTED: usize = 20;
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
 /// Reads a MAT file as the mapping says.

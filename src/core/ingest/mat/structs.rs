@@ -5,9 +5,8 @@ use super::super::{
     mapping::element as element_of,
     matrix::Matrix,
     stored::Order,
-    text::{listed, quoted},
+    text::{LISTED, listed, quoted},
 };
-use super::LISTED;
 use super::array::{Fields, Head};
 use super::element::{Damage, Elements, damaged};
 

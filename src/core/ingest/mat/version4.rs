@@ -6,9 +6,8 @@ use super::super::{
     mapping::Archive,
     matrix::Matrix,
     stored::{Order, Stored, stored},
-    text::listed,
+    text::{LISTED, listed},
 };
-use super::LISTED;
 use crate::flight::Fault;
 
 /// The matrices of a file.

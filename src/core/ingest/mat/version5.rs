@@ -5,9 +5,8 @@ use super::super::{
     mapping::{Archive, element},
     matrix::Matrix,
     stored::Order,
-    text::{listed, quoted},
+    text::{LISTED, listed, quoted},
 };
-use super::LISTED;
 use super::array::Head;
 use super::structs::{self, Found, Gathered};
 use super::variables::Variables;

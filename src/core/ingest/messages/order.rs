@@ -1,14 +1,12 @@
 //! Messages in the order of their times.
 
-use super::table::Row;
-
 /// The most rows of which each is later than the one before; of several with one time the first.
 ///
 /// A row goes on with the longest run that ends before it; of runs of one length only the one that ends first is of use. So
 /// a wrong time costs its own row, and not those behind it.
-pub(super) fn longest_in_order(rows: &[Row], time: impl Fn(Row) -> f64) -> Vec<Row> {
+pub(super) fn longest_in_order<R: Copy>(rows: &[R], time: impl Fn(R) -> f64) -> Vec<R> {
     // each row, and the number of the one before it in its run: its own where it is the first
-    let mut links: Vec<(Row, u32)> = Vec::with_capacity(rows.len());
+    let mut links: Vec<(R, u32)> = Vec::with_capacity(rows.len());
     // of runs by their length: the number of the row at their end
     let mut ends: Vec<u32> = Vec::new();
     for (number, &row) in (0..).zip(rows) {
@@ -28,7 +26,7 @@ pub(super) fn longest_in_order(rows: &[Row], time: impl Fn(Row) -> f64) -> Vec<R
         let (_, before) = links[at as usize];
         (before != at).then_some(before)
     });
-    let mut kept: Vec<Row> = back.map(|at| links[at as usize].0).collect();
+    let mut kept: Vec<R> = back.map(|at| links[at as usize].0).collect();
     kept.reverse();
     kept
 }
@@ -40,7 +38,7 @@ mod tests {
     #[test]
     fn as_many_rows_as_possible_are_kept() {
         let kept = |times: &[f64]| {
-            let rows: Vec<Row> = (0..times.len() as Row).collect();
+            let rows: Vec<u32> = (0..times.len() as u32).collect();
             longest_in_order(&rows, |row| times[row as usize])
         };
         assert_eq!(kept(&[]), [0; 0]);
@@ -57,7 +55,7 @@ mod tests {
         }
         let found = kept(&times);
         assert_eq!(Some(&found.len()), longest.iter().max());
-        let is_later = |a: &Row, b: &Row| a < b && times[*a as usize] < times[*b as usize];
+        let is_later = |a: &u32, b: &u32| a < b && times[*a as usize] < times[*b as usize];
         assert!(found.is_sorted_by(is_later), "{found:?}");
     }
 }

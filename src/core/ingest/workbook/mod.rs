@@ -3,6 +3,7 @@
 //! The crate `calamine` was weighed: it reads all strings of a workbook before anything bounds them, makes a dense range of
 //! what may be one cell in the last corner, and brings a dozen crates. Of a sheet, four elements are needed.
 
+mod damage;
 mod sheet;
 mod stamp;
 mod strings;
@@ -16,6 +17,7 @@ use super::{
     text::{quoted, short_message},
 };
 use crate::flight::Fault;
+use damage::damaged;
 use sheet::Look;
 use strings::Strings;
 use styles::Styles;
@@ -61,11 +63,6 @@ pub(super) fn table(bytes: &[u8], limits: &Limits) -> Result<String, IngestError
         short_message(&tried.join(", "))
     );
     Err(of_file(code::TOO_FEW_SAMPLES, message).into())
-}
-
-fn damaged(why: &str) -> Fault {
-    let message = format!("the Excel workbook is damaged: {why}; save it again, or as CSV");
-    of_file(code::DAMAGED_FILE, message)
 }
 
 struct Workbook<'a> {

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use super::super::{Limits, code, fault::of_file};
-use super::damaged;
+use super::damage::damaged;
 use super::stamp::stamp;
 use super::strings::Strings;
 use super::styles::{Shows, Styles};
