@@ -57,7 +57,10 @@ fn contains(named: &NamedEffect, truth: &ScenarioEffect) -> bool {
     (named.group.iter()).any(|member| {
         let effect = &member.effect;
         (effect.word(), &effect.target) == (truth.kind.clone(), &truth.target)
-            && (effect.term.is_none() || bare(&effect.term) == bare(&truth.term))
+            && (effect.term.is_none()
+                // a scenario flies one maneuver, of which it has no label
+                || truth.kind == "gust"
+                || bare(&effect.term) == bare(&truth.term))
     })
 }
 

@@ -275,12 +275,14 @@ fn effects_go_the_right_way() {
     );
     let share = means(&loose["q"], 60, 90) / means(&declared["q"], 60, 90);
     assert!((0.3..0.6).contains(&share), "{share}");
-    // a gust from below pitches a stable aircraft down, and the vane knows nothing of it before
+    // a gust from below turns the vane up and pitches a stable aircraft down, and neither before it comes
     let gust = run(
         &edit(EditKind::Gust, "alpha", ""),
         &[("alpha_gust", 0.05), ("alpha_gust_time", 4.0)],
     );
     assert!(apart(&gust["q"][..200], &declared["q"][..200]) < 1e-12);
+    let height = gust["alpha"][225] - declared["alpha"][225];
+    assert!((0.03..0.05).contains(&height), "{height}");
     assert!(means(&gust["q"], 210, 240) < means(&declared["q"], 210, 240) - 1e-3);
     // a mode rings at its frequency
     let ringing = run(

@@ -40,6 +40,7 @@ mod missing_samples;
 mod model_documents;
 mod modes;
 mod one_step;
+mod only_in;
 mod options;
 mod paths;
 mod play_and_limits;

@@ -115,6 +115,15 @@ fn every_kind_of_fault_names_its_place_and_the_remedy() {
             "lower bound 1 is not below upper bound 0",
         ),
         (
+            changed(
+                "/parameters/Mq",
+                json!({"unit": "1/s", "start": -1.0, "only_in": ["flight 2"]}),
+            ),
+            "/parameters/Mq",
+            "bad_only_in",
+            "give it per = \"maneuver\"",
+        ),
+        (
             changed("/parameters/Mq/start", json!(2.0)),
             "/parameters/Mq/start",
             "bad_bounds",
