@@ -32,9 +32,19 @@ fn diagnosis(name: &str, parameters: Value) -> Diagnosis {
 }
 
 fn diagnosis_of(model: &str, files: &[(String, &str)], parameters: Value) -> Diagnosis {
+    diagnosis_in("data/effects", model, files, parameters)
+}
+
+fn diagnosis_in(
+    folder: &str,
+    model: &str,
+    files: &[(String, &str)],
+    parameters: Value,
+) -> Diagnosis {
     let (mut maneuvers, mut uses) = (Vec::new(), Vec::new());
     for (file, role) in files {
-        let maneuver = maneuver(&read(file));
+        let path = repository::path(&format!("{folder}/{file}"));
+        let maneuver = maneuver(&std::fs::read(path).expect("a file"));
         uses.push(json!({"id": maneuver.digest(), "label": file, "role": role}));
         maneuvers.push(maneuver);
     }
@@ -159,6 +169,29 @@ fn a_spoiler_that_the_model_does_not_have() {
 #[test]
 fn two_effects_at_once() {
     closes_the_loop("two-at-once");
+}
+
+/// A declared model that holds a parameter where it is not: freed, it is an effect, and stays one though the declared
+/// model, fitted anew from there, would reach as low if it kept the value.
+#[test]
+fn a_parameter_that_is_held_where_it_is_not() {
+    let files = [("elevator.csv".to_string(), "estimation")];
+    let found = diagnosis_in(
+        "data",
+        "short-period",
+        &files,
+        json!({"Mq": {"start": -0.8, "fixed": true}}),
+    );
+    let [named] = &found.effects[..] else {
+        panic!("{}", found.sentence);
+    };
+    // one flight cannot tell it from a vane that lags
+    let mut members = named.group.iter().map(|member| member.effect.name());
+    assert!(
+        members.any(|name| name == "fixed_parameter of Mq"),
+        "{}",
+        found.sentence
+    );
 }
 
 /// A gust is of its flight alone: what another meets it does not predict.

@@ -11,6 +11,7 @@ use super::declared::Declared;
 use super::difference::difference;
 use super::fitted::Fitted;
 use super::found::Found;
+use super::lines::{Line, lines};
 use super::report::{Diagnosis, EffectParameter, FitChange, NamedEffect, ParameterChange};
 use super::residual::analyse;
 use super::screen::Screen;
@@ -21,8 +22,8 @@ use crate::estimate::{
     Estimate, OutputFit, ParameterEstimate, Problem, Role, Solution, TimeHistory, estimate,
     five_digits, predict,
 };
-use crate::flight::{Shown, Unit, shown_in};
-use crate::model::{ModelDocument, Start};
+use crate::flight::{PhysicalQuantity, Shown, Unit, shown_in};
+use crate::model::{ModelDocument, Quantities, Start};
 
 /// Noise alone makes a residual look coherent with an input once in so many diagnoses.
 const COHERENT: f64 = 1e-3;
@@ -107,6 +108,7 @@ pub(super) fn answer(
     let verdict = verdict::of(case, declared, &found, &left);
     let mut remarks = remarks.clone();
     remarks.extend(remarks_on(case, &fits));
+    remarks.extend(lines(&after.solution.histories).iter().map(swings));
     let effects: Vec<NamedEffect> = found
         .accepted
         .iter()
@@ -179,16 +181,24 @@ fn predictions(
     Ok(flights.iter().map(of).collect())
 }
 
-/// Outputs and inputs that the residual still is coherent with.
+/// Outputs and inputs that the residual still is coherent with. An input that a sensor measures brings its noise along,
+/// which what is left follows in any case.
 fn coherent(case: &Case, last: &Fitted) -> Vec<(String, String)> {
     let model = &last.problem.model;
     let Some(screen) = Screen::new(case, last) else {
         return Vec::new();
     };
     let mut found = Vec::new();
-    let questions = (model.outputs.len() * model.inputs.len()) as f64;
+    let quantities = Quantities::of(&last.document);
+    let is_measured =
+        |input: &str| (quantities.get(input)).is_some_and(PhysicalQuantity::is_motion);
+    let inputs: Vec<usize> = (0..model.inputs.len())
+        .filter(|&i| !is_measured(&model.inputs[i].name))
+        .collect();
+    let questions = (model.outputs.len() * inputs.len()) as f64;
     for (o, output) in model.outputs.iter().enumerate() {
-        for (i, input) in model.inputs.iter().enumerate() {
+        for &i in &inputs {
+            let input = &model.inputs[i];
             if screen.follows(o, i, COHERENT / questions) {
                 found.push((output.name.clone(), input.name.clone()));
             }
@@ -219,6 +229,16 @@ fn remarks_on(case: &Case, fits: &[FitChange]) -> Vec<String> {
         ));
     }
     remarks
+}
+
+fn swings(line: &Line) -> String {
+    let Shown { scale, unit } = shown_in(&line.unit);
+    format!(
+        "what is left of {} swings at {:.1} Hz by {} {unit}, and no input does: a vibration of the structure or of the sensor's mount, which is in no catalogue; filter all channels alike below that frequency",
+        line.output,
+        line.frequency,
+        five_digits(line.amplitude * scale)
+    )
 }
 
 fn named(accepted: &Accepted, after: &Full) -> NamedEffect {

@@ -74,8 +74,11 @@ impl Declared {
         watcher: &mut Watcher<'_>,
     ) -> Option<Self> {
         let before = self.fitted.estimate.cost;
-        let mut lower =
-            Self::from(case, &richer.values(), Some(FURTHER_ITERATIONS), watcher).ok()?;
+        let mut values = richer.values();
+        // what the declared model holds, it holds where it says, whatever the richer one freed
+        let holds = |name: &String| case.document.parameters.get(name).is_some_and(|p| p.fixed);
+        values.retain(|(name, _), _| !holds(name));
+        let mut lower = Self::from(case, &values, Some(FURTHER_ITERATIONS), watcher).ok()?;
         let now = lower.fitted.estimate.cost;
         if now >= before - LOWER {
             return None;

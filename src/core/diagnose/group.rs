@@ -1,6 +1,6 @@
 //! Alias groups: candidates that the data cannot tell apart.
 
-use super::passed::Passed;
+use super::passed::{Noise, Passed};
 use super::projection::dot;
 use super::report::Member;
 
@@ -17,13 +17,13 @@ const PARALLEL: f64 = 0.95;
 const FAR: f64 = 40.0;
 
 /// The members of the group that `best` leads, itself included, the likeliest first, with their weights.
-pub(super) fn group(best: &Passed, others: &[Passed]) -> Vec<Member> {
+pub(super) fn group(best: &Passed, others: &[Passed], noise: Noise) -> Vec<Member> {
     let members: Vec<&Passed> = std::iter::once(best)
-        .chain(others.iter().filter(|other| is_alias(best, other)))
+        .chain(others.iter().filter(|other| is_alias(best, other, noise)))
         .collect();
     let shares: Vec<f64> = members
         .iter()
-        .map(|passed| (0.5 * (passed.merit() - best.merit())).exp())
+        .map(|passed| (0.5 * (passed.merit(noise) - best.merit(noise))).exp())
         .collect();
     let whole: f64 = shares.iter().sum();
     let member = |(passed, share): (&&Passed, &f64)| Member {
@@ -35,12 +35,15 @@ pub(super) fn group(best: &Passed, others: &[Passed]) -> Vec<Member> {
     members
 }
 
-fn is_alias(best: &Passed, other: &Passed) -> bool {
+fn is_alias(best: &Passed, other: &Passed, noise: Noise) -> bool {
     let of_fit =
         |passed: &Passed| passed.trial.likelihood_ratio - 2.0 * passed.trial.freedom as f64;
     let held_out = |passed: &Passed| passed.gains.iter().map(|gain| gain.gain).sum::<f64>();
     let fits_as_well = of_fit(best) - of_fit(other) < ALIKE;
     let predicts_as_well = held_out(best) - held_out(other) < CHANCE;
     let explains_the_same = dot(&best.trial.explained, &other.trial.explained).abs() > PARALLEL;
-    (fits_as_well && predicts_as_well) || (explains_the_same && best.merit() - other.merit() < FAR)
+    let as_likely = noise == Noise::White && best.merit(noise) - other.merit(noise) < ALIKE;
+    as_likely
+        || (fits_as_well && predicts_as_well)
+        || (explains_the_same && best.merit(noise) - other.merit(noise) < FAR)
 }

@@ -25,6 +25,7 @@ mod gate;
 mod group;
 mod inconclusive;
 mod knowledge;
+mod lines;
 mod null_model;
 mod outliers;
 mod passed;

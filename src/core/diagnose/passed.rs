@@ -10,6 +10,31 @@ const UNKNOWN: f64 = 4.0;
 /// and the most that a known one may cost: the data have the last word.
 const SURPRISING: f64 = 12.0;
 
+/// What is left of the residual once the likeliest candidate is in the model.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Noise {
+    /// Plain errors are twice a log-likelihood, of other flights than were fitted: what both say is their sum.
+    White,
+    /// Each can mislead: whitening discards what is slow, and plain errors take colour for signal. What both say is twice
+    /// their geometric mean, for white noise would make them alike.
+    Coloured,
+}
+
+impl Noise {
+    /// As the likeliest of some candidates leaves it.
+    pub(super) fn left_by(passed: &[Passed]) -> Self {
+        let likeliest = passed.iter().max_by(|a, b| {
+            a.trial
+                .likelihood_ratio
+                .total_cmp(&b.trial.likelihood_ratio)
+        });
+        match likeliest {
+            Some(likeliest) if !likeliest.settled.is_coloured() => Self::White,
+            _ => Self::Coloured,
+        }
+    }
+}
+
 /// A candidate with nothing against it.
 #[derive(Clone, Debug)]
 pub(super) struct Passed {
@@ -26,18 +51,20 @@ pub(super) struct Passed {
 impl Passed {
     /// By what candidates are chosen: what the data say for it, less the price of its parameters (Schwarz) and of a size that
     /// is not usual.
-    pub(super) fn merit(&self) -> f64 {
+    pub(super) fn merit(&self, noise: Noise) -> f64 {
         let samples = self.settled.problem.samples().max(1) as f64;
         let price = self.trial.freedom as f64 * samples.ln();
-        self.said() - price - self.surprise()
+        self.said(noise) - price - self.surprise()
     }
 
-    /// Twice the geometric mean of two gains: of the likelihood with coloured noise, and of the plain errors that an
-    /// engineer is shown. Where noise is white they are alike. Where it is not each can mislead: whitening discards what
-    /// is slow, and plain errors take colour for signal.
-    fn said(&self) -> f64 {
+    /// What two gains say together: of the likelihood with coloured noise, and of the plain errors that an engineer is
+    /// shown.
+    fn said(&self, noise: Noise) -> f64 {
         let ratio = self.trial.likelihood_ratio;
-        let both = |plain: f64| 2.0 * (ratio.max(0.0) * plain.max(0.0)).sqrt();
+        let both = |plain: f64| match noise {
+            Noise::White => ratio + plain,
+            Noise::Coloured => 2.0 * (ratio.max(0.0) * plain.max(0.0)).sqrt(),
+        };
         match self.plain_gain.map(both) {
             // it may be in the flights that were fitted alone
             Some(both) if self.trial.effect.is_local_in_time() => both.max(ratio),

@@ -9,7 +9,7 @@ use super::fitted::Fitted;
 use super::gate::pass;
 use super::group::group;
 use super::null_model::NullModel;
-use super::passed::Passed;
+use super::passed::{Noise, Passed};
 use super::refused::{after_screen, after_trial, differs, not_fitted};
 use super::report::{Refusal, RefusedEffect, Step};
 use super::screen::{Screen, Screened, independent_questions};
@@ -340,18 +340,19 @@ fn not_tried(seen: &Seen, passed: &[Passed], threshold: Threshold) -> RefusedEff
 
 /// Accepts the best of those that passed; the others were outdone.
 fn choose(mut passed: Vec<Passed>, threshold: Threshold, result: &mut Round) {
-    passed.sort_by(|a, b| b.merit().total_cmp(&a.merit()));
+    let noise = Noise::left_by(&passed);
+    passed.sort_by(|a, b| b.merit(noise).total_cmp(&a.merit(noise)));
     let mut passed = passed.into_iter();
     let Some(best) = passed.next() else {
         return;
     };
     let others: Vec<Passed> = passed.collect();
-    let group = group(&best, &others);
+    let group = group(&best, &others, noise);
     for other in &others {
         let why = format!(
             "{} is the better explanation, by {:.1} (gains of the likelihood and of plain errors, less the price of parameters and of an unusual size)",
             best.trial.effect.name(),
-            best.merit() - other.merit()
+            best.merit(noise) - other.merit(noise)
         );
         let held_out: f64 = other.gains.iter().map(|gain| gain.gain).sum();
         result.refused.push(after_trial(

@@ -82,13 +82,23 @@ impl Screened {
     pub(super) fn starts(&self) -> Vec<Values> {
         let mut starts = vec![self.start.clone()];
         if self.visible < IMITATED {
-            let of = |(key, value): (&Key, &f64)| {
-                let before = self.before.get(key).copied().unwrap_or(*value);
-                (key.clone(), before + self.visible * (value - before))
-            };
-            starts.push(self.start.iter().map(of).collect());
+            starts.push(self.share(self.visible));
         }
         starts
+    }
+
+    /// Close to no effect: from here a fit goes wrong only where the effect is none.
+    pub(super) fn close_start(&self) -> Values {
+        self.share(CLOSE)
+    }
+
+    /// A share of the one step.
+    fn share(&self, share: f64) -> Values {
+        let of = |(key, value): (&Key, &f64)| {
+            let before = self.before.get(key).copied().unwrap_or(*value);
+            (key.clone(), before + share * (value - before))
+        };
+        self.start.iter().map(of).collect()
     }
 }
 
@@ -97,6 +107,9 @@ const ORDER_LEFT: usize = 2;
 
 /// How long after an input a residual may follow it, s.
 const AFTER: [f64; 6] = [0.0, 0.1, 0.25, 0.5, 1.0, 2.0];
+
+/// A share of the one step that is close to no effect.
+const CLOSE: f64 = 0.05;
 
 /// Below this share of its own an effect is closely imitated.
 const IMITATED: f64 = 0.2;

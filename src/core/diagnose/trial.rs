@@ -56,10 +56,19 @@ impl Trial {
             None => starts(case, &effect, &edited),
         };
         let tried = screened.as_ref().map_or(starts.len(), |seen| seen.starts);
-        let (ln_evidence, likeliest) = likeliest(
-            fits(case, base, &effect, &edited.document, &starts)?,
-            &effect,
-        );
+        let fitted_from = |starts: &[Values]| {
+            let fits = fits(case, base, &effect, &edited.document, starts)?;
+            Ok::<_, String>(likeliest(fits, &effect))
+        };
+        let mut best = fitted_from(&starts)?;
+        // a model that holds the one without the effect explains no less: the step had led astray
+        if let (true, Some(seen)) = (best.0 < null.ln_evidence, &screened)
+            && let Ok(closer) = fitted_from(&[seen.close_start()])
+            && closer.0 > best.0
+        {
+            best = closer;
+        }
+        let (ln_evidence, likeliest) = best;
         let declared = base.problem.unknowns.len();
         Ok(Self {
             added: edited.added,

@@ -2,6 +2,7 @@
 
 use super::monomials::Monomial;
 use super::subject::Subject;
+use super::variables::Variable;
 use crate::diagnose::effect::Effect;
 use crate::flight::{Dimension, Family, Motion, PhysicalQuantity, Unit};
 use crate::model::expression::{self, Expression};
@@ -112,11 +113,17 @@ fn may_be_a_force(unit: &str) -> bool {
     })
 }
 
-/// Flow angles, of the motion that an equation belongs to, whose history it may feel.
+/// Flow angles, of the motion that an equation belongs to, whose history it may feel; near the hover, where there is no
+/// such angle, the velocities and the controls, which the inflow of a rotor follows.
 fn unsteady(subject: &Subject<'_>) -> Vec<Effect> {
     let variables = subject.variables();
+    let has_angle = variables.iter().any(|v| v.quantity.is_flow_angle());
+    let is_of_flow = |v: &Variable| match has_angle {
+        true => v.quantity.is_flow_angle(),
+        false => v.is_velocity() || v.is_control(),
+    };
     let angles: Vec<_> = (variables.iter())
-        .filter(|v| v.quantity.is_flow_angle() && v.channel.is_none())
+        .filter(|v| is_of_flow(v) && v.channel.is_none())
         .collect();
     let mut effects = Vec::new();
     for law in subject.aerodynamic() {
@@ -124,9 +131,8 @@ fn unsteady(subject: &Subject<'_>) -> Vec<Effect> {
             continue;
         }
         for angle in &angles {
-            let fits = law
-                .motion
-                .is_none_or(|motion| angle.quantity.motion() == Some(motion));
+            let own = angle.quantity.motion();
+            let fits = (law.motion).is_none_or(|motion| own.is_none_or(|own| own == motion));
             if fits
                 && angle.name != law.target
                 && !subject.closes_a_circle(&angle.name, &law.target)

@@ -63,7 +63,9 @@ impl Subject<'_> {
             .filter_map(|v| Some((v.name.clone(), v.channel.clone()?)))
             .collect();
         let kind = match product.variables.as_slice() {
-            [one] if one.channel.is_some() && product.text == one.name => EditKind::UnrecordedInput,
+            [one] if one.channel.is_some() && one.is_control() && product.text == one.name => {
+                EditKind::UnrecordedInput
+            }
             _ => EditKind::MissingTerm,
         };
         let edit = Edit {
@@ -130,14 +132,14 @@ impl<'v> Product<'v> {
     }
 
     /// Whether an equation of a motion may hold it. A single variable of the other motion is a coupling, which there may
-    /// be; a product must change sign with the side as the equation does.
+    /// be (a slipstream yaws with the speed); a product must change sign with the side as the equation does.
     fn belongs_to(&self, motion: Option<Motion>) -> bool {
         let Some(motion) = motion else { return true };
         if self.variables.iter().any(|v| v.quantity.motion().is_none()) {
             return true;
         }
         match self.variables.as_slice() {
-            [one] if one.is_speed() || one.is_flow_rate() => one.quantity.motion() == Some(motion),
+            [one] if one.is_flow_rate() => one.quantity.motion() == Some(motion),
             [one] if self.text == one.name => true,
             _ => self.is_odd == (motion == Motion::Lateral),
         }
@@ -148,19 +150,24 @@ fn products(variables: &[Variable]) -> Vec<Product<'_>> {
     let mut all: Vec<Product<'_>> = variables.iter().map(|v| Product::power(v, 1)).collect();
     let deflects = |v: &Variable| v.is_control() && v.quantity != PhysicalQuantity::Thrust;
     for v in variables {
-        if v.quantity.is_flow_angle() {
+        let is_angle = v.quantity.is_flow_angle();
+        if is_angle || v.is_velocity() {
             all.push(Product::power(v, 2));
+        }
+        if is_angle {
             all.push(Product::power(v, 3));
         }
-        if v.is_rate() || deflects(v) || v.quantity.is_flow_angle() {
+        if v.is_rate() || deflects(v) || is_angle || v.is_velocity() {
             all.push(Product::signed_square(v));
         }
     }
     let moves = |v: &Variable| v.quantity.is_flow_angle() || v.is_rate();
     for (i, a) in variables.iter().enumerate() {
         for b in &variables[i + 1..] {
-            let (angle, other) = (a.quantity.is_flow_angle(), b.quantity.is_flow_angle());
-            if (moves(a) && moves(b)) || (angle && deflects(b)) || (other && deflects(a)) {
+            let flows = |v: &Variable| v.quantity.is_flow_angle() || v.is_velocity();
+            let (one, other) = (flows(a), flows(b));
+            let both = (moves(a) && moves(b)) || (a.is_velocity() && b.is_velocity());
+            if both || (one && deflects(b)) || (other && deflects(a)) {
                 all.push(Product::pair(a, b));
             }
         }

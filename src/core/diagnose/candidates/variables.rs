@@ -33,6 +33,12 @@ impl Variable {
         )
     }
 
+    /// A component of the velocity through the air.
+    pub(super) fn is_velocity(&self) -> bool {
+        use PhysicalQuantity::{VelocityX, VelocityY, VelocityZ};
+        matches!(self.quantity, VelocityX | VelocityY | VelocityZ)
+    }
+
     pub(super) fn is_flow_rate(&self) -> bool {
         use PhysicalQuantity::{AngleOfAttackRate, AngleOfSideslipRate};
         matches!(self.quantity, AngleOfAttackRate | AngleOfSideslipRate)
@@ -57,6 +63,7 @@ impl Subject<'_> {
             .collect();
         // where both are recorded the one is hardly told from the other
         variables.extend(self.variable(Airspeed).or_else(|| self.variable(Mach)));
+        variables.extend(self.velocities(&variables));
         variables.extend(self.flow_rates());
         let inputs = self.document.inputs.keys();
         let controls = inputs.filter_map(|name| {
@@ -78,6 +85,21 @@ impl Subject<'_> {
             (variable.movement).is_none_or(|movement| movement.moves(variable.quantity))
         });
         variables
+    }
+
+    /// Of components of the velocity, what no angle or speed among `others` says: near the hover there are none.
+    fn velocities(&self, others: &[Variable]) -> Vec<Variable> {
+        use PhysicalQuantity::{AngleOfAttack, AngleOfSideslip, VelocityX, VelocityY, VelocityZ};
+        let has = |quantity: PhysicalQuantity| others.iter().any(|v| v.quantity == quantity);
+        let wanted = [
+            (VelocityX, !others.iter().any(Variable::is_speed)),
+            (VelocityY, !has(AngleOfSideslip)),
+            (VelocityZ, !has(AngleOfAttack)),
+        ];
+        let states = wanted.into_iter().filter(|(_, is_wanted)| *is_wanted);
+        states
+            .filter_map(|(quantity, _)| self.variable(quantity))
+            .collect()
     }
 
     /// Rates of the flow angles: quantities of their own, or the derivatives of states.

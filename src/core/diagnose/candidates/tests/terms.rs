@@ -2,7 +2,7 @@
 
 use super::{beside, case, names, of, offered};
 use crate::diagnose::effect::{Effect, EffectKind};
-use crate::model::{EditKind, Reference, catalog};
+use crate::model::{EditKind, ModelDocument, Reference, catalog};
 
 #[test]
 fn flow_angles_that_are_definitions_take_part() {
@@ -14,7 +14,7 @@ fn flow_angles_that_are_definitions_take_part() {
         "missing_term q in Cl",
         "unsteady_aero of Cm (alpha)",
         "sensor_position of alpha (x)",
-        "gust of beta",
+        "gust of beta (1)",
         "process_noise of w",
     ] {
         assert!(found.contains(name), "no {name}");
@@ -116,7 +116,8 @@ fn products_with_recorded_channels_are_offered_about_a_reference() {
         "missing_term V*beta in ay",
         "missing_term alpha*dr in ay",
         "missing_term p*abs(p) in p",
-        "unrecorded_input of p (q)",
+        "missing_term q in p",
+        "missing_term V in r",
         "unrecorded_input of r (df)",
     ] {
         found(name);
@@ -149,6 +150,47 @@ fn products_with_recorded_channels_are_offered_about_a_reference() {
             .contains("(alpha - alpha_about)^2")
     );
 }
+
+/// Near the hover no flow angle is of use: the velocities take its place.
+#[test]
+fn velocities_take_part_where_there_is_no_flow_angle() {
+    let document: ModelDocument = toml::from_str(HOVER).unwrap();
+    let found = names(&offered(&case(&document, &[])));
+    for name in [
+        "missing_term u^2 in q",
+        "missing_term w*abs(w) in w",
+        "missing_term u*w in q",
+        "missing_term w*dlon in w",
+        "missing_term w in q",
+        "unsteady_aero of q (w)",
+        "unsteady_aero of q (dcol)",
+    ] {
+        assert!(found.contains(name), "no {name} in {found:#?}");
+    }
+    // a product with a rate is kinematics
+    assert!(!found.contains("missing_term q*w in q"));
+}
+
+const HOVER: &str = r#"
+name = "hover"
+[inputs]
+dlon = { unit = "-", quantity = "elevator" }
+dcol = { unit = "-", quantity = "thrust" }
+[parameters]
+Xu = { unit = "1/s", start = -0.05 }
+Zw = { unit = "1/s", start = -0.5 }
+Zcol = { unit = "m/s^2", start = -25.0 }
+Mu = { unit = "1/(m*s)", start = 0.01 }
+Mq = { unit = "1/s", start = -2.0 }
+Mlon = { unit = "1/s^2", start = 5.0 }
+[states]
+u = { unit = "m/s", initial = "0", derivative = "Xu*u" }
+w = { unit = "m/s", initial = "0", derivative = "Zw*w + Zcol*dcol" }
+q = { unit = "rad/s", initial = "0", derivative = "Mu*u + Mq*q + Mlon*dlon" }
+[outputs]
+q = { unit = "rad/s", equation = "q" }
+u = { unit = "m/s", equation = "u" }
+"#;
 
 #[test]
 fn what_does_not_move_is_no_input_and_no_factor() {
