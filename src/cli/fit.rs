@@ -1,11 +1,13 @@
 //! `trimtab fit`: an estimation here and now, without a server.
 
 use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
 
 use super::progress::ProgressLine;
 use super::request::Request;
 use super::{Failure, notes, table};
-use crate::job::{self, JobKind};
+use crate::estimate::Estimate;
+use crate::job::{self, JobKind, Plan};
 
 /// Fits a model to recordings and prints the parameter table.
 #[derive(clap::Args, Debug)]
@@ -15,6 +17,9 @@ pub(super) struct Fit {
     /// Print the whole result as JSON instead.
     #[arg(long)]
     json: bool,
+    /// Write every state, definition and output along the trajectory, with standard errors, to this CSV file.
+    #[arg(long, value_name = "FILE")]
+    trajectories: Option<PathBuf>,
 }
 
 impl Fit {
@@ -30,6 +35,9 @@ impl Fit {
             Failure::faults("the job failed", &faults)
         })?;
         progress.finish(&result.estimate.reason);
+        if let Some(file) = &self.trajectories {
+            self.write_trajectories(file, &plan, &result.estimate)?;
+        }
         if self.json {
             notes::say(&result.estimate.findings);
             println!("{}", serde_json::to_string_pretty(&result)?);
@@ -37,5 +45,17 @@ impl Fit {
             println!("{}", table::result(&result.estimate, None));
         }
         Ok(())
+    }
+
+    fn write_trajectories(
+        &self,
+        file: &Path,
+        plan: &Plan,
+        estimate: &Estimate,
+    ) -> Result<(), Failure> {
+        let trajectories = job::trajectories_of(plan, estimate)
+            .map_err(|why| Failure::new(format!("there is no trajectory: {why}")))?;
+        std::fs::write(file, job::trajectories_as_csv(&trajectories))
+            .map_err(|why| Failure::new(format!("{} cannot be written: {why}", file.display())))
     }
 }

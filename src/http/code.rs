@@ -78,6 +78,8 @@ codes! {
     UnknownCode "unknown_code" NOT_FOUND "There is no such code";
     /// The job ended without a result: `detail` says how it ended.
     NoResult "no_result" NOT_FOUND "The job has no result";
+    /// The result has no trajectory: `detail` says why.
+    NoTrajectory "no_trajectory" CONFLICT "There is no trajectory";
     /// The path is right, the method is not. The header `Allow` lists those that are.
     MethodNotAllowed "method_not_allowed" METHOD_NOT_ALLOWED "The method is not allowed here";
     /// None of the media types in `Accept` is offered here.

@@ -243,9 +243,8 @@ fn predictive(
     }
     // what speaks for it on all flights together
     let in_all = trial.likelihood_ratio + gain;
-    // where noise is coloured, what the likelihood says must be seen in plain errors, too
-    let nothing_seen = gain <= 0.0 && settled.is_coloured();
-    if expected >= HEARD && (gain < least_gain(expected) || in_all < least || nothing_seen) {
+    let is_seen = gain > 0.0 || trial.likelihood_ratio >= UNHEARD * least;
+    if expected >= HEARD && (gain < least_gain(expected) || in_all < least || !is_seen) {
         let why = format!(
             "it differs between maneuvers: flights that were not fitted are not predicted better with it (gain {gain:.1}, where {expected:.1} is expected)"
         );

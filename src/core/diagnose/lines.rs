@@ -19,8 +19,8 @@ const WINDOW: usize = 512;
 const AROUND: usize = 12;
 const NEAREST: usize = 3;
 
-/// An input whose own line stands out as much drives the output there.
-const DRIVEN: f64 = 6.0;
+/// An input with which the output is more coherent at a line drives it there.
+const DRIVEN: f64 = 0.5;
 
 /// Windows overlap by half: so many of their degrees of freedom are their own (Welch, 1967).
 const OWN: f64 = 0.75;
@@ -49,28 +49,21 @@ pub(super) fn lines(histories: &[TimeHistory]) -> Vec<Line> {
     }
     let step = (first.time[first.time.len() - 1] - first.time[0]) / (first.time.len() - 1) as f64;
     let windows = Windows::new(size);
-    let inputs: Vec<Vec<f64>> = (0..first.inputs.len())
-        .map(|input| {
-            windows
-                .power(histories.iter().map(|h| h.inputs[input].values.as_slice()))
-                .0
-        })
+    let inputs: Vec<Vec<Spectrum>> = (0..first.inputs.len())
+        .map(|input| windows.spectra(histories.iter().map(|h| h.inputs[input].values.as_slice())))
         .collect();
     let questions = (first.outputs.len() * size / 2) as f64;
     let of_output = |output: usize| {
-        let residuals = histories
-            .iter()
-            .map(|h| h.outputs[output].residual.as_slice());
-        let (power, count) = windows.power(residuals);
-        let stands_out = |line: &usize| ratio(&power, *line);
-        let drives = |input: &Vec<f64>, line: usize| {
-            (line - 1..=line + 1).any(|near| ratio(input, near) > DRIVEN)
-        };
+        let residuals = (histories.iter()).map(|h| h.outputs[output].residual.as_slice());
+        let spectra = windows.spectra(residuals);
+        let power = power(&spectra);
+        let is_driven =
+            |line: usize| (inputs.iter()).any(|input| coherence(&spectra, input, line) > DRIVEN);
         let line = (AROUND..power.len().saturating_sub(AROUND))
-            .filter(|line| !inputs.iter().any(|input| drives(input, *line)))
-            .max_by(|a, b| stands_out(a).total_cmp(&stands_out(b)))?;
-        let is_clear = stands_out(&line) > critical(count, questions);
-        is_clear.then(|| Line {
+            .max_by(|&a, &b| ratio(&power, a).total_cmp(&ratio(&power, b)))?;
+        let count = spectra.iter().flatten().count() as f64;
+        let is_clear = ratio(&power, line) > critical(count, questions);
+        (is_clear && !is_driven(line)).then(|| Line {
             output: first.outputs[output].name.clone(),
             unit: first.outputs[output].unit.clone(),
             frequency: line as f64 / (size as f64 * step),
@@ -78,6 +71,36 @@ pub(super) fn lines(histories: &[TimeHistory]) -> Vec<Line> {
         })
     };
     (0..first.outputs.len()).filter_map(of_output).collect()
+}
+
+/// Of one window; `None` where it has a gap.
+type Spectrum = Option<Vec<Complex64>>;
+
+/// Mean power by line.
+fn power(spectra: &[Spectrum]) -> Vec<f64> {
+    let whole = || spectra.iter().flatten();
+    let count = whole().count().max(1) as f64;
+    let lines = whole().next().map_or(0, Vec::len);
+    (0..lines)
+        .map(|line| whole().map(|x| x[line].norm_sqr()).sum::<f64>() / count)
+        .collect()
+}
+
+/// Squared coherence of two series at a line; of few windows it is 1 by construction, and an input that is not still at
+/// that line drives the output.
+fn coherence(output: &[Spectrum], input: &[Spectrum], line: usize) -> f64 {
+    let (mut cross, mut own, mut of_input) = (Complex64::new(0.0, 0.0), 0.0, 0.0);
+    for (e, u) in output.iter().zip(input) {
+        if let (Some(e), Some(u)) = (e, u) {
+            cross += e[line] * u[line].conj();
+            own += e[line].norm_sqr();
+            of_input += u[line].norm_sqr();
+        }
+    }
+    match own * of_input {
+        whole if whole > 0.0 => cross.norm_sqr() / whole,
+        _ => 0.0,
+    }
 }
 
 /// The power of a line over the median of those around it.
@@ -120,36 +143,23 @@ impl Windows {
         }
     }
 
-    /// Mean power by line over all windows without a gap, and how many these are.
-    fn power<'s>(&self, series: impl Iterator<Item = &'s [f64]>) -> (Vec<f64>, f64) {
+    /// Of the windows of some series, one after the other.
+    fn spectra<'s>(&self, series: impl Iterator<Item = &'s [f64]>) -> Vec<Spectrum> {
         let size = self.hann.len();
-        let mut power = vec![0.0; size / 2];
-        let mut count = 0.0;
-        for values in series {
-            let mut from = 0;
-            while from + size <= values.len() {
-                let window = &values[from..from + size];
-                from += size / 2;
-                if !window.iter().all(|value| value.is_finite()) {
-                    continue;
-                }
-                let mean = window.iter().sum::<f64>() / size as f64;
-                let weighted = window.iter().zip(&self.hann);
-                let mut buffer: Vec<Complex64> = weighted
-                    .map(|(value, w)| Complex64::new((value - mean) * w, 0.0))
-                    .collect();
-                self.plan.process(&mut buffer);
-                power
-                    .iter_mut()
-                    .zip(&buffer)
-                    .for_each(|(sum, x)| *sum += x.norm_sqr());
-                count += 1.0;
-            }
-        }
-        power
-            .iter_mut()
-            .for_each(|sum| *sum /= f64::max(count, 1.0));
-        (power, count)
+        let of_window = |window: &[f64]| {
+            let mean = window.iter().sum::<f64>() / size as f64;
+            let weighted = window.iter().zip(&self.hann);
+            let mut buffer: Vec<Complex64> = weighted
+                .map(|(value, w)| Complex64::new((value - mean) * w, 0.0))
+                .collect();
+            self.plan.process(&mut buffer);
+            buffer.truncate(size / 2);
+            (mean.is_finite()).then_some(buffer)
+        };
+        let starts = |values: &[f64]| (0..=values.len() - size).step_by(size / 2);
+        series
+            .flat_map(|values| starts(values).map(|from| of_window(&values[from..from + size])))
+            .collect()
     }
 
     /// Of a swing with this power in its line.

@@ -49,6 +49,7 @@ mod regression;
 mod report;
 mod start;
 pub mod study;
+mod trajectory;
 
 pub use crate::flight::five_digits;
 pub use answer::Solution;
@@ -91,3 +92,4 @@ pub use report::parameter::{Bound, ParameterEstimate};
 pub use report::prediction::Prediction;
 pub use report::progress::{Observer, Progress, Watcher};
 pub use report::start::{StartKind, StartReport};
+pub use trajectory::{QuantityKind, Trajectory, TrajectorySeries, trajectories};

@@ -14,6 +14,7 @@ mod run;
 mod spec;
 mod status;
 mod strict;
+mod trajectories;
 
 pub use crate::flight::{Fault, Faults};
 pub use event::{Event, EventBody, Prepared};
@@ -29,3 +30,4 @@ pub use spec::{
 };
 pub use status::Status;
 pub use strict::Strict;
+pub use trajectories::{NoTrajectory, trajectories_again, trajectories_as_csv, trajectories_of};

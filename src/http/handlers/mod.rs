@@ -34,6 +34,7 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(jobs::coefficients::router())
         .merge(jobs::histories::router())
         .merge(jobs::residual_analysis::router())
+        .merge(jobs::trajectories::router())
         .merge(problems::router())
         .merge(keys::router())
         .merge(webhooks::router())

@@ -11,3 +11,4 @@ pub(super) mod rerun;
 pub(super) mod residual_analysis;
 pub(crate) mod results;
 pub(super) mod submit;
+pub(super) mod trajectories;

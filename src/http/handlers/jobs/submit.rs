@@ -217,7 +217,7 @@ async fn resolve_model(
 }
 
 /// The maneuvers of the spec, in its order; or those that are not there, or are too much.
-async fn load(
+pub(crate) async fn load(
     service: &Service,
     spec: &JobSpec,
 ) -> Result<Result<Vec<Arc<Maneuver>>, Vec<Fault>>, Problem> {

@@ -1,0 +1,126 @@
+//! Everything along the trajectory of a finished job: its plan is made once more, and simulated at its estimate.
+
+use std::sync::Arc;
+
+use super::plan::Plan;
+use super::prepare::prepare;
+use super::spec::{JobKind, JobSpec};
+use crate::estimate::{
+    Estimate, QuantityKind, Trajectory, TrajectorySeries, Unusable, trajectories,
+};
+use crate::flight::{Faults, Maneuver};
+use crate::ingest::CsvWriter;
+use crate::model::ModelDocument;
+
+/// Why there is no trajectory.
+#[derive(Clone, PartialEq, Debug, thiserror::Error)]
+pub enum NoTrajectory {
+    /// The states of a filter follow the measurements.
+    #[error(
+        "filter error follows the measurements: its states are those of a filter, not of the model alone; estimate by output error for a trajectory"
+    )]
+    Filter,
+    /// The job is not what it was: another program made the result.
+    #[error("the result has other parameters than this program makes of the job; run it again")]
+    OtherParameters,
+    /// The job can no longer be prepared.
+    #[error("the job cannot be prepared again: {0}")]
+    Unprepared(Faults),
+    /// The estimate leads nowhere.
+    #[error("at the estimate {0}")]
+    Unusable(Unusable),
+}
+
+/// States, definitions and outputs along the segments that a plan was fitted to.
+///
+/// # Errors
+/// The estimate is a filter's, or none of this plan, or the simulation leaves the range of numbers.
+pub fn trajectories_of(plan: &Plan, estimate: &Estimate) -> Result<Vec<Trajectory>, NoTrajectory> {
+    if estimate.filter.is_some() {
+        return Err(NoTrajectory::Filter);
+    }
+    let problem = &plan.problem;
+    let own = problem.unknowns.all.iter().map(|unknown| {
+        let segment = unknown
+            .segment
+            .map(|segment| problem.segments[segment].label.as_str());
+        (
+            problem.model.parameters[unknown.parameter].name.as_str(),
+            segment,
+        )
+    });
+    let estimated = estimate
+        .parameters
+        .iter()
+        .map(|row| (row.name.as_str(), row.segment.as_deref()));
+    if !own.eq(estimated) {
+        return Err(NoTrajectory::OtherParameters);
+    }
+    trajectories(problem, estimate).map_err(NoTrajectory::Unusable)
+}
+
+/// Those of a job of which spec, declared model, data and result were kept.
+///
+/// # Errors
+/// As [`trajectories_of`]; the job cannot be prepared again.
+pub fn trajectories_again(
+    spec: &JobSpec,
+    declared: &ModelDocument,
+    maneuvers: &[Arc<Maneuver>],
+    (estimated, estimate): (&ModelDocument, &Estimate),
+) -> Result<Vec<Trajectory>, NoTrajectory> {
+    let plan = match spec.kind {
+        JobKind::Estimate | JobKind::DerivativeStudy => prepare(spec, declared, maneuvers),
+        // the model of a diagnosis has its effects in it, and the job's own edits
+        JobKind::Diagnose => {
+            let mut spec = spec.clone();
+            spec.kind = JobKind::Estimate;
+            spec.edits.clear();
+            spec.parameters.clear();
+            prepare(&spec, estimated, maneuvers)
+        }
+    };
+    trajectories_of(&plan.map_err(NoTrajectory::Unprepared)?, estimate)
+}
+
+/// A table of trajectories: a row for each sample, a column for each quantity and its standard error.
+pub fn trajectories_as_csv(trajectories: &[Trajectory]) -> String {
+    let first = trajectories.first();
+    let titles = first.iter().flat_map(|trajectory| &trajectory.quantities);
+    let titles = titles.flat_map(|series| {
+        let error = title(series, "_standard_error");
+        [
+            Some(title(series, "")),
+            (!series.standard_errors.is_empty()).then_some(error),
+        ]
+    });
+    let begin = ["segment", "t[s]"].map(|title| Some(title.to_string()));
+    let mut csv = CsvWriter::with_header(begin.into_iter().chain(titles).flatten());
+    for trajectory in trajectories {
+        for (row, time) in trajectory.time.iter().enumerate() {
+            csv.text(&trajectory.segment);
+            csv.number(*time);
+            for series in &trajectory.quantities {
+                csv.number(series.values.get(row).copied());
+                if let Some(error) = series.standard_errors.get(row) {
+                    csv.number(*error);
+                }
+            }
+            csv.end_row();
+        }
+    }
+    csv.finish()
+}
+
+/// `CL`, `q[rad/s]`, and of an output, which may have the name of a state, `q_model[rad/s]`.
+fn title(series: &TrajectorySeries, what: &str) -> String {
+    let model = match series.kind {
+        QuantityKind::Output => "_model",
+        QuantityKind::State | QuantityKind::Definition => "",
+    };
+    let name = format!("{}{model}{what}", series.name);
+    match series.unit.as_str() {
+        "" | "-" => name,
+        unit => format!("{name}[{unit}]"),
+    }
+}
