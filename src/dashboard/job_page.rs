@@ -238,6 +238,7 @@ fn downloads(view: &JobView) -> Markup {
             li { a href={ (base) "/parameters?format=csv" } { "parameters (CSV)" } }
             li { a href={ (base) "/time-histories?format=csv" } { "time histories (CSV)" } }
             li { a href={ (base) "/residuals?format=csv" } { "residuals (CSV)" } }
+            li { a href={ (base) "/trajectories?format=csv" } { "states and definitions with standard errors (CSV)" } }
             li { a href={ (base) "/model?format=toml" } { "model as estimated (TOML)" } }
             li { a href={ (base) "/estimate" } { "estimate (JSON)" } }
             li { a href={ (base) "/residual-analysis" } { "residual analysis (JSON)" } }

@@ -48,4 +48,5 @@ mod priors;
 mod sensitivities;
 mod starts;
 mod steps;
+mod trajectories;
 mod unstable;

@@ -43,6 +43,20 @@ fn fit_works_without_a_server() {
         table.contains("Mde") && table.contains("alpha_0 [elevator]") && table.contains("R²"),
         "{table}"
     );
+    let file = std::env::temp_dir().join(format!("trimtab-{}.csv", std::process::id()));
+    let path = file.to_string_lossy();
+    succeeds(&[
+        "fit",
+        "data/elevator.csv",
+        "-m",
+        "short-period",
+        "--trajectories",
+        &path,
+    ]);
+    let written = std::fs::read_to_string(&file).expect("a table");
+    std::fs::remove_file(&file).expect("removed");
+    assert!(written.starts_with("segment,t[s],alpha[rad],alpha_standard_error[rad],q[rad/s]"));
+    assert_eq!(written.lines().count(), 627);
     let json = succeeds(&[
         "fit",
         "data/elevator.csv",

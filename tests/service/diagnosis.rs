@@ -119,6 +119,22 @@ async fn a_diagnosis_tells_its_steps_and_names_what_is_missing() {
         assert_eq!(alpha["declared"].as_array().unwrap().len(), samples);
         assert_ne!(alpha["declared"], alpha["model"]);
     }
+    // along the trajectory of the model with its effects
+    let trajectories = server
+        .get(&format!("/v1/jobs/{id}/trajectories?names=q"))
+        .await;
+    let modelled = &histories[0]["outputs"][1];
+    let quantities = trajectories.json()["segments"][0]["quantities"].take();
+    assert_eq!(modelled["name"], "q");
+    let apart = |k: usize| {
+        let of = |values: &serde_json::Value| values[k].as_f64().unwrap();
+        (of(&quantities[1]["values"]) - of(&modelled["model"])).abs()
+    };
+    assert!(
+        (0..600).all(|k| apart(k) < 1e-9),
+        "{}",
+        quantities[1]["name"]
+    );
     let estimate = server.get(&format!("/v1/jobs/{id}/estimate")).await.json();
     let names = estimate["parameters"].as_array().unwrap();
     assert!(names.iter().any(|row| row["name"] == "de_backlash"));

@@ -151,6 +151,49 @@ async fn every_result_has_its_forms() {
 }
 
 #[tokio::test]
+async fn states_and_definitions_are_had_along_the_trajectory() {
+    let server = Server::start().await;
+    let maneuver = server.upload(&elevator()).await;
+    let id = server.submit(&job(&maneuver)).await;
+    server.wait(&id).await;
+    let at = |query: &str| format!("/v1/jobs/{id}/trajectories{query}");
+    let segment = server.get(&at("?max_points=100")).await.json()["segments"][0].take();
+    assert_eq!(segment["segment"], "elevator");
+    let samples = segment["time"].as_array().unwrap().len();
+    assert!((50..=100).contains(&samples), "{samples}");
+    let names: Vec<(&str, &str)> = (segment["quantities"].as_array().unwrap().iter())
+        .map(|series| {
+            (
+                series["name"].as_str().unwrap(),
+                series["kind"].as_str().unwrap(),
+            )
+        })
+        .collect();
+    let expected = [
+        ("alpha", "state"),
+        ("q", "state"),
+        ("alpha", "output"),
+        ("q", "output"),
+    ];
+    assert_eq!(names, expected);
+    let errors = segment["quantities"][0]["standard_errors"]
+        .as_array()
+        .unwrap();
+    assert_eq!(errors.len(), samples);
+    assert!(errors.iter().all(|error| error.as_f64().unwrap() > 0.0));
+    let csv = server.get(&at("?names=q&format=csv")).await.text();
+    let titles = "segment,t[s],q[rad/s],q_standard_error[rad/s],q_model[rad/s],q_model_standard_error[rad/s]";
+    assert_eq!(csv.lines().next(), Some(titles));
+    let refused = server.get(&at("?names=Cm")).await;
+    refused.problem(400, "invalid_query");
+    assert!(
+        refused.text().contains("it has alpha, q"),
+        "{}",
+        refused.text()
+    );
+}
+
+#[tokio::test]
 async fn results_are_not_sent_twice() {
     let server = Server::start().await;
     let maneuver = server.upload(&elevator()).await;
@@ -162,6 +205,7 @@ async fn results_are_not_sent_twice() {
         "residuals",
         "residual-analysis",
         "time-histories",
+        "trajectories",
         "model",
         "spec",
     ] {
@@ -192,6 +236,7 @@ async fn results_before_the_end_are_a_conflict() {
         "residuals",
         "residual-analysis",
         "time-histories",
+        "trajectories",
         "model",
     ] {
         let answer = server.get(&format!("/v1/jobs/{id}/{name}")).await;

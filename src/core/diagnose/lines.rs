@@ -10,7 +10,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use crate::estimate::TimeHistory;
 
 /// Noise alone makes a line once in so many diagnoses.
-const FALSE_ALARM: f64 = 1e-4;
+const FALSE_ALARM: f64 = 1e-3;
 
 /// Samples of a window, at most.
 const WINDOW: usize = 512;
@@ -19,8 +19,8 @@ const WINDOW: usize = 512;
 const AROUND: usize = 12;
 const NEAREST: usize = 3;
 
-/// An input with which the output is more coherent at a line drives it there.
-const DRIVEN: f64 = 0.5;
+/// Independent series are as coherent as one that drives the other once in so many inputs.
+const BY_CHANCE: f64 = 0.01;
 
 /// Windows overlap by half: so many of their degrees of freedom are their own (Welch, 1967).
 const OWN: f64 = 0.75;
@@ -57,11 +57,12 @@ pub(super) fn lines(histories: &[TimeHistory]) -> Vec<Line> {
         let residuals = (histories.iter()).map(|h| h.outputs[output].residual.as_slice());
         let spectra = windows.spectra(residuals);
         let power = power(&spectra);
-        let is_driven =
-            |line: usize| (inputs.iter()).any(|input| coherence(&spectra, input, line) > DRIVEN);
+        let count = spectra.iter().flatten().count() as f64;
+        let is_driven = |line: usize| {
+            (inputs.iter()).any(|input| coherence(&spectra, input, line) > by_chance(count))
+        };
         let line = (AROUND..power.len().saturating_sub(AROUND))
             .max_by(|&a, &b| ratio(&power, a).total_cmp(&ratio(&power, b)))?;
-        let count = spectra.iter().flatten().count() as f64;
         let is_clear = ratio(&power, line) > critical(count, questions);
         (is_clear && !is_driven(line)).then(|| Line {
             output: first.outputs[output].name.clone(),
@@ -86,8 +87,12 @@ fn power(spectra: &[Spectrum]) -> Vec<f64> {
         .collect()
 }
 
-/// Squared coherence of two series at a line; of few windows it is 1 by construction, and an input that is not still at
-/// that line drives the output.
+/// The squared coherence that independent series have by chance over `windows`: P(γ² > x) = (1 - x)^(M - 1).
+fn by_chance(windows: f64) -> f64 {
+    1.0 - BY_CHANCE.powf(1.0 / (OWN * windows - 1.0).max(0.0))
+}
+
+/// Squared coherence of two series at a line.
 fn coherence(output: &[Spectrum], input: &[Spectrum], line: usize) -> f64 {
     let (mut cross, mut own, mut of_input) = (Complex64::new(0.0, 0.0), 0.0, 0.0);
     for (e, u) in output.iter().zip(input) {

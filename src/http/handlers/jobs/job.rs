@@ -81,6 +81,7 @@ struct JobLinks {
     residuals: String,
     residual_analysis: String,
     time_histories: String,
+    trajectories: String,
     model: String,
     /// Of a job of the kind `diagnose`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -101,6 +102,7 @@ impl JobLinks {
             residuals: under("residuals"),
             residual_analysis: under("residual-analysis"),
             time_histories: under("time-histories"),
+            trajectories: under("trajectories"),
             model: under("model"),
             diagnosis: (kind == JobKind::Diagnose.name()).then(|| under("diagnosis")),
             this,
