@@ -7,6 +7,7 @@ use super::progress::ProgressLine;
 use super::request::Request;
 use super::{Failure, notes, table};
 use crate::estimate::Estimate;
+use crate::http::trajectories_as_csv;
 use crate::job::{self, JobKind, Plan};
 
 /// Fits a model to recordings and prints the parameter table.
@@ -55,7 +56,7 @@ impl Fit {
     ) -> Result<(), Failure> {
         let trajectories = job::trajectories_of(plan, estimate)
             .map_err(|why| Failure::new(format!("there is no trajectory: {why}")))?;
-        std::fs::write(file, job::trajectories_as_csv(&trajectories))
+        std::fs::write(file, trajectories_as_csv(&trajectories))
             .map_err(|why| Failure::new(format!("{} cannot be written: {why}", file.display())))
     }
 }

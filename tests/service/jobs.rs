@@ -158,7 +158,7 @@ async fn states_and_definitions_are_had_along_the_trajectory() {
     server.wait(&id).await;
     let at = |query: &str| format!("/v1/jobs/{id}/trajectories{query}");
     let segment = server.get(&at("?max_points=100")).await.json()["segments"][0].take();
-    assert_eq!(segment["segment"], "elevator");
+    assert_eq!(segment["segment"], "1");
     let samples = segment["time"].as_array().unwrap().len();
     assert!((50..=100).contains(&samples), "{samples}");
     let names: Vec<(&str, &str)> = (segment["quantities"].as_array().unwrap().iter())

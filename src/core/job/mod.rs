@@ -30,4 +30,4 @@ pub use spec::{
 };
 pub use status::Status;
 pub use strict::Strict;
-pub use trajectories::{NoTrajectory, trajectories_again, trajectories_as_csv, trajectories_of};
+pub use trajectories::{NoTrajectory, trajectories_again, trajectories_of};

@@ -5,11 +5,8 @@ use std::sync::Arc;
 use super::plan::Plan;
 use super::prepare::prepare;
 use super::spec::{JobKind, JobSpec};
-use crate::estimate::{
-    Estimate, QuantityKind, Trajectory, TrajectorySeries, Unusable, trajectories,
-};
+use crate::estimate::{Estimate, Trajectory, Unusable, trajectories};
 use crate::flight::{Faults, Maneuver};
-use crate::ingest::CsvWriter;
 use crate::model::ModelDocument;
 
 /// Why there is no trajectory.
@@ -81,46 +78,4 @@ pub fn trajectories_again(
         }
     };
     trajectories_of(&plan.map_err(NoTrajectory::Unprepared)?, estimate)
-}
-
-/// A table of trajectories: a row for each sample, a column for each quantity and its standard error.
-pub fn trajectories_as_csv(trajectories: &[Trajectory]) -> String {
-    let first = trajectories.first();
-    let titles = first.iter().flat_map(|trajectory| &trajectory.quantities);
-    let titles = titles.flat_map(|series| {
-        let error = title(series, "_standard_error");
-        [
-            Some(title(series, "")),
-            (!series.standard_errors.is_empty()).then_some(error),
-        ]
-    });
-    let begin = ["segment", "t[s]"].map(|title| Some(title.to_string()));
-    let mut csv = CsvWriter::with_header(begin.into_iter().chain(titles).flatten());
-    for trajectory in trajectories {
-        for (row, time) in trajectory.time.iter().enumerate() {
-            csv.text(&trajectory.segment);
-            csv.number(*time);
-            for series in &trajectory.quantities {
-                csv.number(series.values.get(row).copied());
-                if let Some(error) = series.standard_errors.get(row) {
-                    csv.number(*error);
-                }
-            }
-            csv.end_row();
-        }
-    }
-    csv.finish()
-}
-
-/// `CL`, `q[rad/s]`, and of an output, which may have the name of a state, `q_model[rad/s]`.
-fn title(series: &TrajectorySeries, what: &str) -> String {
-    let model = match series.kind {
-        QuantityKind::Output => "_model",
-        QuantityKind::State | QuantityKind::Definition => "",
-    };
-    let name = format!("{}{model}{what}", series.name);
-    match series.unit.as_str() {
-        "" | "-" => name,
-        unit => format!("{name}[{unit}]"),
-    }
 }

@@ -2,3 +2,4 @@
 
 pub(super) mod decimate;
 pub(super) mod format;
+pub(super) mod trajectory_table;

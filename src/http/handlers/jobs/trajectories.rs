@@ -12,11 +12,12 @@ use super::submit::load;
 use crate::estimate::{Estimate, Trajectory};
 use crate::http::answer::decimate::{Wanted, pick};
 use crate::http::answer::format::{Format, cacheable, choose};
+use crate::http::answer::trajectory_table::trajectories_as_csv;
 use crate::http::code::Code;
 use crate::http::problem::{Problem, ProblemDocument};
 use crate::http::request::query::{JobId, Parameters, unknown_job};
 use crate::http::service::{Server, Service};
-use crate::job::{JobSpec, trajectories_again, trajectories_as_csv};
+use crate::job::{JobSpec, trajectories_again};
 use crate::model::ModelDocument;
 use crate::store::Part;
 
