@@ -25,6 +25,7 @@ mod bundled_effects;
 mod catalog;
 mod catalog_published;
 mod channel_formulas;
+mod corrected;
 mod coverage;
 mod delays;
 mod derivative_techniques;

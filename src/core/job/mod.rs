@@ -3,6 +3,7 @@
 //!
 //! Invariant: spec and data alone decide the result; all that bad input could break is found by [`prepare()`].
 
+mod corrected;
 mod event;
 mod no_start;
 mod one_call;
@@ -17,6 +18,7 @@ mod strict;
 mod trajectories;
 
 pub use crate::flight::{Fault, Faults};
+pub use corrected::corrected;
 pub use event::{Event, EventBody, Prepared};
 pub use one_call::{diagnose, fit};
 pub use plan::Plan;
@@ -30,4 +32,4 @@ pub use spec::{
 };
 pub use status::Status;
 pub use strict::Strict;
-pub use trajectories::{NoTrajectory, trajectories_again, trajectories_of};
+pub use trajectories::{NoTrajectory, plan_again, trajectories_of};

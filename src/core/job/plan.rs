@@ -14,6 +14,8 @@ pub struct Plan {
     pub model: ModelDocument,
     /// Model, data and unknowns of the estimation.
     pub problem: Problem,
+    /// By segment of the problem: the place of its maneuver in the spec.
+    pub from: Vec<usize>,
     /// What is predicted with the estimate.
     pub validation: Vec<Validation>,
     /// Of a diagnosis: all that it is made from.

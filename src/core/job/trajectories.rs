@@ -56,16 +56,16 @@ pub fn trajectories_of(plan: &Plan, estimate: &Estimate) -> Result<Vec<Trajector
     trajectories(problem, estimate).map_err(NoTrajectory::Unusable)
 }
 
-/// Those of a job of which spec, declared model, data and result were kept.
+/// The plan of a job of which spec, declared model, data and the model as estimated were kept.
 ///
 /// # Errors
-/// As [`trajectories_of`]; the job cannot be prepared again.
-pub fn trajectories_again(
+/// The job cannot be prepared again.
+pub fn plan_again(
     spec: &JobSpec,
     declared: &ModelDocument,
     maneuvers: &[Arc<Maneuver>],
-    (estimated, estimate): (&ModelDocument, &Estimate),
-) -> Result<Vec<Trajectory>, NoTrajectory> {
+    estimated: &ModelDocument,
+) -> Result<Plan, NoTrajectory> {
     let plan = match spec.kind {
         JobKind::Estimate | JobKind::DerivativeStudy => prepare(spec, declared, maneuvers),
         // the model of a diagnosis has its effects in it, and the job's own edits
@@ -77,5 +77,5 @@ pub fn trajectories_again(
             prepare(&spec, estimated, maneuvers)
         }
     };
-    trajectories_of(&plan.map_err(NoTrajectory::Unprepared)?, estimate)
+    plan.map_err(NoTrajectory::Unprepared)
 }

@@ -32,7 +32,7 @@ pub(crate) fn router() -> OpenApiRouter<Server> {
         .routes(routes!(get_maneuver_data))
 }
 
-const LONGEST_NAME: usize = 200;
+pub(crate) const LONGEST_NAME: usize = 200;
 
 /// A recording that was uploaded.
 #[derive(Serialize, ToSchema)]
@@ -183,6 +183,18 @@ async fn upload_maneuver(
         Ok::<_, Problem>((read.maneuver, summary))
     };
     let (maneuver, summary) = service.compute.run(read).await??;
+    let (status, maneuver) = keep_maneuver(&service, &name, maneuver, summary).await?;
+    let location = [(header::LOCATION, maneuver.links.this.clone())];
+    Ok((status, location, Json(maneuver)).into_response())
+}
+
+/// Keeps a recording, if it is not here already, within the project's quota.
+pub(crate) async fn keep_maneuver(
+    service: &Service,
+    name: &str,
+    maneuver: Maneuver,
+    summary: String,
+) -> Result<(StatusCode, ManeuverResource), Problem> {
     let (stored, limit) = (
         service.store.stored_bytes().await?,
         service.config.max_stored_bytes,
@@ -195,15 +207,13 @@ async fn upload_maneuver(
     }
     let uploaded = service
         .store
-        .add_maneuver(&name, Arc::new(maneuver), summary)
+        .add_maneuver(name, Arc::new(maneuver), summary)
         .await?;
     let (status, record) = match uploaded {
         Uploaded::New(record) => (StatusCode::CREATED, record),
         Uploaded::Known(record) => (StatusCode::OK, record),
     };
-    let maneuver = ManeuverResource::of(record)?;
-    let location = [(header::LOCATION, maneuver.links.this.clone())];
-    Ok((status, location, Json(maneuver)).into_response())
+    Ok((status, ManeuverResource::of(record)?))
 }
 
 /// List maneuvers, newest first.

@@ -35,6 +35,7 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(jobs::histories::router())
         .merge(jobs::residual_analysis::router())
         .merge(jobs::trajectories::router())
+        .merge(jobs::corrected::router())
         .merge(problems::router())
         .merge(keys::router())
         .merge(webhooks::router())

@@ -65,8 +65,9 @@ pub fn prepare(
         unknowns,
         initial,
     } = with_unknowns(spec, document, model, &resolved, &mut findings)?;
-    let segments = resolved.fitted.into_iter().map(|(segment, _)| segment);
-    let segments: Vec<Segment> = segments.collect();
+    let fitted = resolved.fitted.into_iter();
+    let fitted = fitted.map(|(segment, stretch)| (segment, stretch.index));
+    let (segments, from): (Vec<Segment>, Vec<usize>) = fitted.unzip();
     check_samples(&model, &segments, &unknowns, &spec.options, &mut findings)?;
     bounds::check_unknowns(&model, &segments, &unknowns, &spec.options)?;
     let validation = resolved.predicted.into_iter();
@@ -94,6 +95,7 @@ pub fn prepare(
         prepared: prepared(&problem, &validation, findings),
         model: document,
         problem,
+        from,
         validation,
         case,
         strict: spec.strict.clone(),

@@ -7,19 +7,16 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::results;
-use super::submit::load;
-use crate::estimate::{Estimate, Trajectory};
+use super::kept::{Kept, none};
+use crate::estimate::Trajectory;
 use crate::http::answer::decimate::{Wanted, pick};
 use crate::http::answer::format::{Format, cacheable, choose};
 use crate::http::answer::trajectory_table::trajectories_as_csv;
 use crate::http::code::Code;
 use crate::http::problem::{Problem, ProblemDocument};
-use crate::http::request::query::{JobId, Parameters, unknown_job};
+use crate::http::request::query::{JobId, Parameters};
 use crate::http::service::{Server, Service};
-use crate::job::{JobSpec, trajectories_again};
-use crate::model::ModelDocument;
-use crate::store::Part;
+use crate::job;
 
 pub(crate) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(get_trajectories))
@@ -72,20 +69,10 @@ async fn get_trajectories(
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
     let format = choose(query.format, &headers, &[Format::Json, Format::Csv])?;
-    let estimate: Estimate =
-        serde_json::from_str(&results::part(&service, id, Part::Estimate).await?)?;
-    let estimated: ModelDocument =
-        serde_json::from_str(&results::part(&service, id, Part::Model).await?)?;
-    let submitted = service.store.submitted(id).await?;
-    let submitted = submitted.ok_or_else(|| unknown_job(id))?;
-    let spec: JobSpec = serde_json::from_str(&submitted.spec)?;
-    let declared: ModelDocument = serde_json::from_str(&submitted.model)?;
-    let maneuvers = load(&service, &spec).await?;
-    let maneuvers = maneuvers.map_err(|faults| Problem::of_faults(Code::NoTrajectory, faults))?;
+    let kept = Kept::of(&service, id).await?;
     let answer = move || {
-        let estimated = (&estimated, &estimate);
-        let mut segments = trajectories_again(&spec, &declared, &maneuvers, estimated)
-            .map_err(|why| Problem::new(Code::NoTrajectory, why.to_string()))?;
+        let plan = kept.plan()?;
+        let mut segments = job::trajectories_of(&plan, &kept.estimate).map_err(none)?;
         if let Some(names) = &query.names {
             keep(&mut segments, names)?;
         }
