@@ -5,7 +5,7 @@
 //! Its memory is bounded by [`Limits`] *before* it is used: every format is surveyed in one cheap pass
 //! before anything is built from it.
 //!
-//! Tables of text, workbooks and JSON say names and units themselves. MAT files and ASCII matrices do not: a [`Mapping`] says
+//! Tables of text, workbooks, Parquet files and JSON say names and units themselves. MAT files and ASCII matrices do not: a [`Mapping`] says
 //! them. It can do so for any table, too, where what the file says is not what is meant. [`inspect`] looks at one, and drafts
 //! a mapping. Logs of PX4 and ArduPilot come with mappings of the quantities that most of them have.
 //!
@@ -21,6 +21,7 @@ mod assemble;
 mod axis;
 pub mod bundled;
 mod cell;
+mod columns;
 mod contents;
 mod csv;
 mod csv_writer;
@@ -29,6 +30,7 @@ mod encoding;
 mod export;
 mod fault;
 mod format;
+mod hdf5;
 mod json;
 mod label;
 mod limits;
@@ -40,6 +42,7 @@ mod messages;
 mod name;
 mod note;
 mod packed;
+mod parquet;
 mod quick;
 mod reading;
 mod recognition;
@@ -69,9 +72,12 @@ use crate::flight::Maneuver;
 use contents::{Contents, Opened};
 use recognition::Kind;
 
-/// Whether a file is packed with gzip or zip, so that it needs more memory than its own.
+/// Whether a file is packed, so that it needs more memory than its own.
 pub fn is_packed(bytes: &[u8]) -> bool {
-    matches!(Kind::of(bytes), Some(Kind::Gzip | Kind::Zip))
+    matches!(
+        Kind::of(bytes),
+        Some(Kind::Gzip | Kind::Zip | Kind::Parquet | Kind::Hdf5)
+    )
 }
 
 /// Reads a recording that says names and units itself.
@@ -118,6 +124,14 @@ pub fn read_recording(
             let table = workbook::table(bytes, limits)?;
             csv::read(table.as_bytes(), Some(workbook::CHARSET), mapping, limits)
         }
+        (Contents::Parquet, _) => {
+            let mut columns = parquet::columns(bytes, limits)?;
+            csv::read_columns(&mut columns, mapping, limits)
+        }
+        (Contents::Hdf5, _) => match hdf5::open(bytes, limits)? {
+            hdf5::Opened::Table(mut columns) => csv::read_columns(&mut columns, mapping, limits),
+            hdf5::Opened::Datasets(datasets) => hdf5::read(*datasets, mapping, limits),
+        },
         (Contents::TableOrMatrix, Some(mapping)) if ascii::is_matrix(bytes, mapping) => {
             ascii::read(bytes, mapping, limits)
         }
@@ -132,8 +146,8 @@ pub fn read_recording(
     }
 }
 
-/// Looks at a table of text or a workbook: how it is written, what its columns are, the draft of a mapping for it. `None`
-/// where the file is neither.
+/// Looks at a table of text, a workbook or a Parquet file: how it is written, what its columns are, the draft of a mapping for it. `None`
+/// where the file is another.
 ///
 /// # Errors
 /// There is no table in it; or it cannot be unpacked, or is of a format that is not read.
@@ -153,6 +167,16 @@ pub fn inspect(
             let table = workbook::table(&bytes, limits)?;
             csv::inspect(table.as_bytes(), Some(workbook::CHARSET), mapping, limits)?
         }
+        Contents::Parquet => {
+            let mut columns = parquet::columns(&bytes, limits)?;
+            csv::inspect_columns("Parquet", &mut columns, mapping, limits)?
+        }
+        Contents::Hdf5 => match hdf5::open(&bytes, limits)? {
+            hdf5::Opened::Table(mut columns) => {
+                csv::inspect_columns("HDF5", &mut columns, mapping, limits)?
+            }
+            hdf5::Opened::Datasets(_) => return Ok(None),
+        },
         _ => return Ok(None),
     };
     Ok(Some(inspected))

@@ -6,12 +6,16 @@ use super::super::{
     note::{absent, listed, note},
     text::quoted,
 };
-use super::{column::Use, plan::Plan, table::Table};
+use super::{column::Use, described::Described, plan::Plan};
 
 /// What is odd about the columns.
-pub(super) fn findings(table: &Table, plan: &Plan, left_out: &[(String, Fault)]) -> Vec<Finding> {
+pub(super) fn findings(
+    described: &Described,
+    plan: &Plan,
+    left_out: &[(String, Fault)],
+) -> Vec<Finding> {
     let mut findings = Vec::new();
-    if let Some(name) = table.recognised {
+    if let Some(name) = described.recognised {
         let message = format!("the titles are those of the bundled mapping '{name}': it was used");
         let remedy = "give a mapping of your own where it does not fit";
         findings.push(note(FindingCode::Recognised, message, remedy));
@@ -35,7 +39,7 @@ pub(super) fn findings(table: &Table, plan: &Plan, left_out: &[(String, Fault)])
         finding.count = left_out.len();
         findings.push(finding);
     }
-    let titles = &table.titles;
+    let titles = &described.titles;
     let is_read = |at: usize| {
         plan.columns
             .iter()
