@@ -13,6 +13,8 @@ mod formats;
 mod hdf5;
 mod kinds;
 mod layouts;
+mod mdf4;
 mod newcomers;
 mod parquet;
 mod structs;
+mod tdms;

@@ -20,6 +20,8 @@ pub(super) enum Contents {
     Workbook,
     Parquet,
     Hdf5,
+    Tdms,
+    Mdf4,
     /// A table of text.
     Table,
     /// A table of text, or a matrix of which a mapping names the parts.
@@ -53,6 +55,8 @@ pub(super) fn open<'a>(
         None if mat::is_version_4(&bytes) => Contents::Mat,
         Some(Kind::Zip) => Contents::Workbook,
         Some(Kind::Hdf5) => Contents::Hdf5,
+        Some(Kind::Tdms) => Contents::Tdms,
+        Some(Kind::Mdf4) => Contents::Mdf4,
         Some(Kind::Foreign(foreign)) => return Err(foreign.fault().into()),
         Some(Kind::Gzip) | None => of_text(&bytes, of_name.unwrap_or(format)),
     };

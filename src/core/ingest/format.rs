@@ -44,7 +44,7 @@ impl Format {
             "mat" => Some(Self::Mat),
             "asc" => Some(Self::Ascii),
             "gz" | "zip" | "xlsx" | "xlsm" | "ulg" | "ulog" | "bin" | "parquet" | "pq" | "h5"
-            | "hdf5" | "hdf" => Some(Self::Unstated),
+            | "hdf5" | "hdf" | "tdms" | "mf4" => Some(Self::Unstated),
             _ => None,
         }
     }

@@ -7,7 +7,8 @@
 //!
 //! Tables of text, workbooks, Parquet files and JSON say names and units themselves. MAT files and ASCII matrices do not: a [`Mapping`] says
 //! them. It can do so for any table, too, where what the file says is not what is meant. [`inspect`] looks at one, and drafts
-//! a mapping. Logs of PX4 and ArduPilot come with mappings of the quantities that most of them have.
+//! a mapping. Logs of PX4 and ArduPilot come with mappings of the quantities that most of them have. TDMS
+//! and MDF say names, units and the times of every group of channels.
 //!
 //! Whatever a sender says that a file is, its first bytes are looked at first. What is packed with gzip or zip is unpacked.
 //!
@@ -25,11 +26,13 @@ mod columns;
 mod contents;
 mod csv;
 mod csv_writer;
+mod cursor;
 mod dataflash;
 mod encoding;
 mod export;
 mod fault;
 mod format;
+mod groups;
 mod hdf5;
 mod json;
 mod label;
@@ -38,6 +41,7 @@ mod lines;
 mod mapping;
 mod mat;
 mod matrix;
+mod mdf4;
 mod messages;
 mod name;
 mod note;
@@ -50,6 +54,7 @@ mod recording;
 mod stamp;
 mod stored;
 mod summary;
+mod tdms;
 mod text;
 mod ulog;
 mod union;
@@ -76,7 +81,7 @@ use recognition::Kind;
 pub fn is_packed(bytes: &[u8]) -> bool {
     matches!(
         Kind::of(bytes),
-        Some(Kind::Gzip | Kind::Zip | Kind::Parquet | Kind::Hdf5)
+        Some(Kind::Gzip | Kind::Zip | Kind::Parquet | Kind::Hdf5 | Kind::Mdf4)
     )
 }
 
@@ -128,6 +133,8 @@ pub fn read_recording(
             let mut columns = parquet::columns(bytes, limits)?;
             csv::read_columns(&mut columns, mapping, limits)
         }
+        (Contents::Tdms, _) => tdms::read(bytes, mapping, limits),
+        (Contents::Mdf4, _) => mdf4::read(bytes, mapping, limits),
         (Contents::Hdf5, _) => match hdf5::open(bytes, limits)? {
             hdf5::Opened::Table(mut columns) => csv::read_columns(&mut columns, mapping, limits),
             hdf5::Opened::Datasets(datasets) => hdf5::read(*datasets, mapping, limits),

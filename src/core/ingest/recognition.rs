@@ -14,6 +14,8 @@ pub(super) enum Kind {
     Parquet,
     /// MAT files of version 7.3, too.
     Hdf5,
+    Tdms,
+    Mdf4,
     /// A MAT file of version 5.
     Mat,
     Foreign(&'static Foreign),
@@ -60,10 +62,8 @@ const fn foreign(
 }
 
 const UNPACK: &str = "unpack it, or pack it with gzip or zip";
-const MDF: &str =
-    "write it as CSV, in Python with asammdf.MDF('file.mf4').export('csv', 'file.csv')";
 const MDF3: &str =
-    "write it as CSV, in Python with asammdf.MDF('file.mdf').export('csv', 'file.csv')";
+    "convert it, in Python with asammdf.MDF('file.mdf').convert('4.10').save('file.mf4')";
 const ROS: &str = "write the topics as CSV, with rostopic echo -b file.bag -p /topic > topic.csv (ROS 1), or with PlotJuggler";
 const PICTURE: &str = "send the numbers behind it, as CSV";
 
@@ -83,18 +83,10 @@ const FOREIGN: &[Foreign] = &[
     ),
     foreign(
         0,
-        b"TDSm",
-        "a TDMS file of LabVIEW",
-        "write it as CSV, in Python with nptdms.TdmsFile.read('file.tdms').as_dataframe(time_index=True).to_csv('file.csv')",
-    ),
-    foreign(
-        0,
         b"TDSh",
         "the index of a TDMS file (.tdms_index)",
-        "send the .tdms file itself as CSV, in Python with nptdms",
+        "send the .tdms file itself",
     ),
-    foreign(0, b"MDF     4", "an MDF 4 file", MDF),
-    foreign(0, b"UnFinMF 4", "an MDF 4 file that was not finished", MDF),
     foreign(0, b"MDF     ", "an MDF 3 file", MDF3),
     foreign(0, b"UnFinMF ", "an MDF 3 file that was not finished", MDF3),
     foreign(
@@ -221,6 +213,12 @@ impl Kind {
         if at(0, b"PAR1") && !is_text(bytes) {
             return Some(Self::Parquet);
         }
+        if at(0, b"MDF     4") || at(0, b"UnFinMF 4") {
+            return Some(Self::Mdf4);
+        }
+        if at(0, b"TDSm") && !is_text(bytes) {
+            return Some(Self::Tdms);
+        }
         if hdf5::is_hdf5(bytes) {
             return Some(Self::Hdf5);
         }
@@ -267,8 +265,7 @@ mod tests {
         tar.extend_from_slice(b"ustar");
         for (bytes, what) in [
             (&b"PARE\0"[..], "Parquet"),
-            (b"TDSm\x0e\0", "TDMS"),
-            (b"MDF     4.10", "MDF 4"),
+            (b"TDSh\x0e\0", ".tdms_index"),
             (b"MDF     3.30", "MDF 3"),
             (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", ".xls"),
             (&telemetry, "MAVLink"),
@@ -286,6 +283,8 @@ mod tests {
         assert_eq!(Kind::of(b"PK\x03\x04\x14"), Some(Kind::Zip));
         assert_eq!(Kind::of(b"ULog\x01\x12\x35\x01"), Some(Kind::Ulog));
         assert_eq!(Kind::of(b"\xa3\x95\x80\x80"), Some(Kind::DataFlash));
+        assert_eq!(Kind::of(b"TDSm\x0e\0"), Some(Kind::Tdms));
+        assert_eq!(Kind::of(b"MDF     4.10"), Some(Kind::Mdf4));
         assert_eq!(Kind::of(&hdf5), Some(Kind::Hdf5));
         assert_eq!(Kind::of(b"PAR1\x15\x04"), Some(Kind::Parquet));
         assert_eq!(Kind::of(b"MATLAB 5.0 MAT-file"), Some(Kind::Mat));

@@ -4,11 +4,12 @@ use super::super::{code, fault::of_file};
 use super::codec;
 use super::compact::Compact;
 use super::damage::damaged;
-use super::decode::{Encoded, Trouble, Values};
+use super::decode::Encoded;
 use super::footer::Place;
 use super::hybrid;
 use super::page::Head;
-use super::schema::{Kind, Leaf, Why};
+use super::schema::{Leaf, Why};
+use super::values::{Kind, Trouble, Values};
 
 /// What was read of a column.
 pub(super) struct Chunk<'a> {

@@ -1,15 +1,7 @@
 //! Values of a column, out of the ways in which they are encoded.
 
-use super::super::columns::{NONE, Texts};
 use super::hybrid::{self, Bits, varint};
-use super::schema::Kind;
-
-/// Values as they were stored.
-pub(super) enum Values {
-    Doubles(Vec<f64>),
-    Integers(Vec<i64>),
-    Texts(Texts),
-}
+use super::values::{Kind, Trouble, Values};
 
 /// The ways of encoding by their numbers in the format.
 pub(super) mod encoding {
@@ -21,58 +13,7 @@ pub(super) mod encoding {
     pub(in super::super) const SPLIT: i64 = 9;
 }
 
-/// Why values cannot be decoded.
-#[derive(Debug, PartialEq)]
-pub(super) enum Trouble {
-    Damaged,
-    /// They are encoded in a way that is not read.
-    Encoding,
-    /// Texts are longer than there is room.
-    TooLong,
-}
-
 impl Values {
-    pub(super) fn of(kind: Kind) -> Self {
-        match kind {
-            Kind::Boolean | Kind::Double(..) => Self::Doubles(Vec::new()),
-            Kind::Integer(..) => Self::Integers(Vec::new()),
-            Kind::Text => Self::Texts(Texts::default()),
-        }
-    }
-
-    pub(super) fn len(&self) -> usize {
-        match self {
-            Self::Doubles(values) => values.len(),
-            Self::Integers(values) => values.len(),
-            Self::Texts(texts) => texts.len(),
-        }
-    }
-
-    fn push_none(&mut self) {
-        match self {
-            Self::Doubles(values) => values.push(f64::NAN),
-            Self::Integers(values) => values.push(NONE),
-            Self::Texts(texts) => texts.push(b""),
-        }
-    }
-
-    fn push_of(&mut self, other: &Self, at: usize, room: &mut usize) -> Result<(), Trouble> {
-        if at >= other.len() {
-            return Err(Trouble::Damaged);
-        }
-        match (self, other) {
-            (Self::Doubles(values), Self::Doubles(others)) => values.push(others[at]),
-            (Self::Integers(values), Self::Integers(others)) => values.push(others[at]),
-            (Self::Texts(texts), Self::Texts(others)) => {
-                let text = others.get(at).as_bytes();
-                *room = room.checked_sub(text.len()).ok_or(Trouble::TooLong)?;
-                texts.push(text);
-            }
-            _ => return Err(Trouble::Damaged),
-        }
-        Ok(())
-    }
-
     /// Adds the values of a page, of which some may be missing.
     pub(super) fn push_page(
         &mut self,

@@ -17,6 +17,7 @@ mod hybrid;
 mod page;
 mod pandas;
 mod schema;
+mod values;
 
 use super::{
     Limits,

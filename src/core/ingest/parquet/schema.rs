@@ -3,7 +3,7 @@
 use super::super::columns::{Cells, NONE};
 use super::compact::{Compact, Value};
 use super::damage::damaged;
-use super::decode::Values;
+use super::values::{Kind, Values};
 use crate::flight::Fault;
 
 /// A column that holds values.
@@ -27,15 +27,6 @@ impl From<Fault> for Why {
     fn from(fault: Fault) -> Self {
         Self::Refused(fault)
     }
-}
-
-/// How a value is stored.
-#[derive(Clone, Copy)]
-pub(super) enum Kind {
-    Boolean,
-    Integer(usize, fn(&[u8]) -> i64),
-    Double(usize, fn(&[u8]) -> f64),
-    Text,
 }
 
 /// What a stored value means.
