@@ -46,7 +46,9 @@
 //!    then make a `Recording` (`recording.rs`: columns by name with units) and call its `into_maneuver`, or hand a table of
 //!    numbers, an `Archive`, to `Mapping::apply`. A fault names its place and the remedy; its code is one of `code` in
 //!    `fault.rs`, or a new row there.
-//!    A log of messages, each kind with its own times, makes a `Table` of each (`messages/`, after `ulog/` or `dataflash/`).
+//!    A log of messages, each kind with its own times, makes a `Table` of each (`messages/`, after `ulog/` or `dataflash/`);
+//!    groups of channels that say units and times make `Groups` (`groups/`, after `tdms/`); a table whose cells are numbers
+//!    already makes `Columns`, which go the way of a table of text (`columns.rs`, after `parquet/`).
 //! 2. `src/core/ingest/contents.rs`: a variant of `Contents`, and how a file is known: by its first bytes a variant of `Kind`
 //!    in `recognition.rs` (and its line among the foreign ones goes); its file ending in `Format::from_extension`;
 //!    text by a variant of `Format` in `format.rs`, with its media type. Its line in `read_recording` in `mod.rs`. HTTP and command line go by these.

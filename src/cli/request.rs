@@ -19,9 +19,10 @@ use crate::simulate::{InputInterpolation, Integrator};
 
 #[derive(clap::Args, Debug)]
 pub(super) struct Request {
-    /// Recordings: tables of text (.csv, .txt, .dat, ...), JSON (.json), Excel workbooks (.xlsx), logs of PX4 (.ulg) and
-    /// ArduPilot (.bin), MAT files (.mat) or ASCII matrices (.asc), the last two with --mapping; any of them packed (.gz,
-    /// .zip). Rows count from 1; FILE:2s-32.5s are seconds. Several are fitted together.
+    /// Recordings: tables of text (.csv, .txt, .dat, ...), JSON (.json), Excel workbooks (.xlsx), Parquet
+    /// (.parquet), logs of PX4 (.ulg) and ArduPilot (.bin), TDMS (.tdms), MDF 4 (.mf4), frames
+    /// of pandas in HDF5 (.h5); with --mapping MAT files (.mat),
+    /// other HDF5 files or ASCII matrices (.asc); any of them packed (.gz, .zip). Rows count from 1; FILE:2s-32.5s are seconds. Several are fitted together.
     #[arg(required = true, value_name = "FILE[:FIRST-LAST]")]
     pub files: Vec<FileRows>,
     /// A recording that the model is not fitted to but predicts, to see whether it holds.

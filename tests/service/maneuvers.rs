@@ -73,8 +73,8 @@ async fn a_file_is_what_its_first_bytes_tell() {
     }
     for (body, code) in [
         (BOMB, "unpacked_too_large"),
-        (&b"PAR1\0\0\0\0PAR1"[..], "format_not_read"),
-        (&b"TDSm\x0e\0\0\0"[..], "format_not_read"),
+        (&b"PAR1\0\0\0\0PAR1"[..], "damaged_file"),
+        (&b"TDSm\x0e\0\0\0"[..], "damaged_file"),
         (&b"ULog\x01\x12\x35\x01\0\0\0\0\0\0\0\0"[..], "damaged_file"),
     ] {
         let refused = server.post("/v1/maneuvers", "text/csv", body).await;

@@ -18,6 +18,10 @@ pub(super) enum Contents {
     Mat,
     Json,
     Workbook,
+    Parquet,
+    Hdf5,
+    Tdms,
+    Mdf4,
     /// A table of text.
     Table,
     /// A table of text, or a matrix of which a mapping names the parts.
@@ -47,10 +51,12 @@ pub(super) fn open<'a>(
         Some(Kind::Ulog) => Contents::Ulog,
         Some(Kind::DataFlash) => Contents::DataFlash,
         Some(Kind::Mat) => Contents::Mat,
+        Some(Kind::Parquet) => Contents::Parquet,
         None if mat::is_version_4(&bytes) => Contents::Mat,
         Some(Kind::Zip) => Contents::Workbook,
-        // it is told how MATLAB writes another one
-        Some(Kind::Foreign(_)) if format == Format::Mat && mat::is_hdf5(&bytes) => Contents::Mat,
+        Some(Kind::Hdf5) => Contents::Hdf5,
+        Some(Kind::Tdms) => Contents::Tdms,
+        Some(Kind::Mdf4) => Contents::Mdf4,
         Some(Kind::Foreign(foreign)) => return Err(foreign.fault().into()),
         Some(Kind::Gzip) | None => of_text(&bytes, of_name.unwrap_or(format)),
     };

@@ -43,7 +43,8 @@ impl Format {
             "json" => Some(Self::Json),
             "mat" => Some(Self::Mat),
             "asc" => Some(Self::Ascii),
-            "gz" | "zip" | "xlsx" | "xlsm" | "ulg" | "ulog" | "bin" => Some(Self::Unstated),
+            "gz" | "zip" | "xlsx" | "xlsm" | "ulg" | "ulog" | "bin" | "parquet" | "pq" | "h5"
+            | "hdf5" | "hdf" | "tdms" | "mf4" => Some(Self::Unstated),
             _ => None,
         }
     }
@@ -72,7 +73,10 @@ impl Format {
             | "application/zip"
             | "application/x-zip-compressed"
             | "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
-            | "application/vnd.ms-excel.sheet.macroenabled.12" => Some(Self::Unstated),
+            | "application/vnd.ms-excel.sheet.macroenabled.12"
+            | "application/vnd.apache.parquet"
+            | "application/x-hdf5"
+            | "application/x-hdf" => Some(Self::Unstated),
             _ => None,
         }
     }
@@ -87,7 +91,7 @@ mod tests {
         let format = Format::from_content_type;
         assert_eq!(format("text/csv; charset=utf-8"), Some(Format::Csv));
         assert_eq!(format("Application/JSON"), Some(Format::Json));
-        assert_eq!(format("application/x-hdf5"), None);
+        assert_eq!(format("application/pdf"), None);
         assert_eq!(format("application/gzip"), Some(Format::Unstated));
         assert_eq!(format(""), None);
         for accepted in Format::CONTENT_TYPES {

@@ -5,9 +5,10 @@
 //! Its memory is bounded by [`Limits`] *before* it is used: every format is surveyed in one cheap pass
 //! before anything is built from it.
 //!
-//! Tables of text, workbooks and JSON say names and units themselves. MAT files and ASCII matrices do not: a [`Mapping`] says
+//! Tables of text, workbooks, Parquet files and JSON say names and units themselves. MAT files and ASCII matrices do not: a [`Mapping`] says
 //! them. It can do so for any table, too, where what the file says is not what is meant. [`inspect`] looks at one, and drafts
-//! a mapping. Logs of PX4 and ArduPilot come with mappings of the quantities that most of them have.
+//! a mapping. Logs of PX4 and ArduPilot come with mappings of the quantities that most of them have. TDMS
+//! and MDF say names, units and the times of every group of channels.
 //!
 //! Whatever a sender says that a file is, its first bytes are looked at first. What is packed with gzip or zip is unpacked.
 //!
@@ -21,14 +22,18 @@ mod assemble;
 mod axis;
 pub mod bundled;
 mod cell;
+mod columns;
 mod contents;
 mod csv;
 mod csv_writer;
+mod cursor;
 mod dataflash;
 mod encoding;
 mod export;
 mod fault;
 mod format;
+mod groups;
+mod hdf5;
 mod json;
 mod label;
 mod limits;
@@ -36,10 +41,12 @@ mod lines;
 mod mapping;
 mod mat;
 mod matrix;
+mod mdf4;
 mod messages;
 mod name;
 mod note;
 mod packed;
+mod parquet;
 mod quick;
 mod reading;
 mod recognition;
@@ -47,6 +54,7 @@ mod recording;
 mod stamp;
 mod stored;
 mod summary;
+mod tdms;
 mod text;
 mod ulog;
 mod union;
@@ -69,9 +77,12 @@ use crate::flight::Maneuver;
 use contents::{Contents, Opened};
 use recognition::Kind;
 
-/// Whether a file is packed with gzip or zip, so that it needs more memory than its own.
+/// Whether a file is packed, so that it needs more memory than its own.
 pub fn is_packed(bytes: &[u8]) -> bool {
-    matches!(Kind::of(bytes), Some(Kind::Gzip | Kind::Zip))
+    matches!(
+        Kind::of(bytes),
+        Some(Kind::Gzip | Kind::Zip | Kind::Parquet | Kind::Hdf5 | Kind::Mdf4)
+    )
 }
 
 /// Reads a recording that says names and units itself.
@@ -118,6 +129,16 @@ pub fn read_recording(
             let table = workbook::table(bytes, limits)?;
             csv::read(table.as_bytes(), Some(workbook::CHARSET), mapping, limits)
         }
+        (Contents::Parquet, _) => {
+            let mut columns = parquet::columns(bytes, limits)?;
+            csv::read_columns(&mut columns, mapping, limits)
+        }
+        (Contents::Tdms, _) => tdms::read(bytes, mapping, limits),
+        (Contents::Mdf4, _) => mdf4::read(bytes, mapping, limits),
+        (Contents::Hdf5, _) => match hdf5::open(bytes, limits)? {
+            hdf5::Opened::Table(mut columns) => csv::read_columns(&mut columns, mapping, limits),
+            hdf5::Opened::Datasets(datasets) => hdf5::read(*datasets, mapping, limits),
+        },
         (Contents::TableOrMatrix, Some(mapping)) if ascii::is_matrix(bytes, mapping) => {
             ascii::read(bytes, mapping, limits)
         }
@@ -132,8 +153,8 @@ pub fn read_recording(
     }
 }
 
-/// Looks at a table of text or a workbook: how it is written, what its columns are, the draft of a mapping for it. `None`
-/// where the file is neither.
+/// Looks at a table of text, a workbook or a Parquet file: how it is written, what its columns are, the draft of a mapping for it. `None`
+/// where the file is another.
 ///
 /// # Errors
 /// There is no table in it; or it cannot be unpacked, or is of a format that is not read.
@@ -153,6 +174,16 @@ pub fn inspect(
             let table = workbook::table(&bytes, limits)?;
             csv::inspect(table.as_bytes(), Some(workbook::CHARSET), mapping, limits)?
         }
+        Contents::Parquet => {
+            let mut columns = parquet::columns(&bytes, limits)?;
+            csv::inspect_columns("Parquet", &mut columns, mapping, limits)?
+        }
+        Contents::Hdf5 => match hdf5::open(&bytes, limits)? {
+            hdf5::Opened::Table(mut columns) => {
+                csv::inspect_columns("HDF5", &mut columns, mapping, limits)?
+            }
+            hdf5::Opened::Datasets(_) => return Ok(None),
+        },
         _ => return Ok(None),
     };
     Ok(Some(inspected))

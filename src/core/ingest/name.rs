@@ -102,7 +102,8 @@ pub(super) fn is_identifier(name: &str) -> bool {
         && bytes.all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
 }
 
-fn identifier_like(name: &str) -> String {
+/// An identifier close to a name.
+pub(super) fn identifier_like(name: &str) -> String {
     let mut like = String::new();
     for c in name.chars() {
         match c {

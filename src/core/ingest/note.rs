@@ -42,3 +42,46 @@ pub(super) fn absent(names: &[String]) -> Option<Finding> {
     let remedy = "nothing needs to be done where the model does not need them";
     (!names.is_empty()).then(|| note(FindingCode::Absent, message, remedy))
 }
+
+/// Columns that could have been channels, each as it is to be written, and why they are none.
+pub(super) fn left_out(columns: &[(String, String)], remedy: &str) -> Option<Finding> {
+    let why = |(title, why): &(String, String)| {
+        let why = why.split(';').next().unwrap_or(why);
+        format!("{title} ({why})")
+    };
+    let message = format!(
+        "{} column(s) are left out: {}",
+        columns.len(),
+        listed(columns.iter().map(why))
+    );
+    let finding = Finding {
+        count: columns.len(),
+        ..note(FindingCode::LeftOut, message, remedy)
+    };
+    (!columns.is_empty()).then_some(finding)
+}
+
+/// Titles with the names that their channels have.
+pub(super) fn renamed(titles: &[(String, String)]) -> Option<Finding> {
+    let pairs = titles
+        .iter()
+        .map(|(title, name)| format!("{} is {name}", text::quoted(title)));
+    let message = format!(
+        "{} title(s) are no names for equations: {}",
+        titles.len(),
+        listed(pairs)
+    );
+    let remedy = "other names can be given in a mapping";
+    (!titles.is_empty()).then(|| note(FindingCode::Renamed, message, remedy))
+}
+
+/// Channels whose unit is said nowhere.
+pub(super) fn without_unit(names: &[String]) -> Option<Finding> {
+    let message = format!(
+        "no unit is said of {}: they are read as pure numbers, angles as radians",
+        listed(names.iter().cloned())
+    );
+    let remedy =
+        "say the unit in the header, as alpha[deg], or in a mapping; [-] is that of a pure number";
+    (!names.is_empty()).then(|| note(FindingCode::NoUnit, message, remedy))
+}

@@ -2,7 +2,7 @@
 
 use crate::flight::Fault;
 
-use super::{code, fault::of_file};
+use super::{code, fault::of_file, hdf5};
 
 /// A format that is known by its first bytes.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -11,7 +11,12 @@ pub(super) enum Kind {
     Zip,
     Ulog,
     DataFlash,
-    /// A MAT file of version 5 or 7.3.
+    Parquet,
+    /// MAT files of version 7.3, too.
+    Hdf5,
+    Tdms,
+    Mdf4,
+    /// A MAT file of version 5.
     Mat,
     Foreign(&'static Foreign),
 }
@@ -56,12 +61,9 @@ const fn foreign(
     }
 }
 
-const HDF5: &str = "in MATLAB save it with save('file.mat', '-v7'); else write it as CSV, in Python with pandas.read_hdf('file.h5').to_csv('file.csv'), or with h5py and numpy.savetxt";
 const UNPACK: &str = "unpack it, or pack it with gzip or zip";
-const MDF: &str =
-    "write it as CSV, in Python with asammdf.MDF('file.mf4').export('csv', 'file.csv')";
 const MDF3: &str =
-    "write it as CSV, in Python with asammdf.MDF('file.mdf').export('csv', 'file.csv')";
+    "convert it, in Python with asammdf.MDF('file.mdf').convert('4.10').save('file.mf4')";
 const ROS: &str = "write the topics as CSV, with rostopic echo -b file.bag -p /topic > topic.csv (ROS 1), or with PlotJuggler";
 const PICTURE: &str = "send the numbers behind it, as CSV";
 
@@ -69,26 +71,22 @@ const PICTURE: &str = "send the numbers behind it, as CSV";
 const FOREIGN: &[Foreign] = &[
     foreign(
         0,
-        b"PAR1",
-        "a Parquet file",
-        "write it as CSV, in Python with pandas.read_parquet('file.parquet').to_csv('file.csv', index=False)",
+        b"PARE",
+        "an encrypted Parquet file",
+        "write it without encryption, in Python with pyarrow.parquet.write_table(table, 'file.parquet')",
     ),
-    foreign(0, b"\x89HDF\r\n\x1a\n", "an HDF5 file", HDF5),
-    foreign(512, b"\x89HDF\r\n\x1a\n", "an HDF5 file", HDF5),
     foreign(
         0,
-        b"TDSm",
-        "a TDMS file of LabVIEW",
-        "write it as CSV, in Python with nptdms.TdmsFile.read('file.tdms').as_dataframe(time_index=True).to_csv('file.csv')",
+        b"\x0e\x03\x13\x01",
+        "an HDF 4 file",
+        "convert it to HDF5, with h4toh5 file.hdf file.h5",
     ),
     foreign(
         0,
         b"TDSh",
         "the index of a TDMS file (.tdms_index)",
-        "send the .tdms file itself as CSV, in Python with nptdms",
+        "send the .tdms file itself",
     ),
-    foreign(0, b"MDF     4", "an MDF 4 file", MDF),
-    foreign(0, b"UnFinMF 4", "an MDF 4 file that was not finished", MDF),
     foreign(0, b"MDF     ", "an MDF 3 file", MDF3),
     foreign(0, b"UnFinMF ", "an MDF 3 file that was not finished", MDF3),
     foreign(
@@ -212,6 +210,18 @@ impl Kind {
         if at(0, b"\xa3\x95") {
             return Some(Self::DataFlash);
         }
+        if at(0, b"PAR1") && !is_text(bytes) {
+            return Some(Self::Parquet);
+        }
+        if at(0, b"MDF     4") || at(0, b"UnFinMF 4") {
+            return Some(Self::Mdf4);
+        }
+        if at(0, b"TDSm") && !is_text(bytes) {
+            return Some(Self::Tdms);
+        }
+        if hdf5::is_hdf5(bytes) {
+            return Some(Self::Hdf5);
+        }
         let has_version = at(124, b"\x00\x01IM") || at(124, b"\x01\x00MI");
         if at(0, b"MATLAB 5.0") || at(0, b"MATLAB 7.3") || has_version {
             return Some(Self::Mat);
@@ -254,10 +264,8 @@ mod tests {
         let mut tar = vec![b'a'; 257];
         tar.extend_from_slice(b"ustar");
         for (bytes, what) in [
-            (&b"PAR1\0"[..], "Parquet"),
-            (&hdf5, "HDF5"),
-            (b"TDSm\x0e\0", "TDMS"),
-            (b"MDF     4.10", "MDF 4"),
+            (&b"PARE\0"[..], "Parquet"),
+            (b"TDSh\x0e\0", ".tdms_index"),
             (b"MDF     3.30", "MDF 3"),
             (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", ".xls"),
             (&telemetry, "MAVLink"),
@@ -275,6 +283,10 @@ mod tests {
         assert_eq!(Kind::of(b"PK\x03\x04\x14"), Some(Kind::Zip));
         assert_eq!(Kind::of(b"ULog\x01\x12\x35\x01"), Some(Kind::Ulog));
         assert_eq!(Kind::of(b"\xa3\x95\x80\x80"), Some(Kind::DataFlash));
+        assert_eq!(Kind::of(b"TDSm\x0e\0"), Some(Kind::Tdms));
+        assert_eq!(Kind::of(b"MDF     4.10"), Some(Kind::Mdf4));
+        assert_eq!(Kind::of(&hdf5), Some(Kind::Hdf5));
+        assert_eq!(Kind::of(b"PAR1\x15\x04"), Some(Kind::Parquet));
         assert_eq!(Kind::of(b"MATLAB 5.0 MAT-file"), Some(Kind::Mat));
     }
 

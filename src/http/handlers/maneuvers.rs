@@ -86,10 +86,10 @@ struct UploadQuery {
     /// For people; at most 200 characters.
     #[param(example = "ATTAS elevator 3-2-1-1")]
     name: Option<String>,
-    /// Where a MAT file, a log or an ASCII matrix has time and channels, and in which units; for a table of text or a workbook,
+    /// Where a MAT, HDF5, TDMS or MDF file, a log or an ASCII matrix has time and channels, and in which units; for a table of text or a workbook,
     /// what it does not say, or says otherwise than is meant. The name of a mapping that is bundled (`GET /v1/mappings`) or
     /// kept there, or a JSON document. Sources are variables (`alpha`), fields of structs (`rec.alpha`,
-    /// `scope.signals(1).values`), fields of messages (`IMU[1].GyrY`), columns (`data(:,2)`) or rows (`data(2,:)`) of any, or
+    /// `scope.signals(1).values`), fields of messages (`IMU[1].GyrY`), datasets (`air/alpha`), channels of groups (`Fuel.mass`), columns (`data(:,2)`) or rows (`data(2,:)`) of any, or
     /// columns of the only matrix of a file (`(:,2)`). Of a table of text they are titles as they stand there, with or without
     /// their units (`Elev Pos`), or columns (`(:,2)`); its other columns are left out.
     #[param(
@@ -98,14 +98,14 @@ struct UploadQuery {
     mapping: Option<String>,
 }
 
-/// The bytes of a MAT file of version 4 or 5 (`save -v7`, `save -v6`, `save -v4`).
+/// The bytes of a MAT file of any version (`save -v7.3`, `save -v7`, `save -v6`, `save -v4`).
 #[derive(ToSchema)]
 #[schema(value_type = String, format = Binary)]
 #[expect(dead_code, reason = "it is there for the API's document")]
 struct MatFile(Vec<u8>);
 
-/// The bytes of a file that its first bytes tell: a workbook of Excel (`.xlsx`), a log of PX4 (`.ulg`) or ArduPilot (`.bin`), or
-/// any recording packed with gzip or zip.
+/// The bytes of a file that its first bytes tell: a workbook of Excel (`.xlsx`), Parquet, HDF5, TDMS, MDF 4, a log of
+/// PX4 (`.ulg`) or ArduPilot (`.bin`), or any recording packed with gzip or zip.
 #[derive(ToSchema)]
 #[schema(value_type = String, format = Binary)]
 #[expect(dead_code, reason = "it is there for the API's document")]
@@ -117,8 +117,9 @@ struct AnyFile(Vec<u8>);
 /// or in rows of their own, behind a comment's sign or not; separated by commas, semicolons, tabs, vertical bars or blanks;
 /// decimal points or commas; time in a unit or as time stamps. The charset of the media type holds, else it is found out. A
 /// column that cannot be read is left out, with a finding. With a `mapping`, other names and units than it states. Or a
-/// workbook of Excel, whose first sheet with a table is read so, too. Or JSON. Or, with a `mapping`, a MAT file (`-v7` or
-/// older, not 7.3) or an ASCII matrix. Or a log of PX4 or ArduPilot, without a `mapping` by those called `px4` and `ardupilot`.
+/// workbook of Excel, whose first sheet with a table is read so, too, a Parquet file, or HDF5 with one frame of pandas. Or
+/// JSON. Or, with a `mapping`, a MAT file, another HDF5 file or an ASCII matrix. Or a TDMS or MDF 4 file, whose channels say
+/// their units and times. Or a log of PX4 or ArduPilot, without a `mapping` by those called `px4` and `ardupilot`.
 ///
 /// Whatever the `Content-Type` says, a file is what its first bytes tell; it may be packed with gzip or zip. What is not read is
 /// refused with its name and how to convert it. Channels of several tables with times of their own keep their samples, and

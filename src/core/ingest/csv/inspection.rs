@@ -41,26 +41,26 @@ pub(in super::super) fn inspect(
 ) -> Result<Inspection, IngestError> {
     let decoded = encoding::text(bytes, charset)?;
     let table = Table::find(&decoded.text, mapping, limits)?;
-    let column = |at: usize| InspectedColumn {
-        title: table.titles.title(at).to_string(),
-        unit: table.titles.any_label(at).unit.to_string(),
-        first: table
-            .titles
-            .first_said(at)
-            .unwrap_or_default()
-            .trim()
-            .to_string(),
-    };
+    let titles = &table.described.titles;
     Ok(Inspection {
         written: written(&table, decoded.encoding),
-        columns: (0..table.titles.width).map(column).collect(),
+        columns: columns(titles),
         reading: read(bytes, charset, mapping, limits),
-        draft: draft::of(&table.titles, None, limits),
+        draft: draft::of(titles, None, limits),
     })
 }
 
+pub(super) fn columns(titles: &Titles) -> Vec<InspectedColumn> {
+    let column = |at: usize| InspectedColumn {
+        title: titles.title(at).to_string(),
+        unit: titles.any_label(at).unit.to_string(),
+        first: titles.first_said(at).unwrap_or_default().trim().to_string(),
+    };
+    (0..titles.width).map(column).collect()
+}
+
 fn written(table: &Table, encoding: &str) -> Vec<(&'static str, String)> {
-    let Titles { names, units, .. } = &table.titles;
+    let Titles { names, units, .. } = &table.described.titles;
     let decimal = match (table.marks.decimal, table.marks.has_thousands) {
         (Decimal::Point, false) => "points",
         (Decimal::Point, true) => "points, commas between thousands",
@@ -87,7 +87,7 @@ fn written(table: &Table, encoding: &str) -> Vec<(&'static str, String)> {
     if !described.is_empty() {
         written.push(("other lines of the header", described.join(", ")));
     }
-    if let Some(name) = table.recognised {
+    if let Some(name) = table.described.recognised {
         written.push(("recognised as", name.to_string()));
     }
     written

@@ -10,6 +10,7 @@ mod clock;
 mod column;
 mod decimal;
 mod delimiter;
+mod described;
 mod draft;
 mod ending;
 mod head;
@@ -29,10 +30,12 @@ mod table;
 mod time;
 mod titles;
 mod trouble;
+mod typed;
 
 pub(super) use inspection::inspect;
 pub use inspection::{InspectedColumn, Inspection};
 pub(super) use read::read;
+pub(super) use typed::{inspect_columns, read_columns};
 
 #[cfg(test)]
 mod mapped_tests;

@@ -8,8 +8,14 @@ use super::super::{
     text::quoted,
 };
 use super::{
-    clock, column::Column, draft, own_times, plan::Plan, repeated, report, rows,
-    samples::Unreadable, table::Table,
+    clock,
+    column::Column,
+    described::Described,
+    draft, own_times,
+    plan::Plan,
+    repeated, report, rows,
+    samples::{Samples, Unreadable},
+    table::Table,
 };
 use crate::flight::Fault;
 
@@ -28,29 +34,53 @@ pub(in super::super) fn read(
 ) -> Result<Reading, IngestError> {
     let decoded = encoding::text(bytes, charset)?;
     let table = Table::find(&decoded.text, mapping, limits)?;
-    let mut reading = read_table(&table, limits).map_err(|error| {
-        let says_all = mapping.is_some_and(|mapping| !mapping.channels.is_empty());
-        if says_all {
-            return error;
-        }
-        let repeated = repeated::proposal(error.faults());
-        let draft = draft::of(&table.titles, repeated, limits);
-        error.with_draft(draft.to_json())
-    })?;
+    let mut reading = read_table(&table, limits)
+        .map_err(|error| with_draft(error, &table.described, mapping, limits))?;
     reading.findings.splice(0..0, decoded.findings);
     Ok(reading)
 }
 
+/// The same with the draft of a mapping, where the one that was given does not say all.
+pub(super) fn with_draft(
+    error: IngestError,
+    described: &Described,
+    mapping: Option<&Mapping>,
+    limits: &Limits,
+) -> IngestError {
+    let says_all = mapping.is_some_and(|mapping| !mapping.channels.is_empty());
+    if says_all {
+        return error;
+    }
+    let repeated = repeated::proposal(error.faults());
+    let draft = draft::of(&described.titles, repeated, limits);
+    error.with_draft(draft.to_json())
+}
+
 fn read_table(table: &Table, limits: &Limits) -> Result<Reading, IngestError> {
-    let plan = Plan::of(&table.titles, &table.mapping, limits)?;
+    let described = &table.described;
+    let plan = Plan::of(&described.titles, &described.mapping, limits)?;
     let capacity = table.check_size(limits)?;
     let written = table.written(&plan);
-    let mut samples = rows::read(table.rows.clone(), &written, &plan, capacity);
+    let samples = rows::read(table.rows.clone(), &written, &plan, capacity);
+    of_samples(described, plan, samples, &written.time, limits)
+}
+
+/// What was read becomes a recording; `time` is what the column of time is called.
+///
+/// # Errors
+/// The faults of rows, of times, and of columns that are needed.
+pub(super) fn of_samples(
+    described: &Described,
+    plan: Plan,
+    mut samples: Samples,
+    time: &str,
+    limits: &Limits,
+) -> Result<Reading, IngestError> {
     let mut faults = std::mem::take(&mut samples.faults);
     if faults.is_empty() {
-        let said = table.mapping.time.repeated;
+        let said = described.mapping.time.repeated;
         faults.extend(
-            repeated::resolve(&mut samples, said, &written.time)
+            repeated::resolve(&mut samples, said, time)
                 .err()
                 .into_iter()
                 .flatten(),
@@ -72,7 +102,7 @@ fn read_table(table: &Table, limits: &Limits) -> Result<Reading, IngestError> {
     faults.sort_by_key(|(row, _)| *row);
     faults.truncate(CELLS_LISTED);
     IngestError::refuse(faults.into_iter().map(|(_, fault)| fault).collect())?;
-    let mut findings = report::findings(table, &plan, &left_out);
+    let mut findings = report::findings(described, &plan, &left_out);
     findings.append(&mut samples.findings);
     let maneuver = own_times::maneuver(plan.columns, samples, limits)?;
     Ok(Reading { maneuver, findings })

@@ -1,19 +1,17 @@
 //! A table that was found in a text, and the mapping that says what its columns are.
 
-use std::borrow::Cow;
-
 use super::super::{
     IngestError, Limits,
     cell::{Decimal, Marks},
     code,
     fault::of_file,
     lines::{Line, Lines},
-    mapping::{Mapping, Titles as Wanted},
-    units::RecordedUnit,
+    mapping::Mapping,
 };
 use super::{
     decimal,
     delimiter::Delimiter,
+    described::Described,
     head::Head,
     layout::{self, Said},
     plan::Plan,
@@ -25,13 +23,10 @@ use crate::flight::Fault;
 pub(super) struct Table<'a> {
     pub(super) delimiter: Delimiter,
     pub(super) marks: Marks,
-    pub(super) titles: Titles<'a>,
+    pub(super) described: Described<'a>,
     /// Lines of the header that have neither names nor units.
     pub(super) descriptions: Vec<Line<'a>>,
     pub(super) rows: Lines<'a>,
-    pub(super) mapping: Cow<'a, Mapping>,
-    /// The bundled mapping that was recognised.
-    pub(super) recognised: Option<&'static str>,
 }
 
 impl<'a> Table<'a> {
@@ -75,25 +70,12 @@ impl<'a> Table<'a> {
             first: layout.first,
             width: layout.width,
         };
-        let recognised = mapping
-            .is_none()
-            .then(|| Mapping::recognised(|wanted| titles.has(wanted)))
-            .flatten();
-        let (recognised, mapping) = match (mapping, recognised) {
-            (Some(mapping), _) => (None, Cow::Borrowed(mapping)),
-            (None, Some((name, mapping))) => {
-                (Some(name), Cow::Owned(without_units_of(&titles, mapping)))
-            }
-            (None, None) => (None, Cow::Owned(Mapping::default())),
-        };
         Ok(Self {
             delimiter: layout.delimiter,
             marks,
-            titles,
+            described: Described::of(titles, mapping),
             descriptions: head.others,
             rows: layout.rows,
-            mapping,
-            recognised,
         })
     }
 
@@ -107,7 +89,7 @@ impl<'a> Table<'a> {
             .count()
             .max(memchr::memchr_iter(b'\r', text).count());
         let mut rows = ends + 1;
-        let values = |rows: usize| rows.saturating_mul(self.titles.width);
+        let values = |rows: usize| rows.saturating_mul(self.described.titles.width);
         if limits.samples(rows).is_some() || limits.values(values(rows)).is_some() {
             // lines that are no rows do not count
             rows = self.rows.clone().count();
@@ -118,49 +100,21 @@ impl<'a> Table<'a> {
     }
 
     pub(super) fn written(&self, plan: &Plan) -> Written<'a> {
-        let of_header = [&self.titles.names, &self.titles.units]
+        let titles = &self.described.titles;
+        let of_header = [&titles.names, &titles.units]
             .into_iter()
             .flatten()
             .map(|(line, _)| line.text.trim());
         let described = self.descriptions.iter().map(|line| line.text.trim());
-        let time = plan
-            .time
-            .column()
-            .map_or("", |at| self.titles.any_label(at).name);
-        let is_mapped = !self.mapping.channels.is_empty() && self.recognised.is_none();
         Written {
             delimiter: self.delimiter,
             marks: self.marks,
-            width: self.titles.width,
+            width: titles.width,
             header: of_header.chain(described).collect(),
-            time: if time.is_empty() || is_mapped {
-                "t".to_string()
-            } else {
-                time.to_string()
-            },
+            time: self.described.name_of_time(plan),
             is_cut_off: !self.rows.rest().ends_with(['\n', '\r']),
         }
     }
-}
-
-/// A mapping that was only recognised says no unit where the file states one that can be read.
-fn without_units_of(titles: &Titles, mapping: &Mapping) -> Mapping {
-    let stated = |from: &Wanted| {
-        let label = titles.find(from).and_then(|at| titles.label(at)).ok()?;
-        Some(label.unit).filter(|unit| !unit.is_empty())
-    };
-    let mut mapping = mapping.clone();
-    let time = &mut mapping.time;
-    let of_time = time.from.as_ref().and_then(stated);
-    if of_time.is_some_and(|unit| RecordedUnit::parse_time(unit).is_ok()) {
-        time.unit.clear();
-    }
-    for channel in mapping.channels.values_mut() {
-        if stated(&channel.from).is_some_and(|unit| RecordedUnit::parse(unit).is_ok()) {
-            channel.unit.clear();
-        }
-    }
-    mapping
 }
 
 fn said(mapping: Option<&Mapping>) -> Result<Said, Fault> {

@@ -77,8 +77,10 @@ impl FromStr for Source {
         };
         let path: Vec<String> = match path {
             "" => Vec::new(),
+            // a slash stands between groups of HDF5
             path => path
-                .split('.')
+                .trim_start_matches('/')
+                .split(['.', '/'])
                 .map(|name| name.trim().to_string())
                 .collect(),
         };

@@ -26,7 +26,6 @@ pub(super) use version4::is_version_4;
 use version5::Version5;
 
 const HEADER: usize = 128;
-const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
 /// Reads a MAT file as the mapping says.
 ///
@@ -64,12 +63,6 @@ fn map(
     mapping.apply(file, limits)
 }
 
-/// Whether it is an HDF5 file, as MAT files of version 7.3 are.
-pub(super) fn is_hdf5(bytes: &[u8]) -> bool {
-    let starts_at = |at: usize| bytes.get(at..).is_some_and(|rest| rest.starts_with(HDF5));
-    starts_at(0) || starts_at(512) || bytes.starts_with(b"MATLAB 7.3")
-}
-
 /// # Errors
 /// It is another file; what to do about it.
 fn byte_order(bytes: &[u8]) -> Result<Order, Fault> {
@@ -79,10 +72,8 @@ fn byte_order(bytes: &[u8]) -> Result<Order, Fault> {
             "the file is empty; send a MAT file",
         ));
     }
-    if is_hdf5(bytes) {
-        let message =
-            "a MAT file of version 7.3 (HDF5) is not read; save it with: save('file.mat', '-v7')";
-        return Err(of_file(code::MAT_VERSION, message));
+    if bytes.starts_with(b"MATLAB 7.3") {
+        return Err(damaged("it is cut off behind its header"));
     }
     match bytes.get(124..HEADER) {
         Some([0x00, 0x01, b'I', b'M']) => Ok(Order::Little),

@@ -1,0 +1,249 @@
+//! A file as a mapping sees it: datasets by path, read when they are asked for.
+
+use super::super::mapping::Archive;
+use super::super::matrix::Matrix;
+use super::super::name::identifier_like;
+use super::super::text::{LISTED, listed, quoted};
+use super::super::{Limits, code};
+use super::attribute;
+use super::dataset::Dataset;
+use super::datatype::{Field, Type};
+use super::file::File;
+use super::objects::Object;
+use super::room;
+use crate::flight::Fault;
+
+pub(in super::super) struct Datasets<'a> {
+    file: File<'a>,
+    objects: Vec<Object<'a>>,
+    /// Bytes that may still be read.
+    room: usize,
+    /// What was asked for last: as it is stored, or row by row.
+    bytes: Vec<u8>,
+    values: Vec<f64>,
+}
+
+/// A code and a message.
+type Why = (&'static str, String);
+
+/// What MATLAB calls numbers.
+const NUMERIC: [&str; 11] = [
+    "double", "single", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64",
+    "logical",
+];
+
+impl<'a> Datasets<'a> {
+    pub(super) fn of(file: File<'a>, objects: Vec<Object<'a>>, limits: &Limits) -> Self {
+        Self {
+            file,
+            objects,
+            room: room::of(limits),
+            bytes: Vec::new(),
+            values: Vec::new(),
+        }
+    }
+
+    /// What there is, for a message.
+    pub(super) fn contents(&self) -> String {
+        let datasets = self
+            .objects
+            .iter()
+            .filter(|object| object.dataset.is_some());
+        let name =
+            |object: &Object| format!("{} ({})", quoted(&object.name()), object.description());
+        listed(datasets.map(name), LISTED)
+    }
+
+    /// The object at a path, and the field of a table that the last name on it may mean.
+    fn find<'p>(&self, path: &'p [String]) -> Result<(usize, Option<&'p String>), Why> {
+        let unknown = |why: String| (code::UNKNOWN_SOURCE, why);
+        let Some((last, before)) = path.split_last() else {
+            let is_matrix = |object: &Object| {
+                let dataset = object.dataset.as_ref();
+                dataset.is_some_and(|dataset| {
+                    dataset.kind.number().is_some()
+                        && dataset.count().is_some_and(|count| count > 1)
+                })
+            };
+            let mut matrices = (0..self.objects.len()).filter(|&at| is_matrix(&self.objects[at]));
+            return match (matrices.next(), matrices.next()) {
+                (Some(at), None) => Ok((at, None)),
+                _ => Err(unknown(format!(
+                    "the file does not have exactly one dataset of numbers; name it; the file has {}",
+                    self.contents()
+                ))),
+            };
+        };
+        let at = |path: &[String]| self.objects.iter().position(|object| object.is_at(path));
+        if let Some(at) = at(path) {
+            return Ok((at, None));
+        }
+        let is_table = |at: &usize| {
+            let dataset = self.objects[*at].dataset.as_ref();
+            dataset.is_some_and(|dataset| matches!(dataset.kind, Type::Compound(..)))
+        };
+        match at(before).filter(is_table) {
+            Some(at) => Ok((at, Some(last))),
+            None => Err(unknown(format!(
+                "there is no dataset {}; the file has {}",
+                quoted(&path.join(".")),
+                self.contents()
+            ))),
+        }
+    }
+}
+
+impl Object<'_> {
+    /// Whether a path as a mapping writes it leads to it.
+    fn is_at(&self, path: &[String]) -> bool {
+        let is_same =
+            |(one, other): (&String, &String)| one == other || identifier_like(one) == *other;
+        self.path.len() == path.len() && self.path.iter().zip(path).all(is_same)
+    }
+}
+
+impl Archive for Datasets<'_> {
+    fn matrix(&mut self, path: &[String]) -> Result<Matrix<'_>, Why> {
+        let (at, field) = self.find(path)?;
+        let object = &self.objects[at];
+        let unreadable = |why: String| {
+            let message = format!("{} {why}", quoted(&object.name()));
+            Err((code::UNREADABLE_SOURCE, message))
+        };
+        let Some(dataset) = &object.dataset else {
+            return unreadable("is a group, not a dataset; name one that is in it".to_string());
+        };
+        if let Some(class) = object.class.as_deref()
+            && !NUMERIC.contains(&class)
+        {
+            return unreadable(format!(
+                "is not a matrix of numbers but {}; {}",
+                object.description(),
+                remedy(class)
+            ));
+        }
+        let is_empty = attribute::is_there(&self.file, &object.header, "MATLAB_empty");
+        if is_empty || dataset.count() == Some(0) {
+            return unreadable("is empty; map another source".to_string());
+        }
+        let of_fault = |fault: Fault| (code_of(&fault), fault.message);
+        if let Some(name) = field {
+            let (columns, values) = of_field(dataset, &self.file, name, &mut self.room)?;
+            self.values = values;
+            return Ok(Matrix::of_rows(&self.values, columns));
+        }
+        let Some(number) = dataset.kind.number() else {
+            return unreadable(format!(
+                "does not hold numbers but {}; {}",
+                dataset.kind.name(),
+                match &dataset.kind {
+                    Type::Compound(fields, _) =>
+                        format!("name one of its fields: {}", names(fields)),
+                    _ => "write it as a dataset of numbers".to_string(),
+                }
+            ));
+        };
+        let Some([rows, columns]) = shape(&dataset.dimensions) else {
+            return unreadable(format!(
+                "is {}: it has more than two dimensions",
+                object.description()
+            ));
+        };
+        let by_columns = object.class.is_some();
+        let bytes = dataset
+            .bytes(&self.file, &mut self.room)
+            .map_err(of_fault)?;
+        if by_columns || columns == 1 {
+            // MATLAB's first dimension is the last one here
+            let shape = if columns == 1 {
+                [rows, 1]
+            } else {
+                [columns, rows]
+            };
+            self.bytes = bytes;
+            let matrix = Matrix::of_bytes(shape, &self.bytes, number);
+            return matrix.ok_or((
+                code::DAMAGED_FILE,
+                "a dataset is not as long as it says".to_string(),
+            ));
+        }
+        self.values = bytes.chunks_exact(number.width).map(number.read).collect();
+        Ok(Matrix::of_rows(&self.values, columns))
+    }
+}
+
+/// The values of a field of a table, row by row, and how many there are in each.
+fn of_field(
+    dataset: &Dataset,
+    file: &File,
+    name: &str,
+    room: &mut usize,
+) -> Result<(usize, Vec<f64>), Why> {
+    let Type::Compound(fields, width) = &dataset.kind else {
+        return Err((code::UNKNOWN_SOURCE, "it is no table".to_string()));
+    };
+    let is_called = |field: &&Field| field.name == name || identifier_like(&field.name) == name;
+    let Some(field) = fields.iter().find(is_called) else {
+        let message = format!(
+            "there is no field {}; the table has {}",
+            quoted(name),
+            names(fields)
+        );
+        return Err((code::UNKNOWN_SOURCE, message));
+    };
+    let (of, columns) = match &field.kind {
+        Type::Array(of, count) => (of.as_ref(), *count),
+        of => (of, 1),
+    };
+    let Some(number) = of.number() else {
+        let message = format!(
+            "field {} does not hold numbers but {}",
+            quoted(name),
+            of.name()
+        );
+        return Err((code::UNREADABLE_SOURCE, message));
+    };
+    let bytes = dataset.bytes(file, room);
+    let bytes = bytes.map_err(|fault| (code_of(&fault), fault.message))?;
+    let cells = |row: &[u8]| -> Vec<f64> {
+        let cells = row.get(field.at..).unwrap_or_default();
+        let cells = cells.chunks_exact(number.width).take(columns);
+        cells.map(number.read).collect()
+    };
+    let values = bytes.chunks_exact(*width).flat_map(cells);
+    Ok((columns, values.collect()))
+}
+
+fn names(fields: &[Field]) -> String {
+    listed(fields.iter().map(|field| quoted(&field.name)), LISTED)
+}
+
+/// Rows and columns, dimensions of one passed over.
+fn shape(dimensions: &[u64]) -> Option<[usize; 2]> {
+    let sizes = dimensions.iter().filter(|size| **size != 1);
+    let sizes: Option<Vec<usize>> = sizes.map(|size| usize::try_from(*size).ok()).collect();
+    match sizes?[..] {
+        [] => Some([1, 1]),
+        [rows] => Some([rows, 1]),
+        [rows, columns] => Some([rows, columns]),
+        _ => None,
+    }
+}
+
+fn remedy(class: &str) -> &'static str {
+    match class {
+        "table" | "timetable" | "FileWrapper__" => {
+            "save it as a struct: s = table2struct(timetable2table(T), 'ToScalar', true)"
+        }
+        "struct" | "cell" => "name one of its fields, or save it with '-v7'",
+        _ => "save numbers",
+    }
+}
+
+fn code_of(fault: &Fault) -> &'static str {
+    match fault.code.as_ref() {
+        code::TOO_MANY_VALUES => code::TOO_MANY_VALUES,
+        code::FORMAT_NOT_READ => code::FORMAT_NOT_READ,
+        _ => code::DAMAGED_FILE,
+    }
+}

@@ -1,0 +1,291 @@
+//! A dataset: its shape, what its elements are, and their bytes.
+
+use super::super::{code, fault::of_file};
+use super::damage::{REWRITE, damaged};
+use super::datatype::Type;
+use super::file::{Cursor, File};
+use super::filters::Filters;
+use super::header::{Header, kind};
+use super::index::{self, Grid, Index};
+use crate::flight::Fault;
+
+pub(super) struct Dataset<'a> {
+    pub(super) dimensions: Vec<u64>,
+    pub(super) kind: Type,
+    layout: Layout<'a>,
+    filters: Filters,
+}
+
+enum Layout<'a> {
+    Compact(&'a [u8]),
+    Contiguous(u64),
+    Chunked(Index, Vec<u64>),
+    NotRead,
+}
+
+/// Dimensions of a dataset.
+const MOST_DIMENSIONS: usize = 32;
+
+impl<'a> Dataset<'a> {
+    /// The dataset of a header; `None` where it is that of a group.
+    ///
+    /// # Errors
+    /// It is damaged.
+    pub(super) fn read(file: &File<'a>, header: &Header<'a>) -> Result<Option<Self>, Fault> {
+        let Some(layout) = header.find(kind::LAYOUT) else {
+            return Ok(None);
+        };
+        let of_message = |kind| header.find(kind).map(|message| file.within(message));
+        let dimensions = of_message(kind::DATASPACE).and_then(dimensions);
+        let dimensions = dimensions.ok_or_else(|| damaged("a dataset has no shape"))?;
+        // a type that stands elsewhere is one that somebody named
+        let kind = match of_message(kind::DATATYPE) {
+            Some(mut cursor) => Type::read(&mut cursor)
+                .ok_or_else(|| damaged("what a dataset holds cannot be read"))?,
+            None => Type::Other("elements of a named type", 0),
+        };
+        let layout = self::layout(file.within(layout))
+            .ok_or_else(|| damaged("where a dataset is cannot be read"))?;
+        let filters = match header.find(kind::FILTERS) {
+            Some(message) => Filters::read(file, message)?,
+            None => Filters::none(),
+        };
+        Ok(Some(Self {
+            dimensions,
+            kind,
+            layout,
+            filters,
+        }))
+    }
+
+    /// How many elements it has.
+    pub(super) fn count(&self) -> Option<usize> {
+        let count = self
+            .dimensions
+            .iter()
+            .try_fold(1u64, |all, size| all.checked_mul(*size))?;
+        usize::try_from(count).ok()
+    }
+
+    /// The bytes of all elements, the last dimension first; so many of `room` are taken.
+    ///
+    /// # Errors
+    /// There is less room; it is damaged, or stored in a way that is not read.
+    pub(super) fn bytes(&self, file: &File<'a>, room: &mut usize) -> Result<Vec<u8>, Fault> {
+        let length = self
+            .count()
+            .and_then(|count| count.checked_mul(self.kind.width()));
+        let length = length.unwrap_or(usize::MAX);
+        take(room, length)?;
+        let cut_off = || damaged("the values of a dataset are cut off");
+        match &self.layout {
+            Layout::Compact(bytes) => {
+                let bytes = bytes.get(..length).ok_or_else(cut_off)?;
+                Ok(bytes.to_vec())
+            }
+            Layout::Contiguous(address) => {
+                let bytes = file.slice(*address, length).ok_or_else(cut_off)?;
+                Ok(bytes.to_vec())
+            }
+            Layout::Chunked(index, chunk) => self.chunked(file, index, chunk, length, room),
+            Layout::NotRead => Err(not_read()),
+        }
+    }
+
+    fn chunked(
+        &self,
+        file: &File<'a>,
+        index: &Index,
+        chunk: &[u64],
+        length: usize,
+        room: &mut usize,
+    ) -> Result<Vec<u8>, Fault> {
+        if matches!(index, Index::NotRead) {
+            return Err(not_read());
+        }
+        let wrong = || damaged("the chunks of a dataset cannot be found");
+        let width = self.kind.width();
+        let of_chunk = chunk
+            .iter()
+            .try_fold(width as u64, |all, size| all.checked_mul(*size));
+        let of_chunk = of_chunk.and_then(|length| usize::try_from(length).ok());
+        let of_chunk = of_chunk.filter(|length| *length > 0).ok_or_else(wrong)?;
+        if chunk.len() != self.dimensions.len() {
+            return Err(wrong());
+        }
+        let grid = Grid {
+            dimensions: &self.dimensions,
+            chunk,
+            length: of_chunk,
+        };
+        let mut bytes = vec![0; length];
+        if length == 0 {
+            return Ok(bytes);
+        }
+        for found in index.chunks(file, &grid).ok_or_else(wrong)? {
+            take(room, of_chunk)?;
+            let undone;
+            let plain = match self.filters.is_empty() {
+                true => found.bytes,
+                false => {
+                    undone =
+                        self.filters
+                            .undo(found.bytes, found.mask, of_chunk.saturating_add(4))?;
+                    &undone
+                }
+            };
+            let plain = plain.get(..of_chunk).ok_or_else(wrong)?;
+            place(&mut bytes, &self.dimensions, plain, chunk, &found.at, width)
+                .ok_or_else(wrong)?;
+        }
+        Ok(bytes)
+    }
+}
+
+fn take(room: &mut usize, length: usize) -> Result<(), Fault> {
+    *room = room.checked_sub(length).ok_or_else(|| {
+        let message = "the datasets of the HDF5 file have more values than a recording may; leave out what the estimation does not need, or send a shorter part";
+        of_file(code::TOO_MANY_VALUES, message)
+    })?;
+    Ok(())
+}
+
+fn not_read() -> Fault {
+    let message = format!("the HDF5 file stores a dataset in a way that is not read; {REWRITE}");
+    of_file(code::FORMAT_NOT_READ, message)
+}
+
+/// Copies what of a chunk is within the dataset to its place.
+fn place(
+    bytes: &mut [u8],
+    dimensions: &[u64],
+    plain: &[u8],
+    chunk: &[u64],
+    at: &[u64],
+    width: usize,
+) -> Option<()> {
+    // what there is of the chunk in each dimension
+    let sizes = dimensions.iter().zip(chunk).zip(at);
+    let sizes: Vec<u64> = sizes
+        .map(|((size, chunk), at)| size.saturating_sub(*at).min(*chunk))
+        .collect();
+    let (&run, outer) = sizes.split_last()?;
+    if sizes.contains(&0) {
+        return Some(());
+    }
+    let length = usize::try_from(run).ok()?.checked_mul(width)?;
+    let mut within = vec![0u64; outer.len()];
+    loop {
+        let (mut from, mut to) = (0u64, 0u64);
+        for axis in 0..dimensions.len() {
+            let step = within.get(axis).copied().unwrap_or(0);
+            from = from.checked_mul(chunk[axis])?.checked_add(step)?;
+            to = to
+                .checked_mul(dimensions[axis])?
+                .checked_add(at[axis].checked_add(step)?)?;
+        }
+        let from = usize::try_from(from).ok()?.checked_mul(width)?;
+        let to = usize::try_from(to).ok()?.checked_mul(width)?;
+        let source = plain.get(from..from.checked_add(length)?)?;
+        bytes
+            .get_mut(to..to.checked_add(length)?)?
+            .copy_from_slice(source);
+        // the next row of the chunk
+        let mut axis = outer.len();
+        loop {
+            let Some(before) = axis.checked_sub(1) else {
+                return Some(());
+            };
+            axis = before;
+            within[axis] += 1;
+            if within[axis] < outer[axis] {
+                break;
+            }
+            within[axis] = 0;
+        }
+    }
+}
+
+/// The size in every dimension; none of a single value.
+fn dimensions(mut cursor: Cursor) -> Option<Vec<u64>> {
+    let version = cursor.u8()?;
+    let rank = usize::from(cursor.u8()?);
+    cursor.u8()?;
+    match version {
+        1 => cursor.take(5)?,
+        // 2: there is nothing
+        2 => match cursor.u8()? {
+            2 => return Some(vec![0]),
+            _ => &[],
+        },
+        _ => return None,
+    };
+    if rank > MOST_DIMENSIONS {
+        return None;
+    }
+    (0..rank).map(|_| cursor.size()).collect()
+}
+
+fn layout(mut cursor: Cursor<'_>) -> Option<Layout<'_>> {
+    let version = cursor.u8()?;
+    if !(3..=5).contains(&version) {
+        return Some(Layout::NotRead);
+    }
+    Some(match cursor.u8()? {
+        0 => {
+            let length = cursor.u16()?;
+            Layout::Compact(cursor.take(length.into())?)
+        }
+        1 => Layout::Contiguous(cursor.address()?),
+        2 if version == 3 => {
+            let rank = usize::from(cursor.u8()?).checked_sub(1)?;
+            let address = cursor.address()?;
+            let chunk = (0..rank).map(|_| cursor.u32().map(u64::from));
+            Layout::Chunked(Index::Tree { address }, chunk.collect::<Option<_>>()?)
+        }
+        2 => chunked(&mut cursor)?,
+        _ => Layout::NotRead,
+    })
+}
+
+/// Chunks of versions 4 and 5, which differ in how long a chunk may be.
+fn chunked<'a>(cursor: &mut Cursor<'a>) -> Option<Layout<'a>> {
+    let flags = cursor.u8()?;
+    let rank = usize::from(cursor.u8()?).checked_sub(1)?;
+    let width = usize::from(cursor.u8()?);
+    let chunk = (0..rank)
+        .map(|_| cursor.uint(width))
+        .collect::<Option<_>>()?;
+    cursor.uint(width)?;
+    let index = match cursor.u8()? {
+        1 => {
+            let packed = match flags & 2 {
+                0 => None,
+                _ => Some((cursor.count()?, cursor.u32()?)),
+            };
+            let address = cursor.address()?;
+            Index::Single { address, packed }
+        }
+        2 => Index::Implicit {
+            address: cursor.address()?,
+        },
+        3 => {
+            cursor.u8()?;
+            Index::FixedArray {
+                address: cursor.address()?,
+            }
+        }
+        _ => Index::NotRead,
+    };
+    let is_written = match index {
+        Index::Single { address, .. }
+        | Index::Implicit { address }
+        | Index::FixedArray { address } => !index::is_undefined(address),
+        _ => true,
+    };
+    let tree = Index::Tree { address: u64::MAX };
+    Some(Layout::Chunked(
+        if is_written { index } else { tree },
+        chunk,
+    ))
+}

@@ -1,0 +1,110 @@
+//! What is made of a stored number.
+
+use super::block::Block;
+
+#[derive(Clone, Debug)]
+pub(super) enum Conversion {
+    None,
+    /// An offset and a factor.
+    Linear(f64, f64),
+    /// Two polynomials of second degree, one above the other.
+    Rational([f64; 6]),
+    /// Keys with values, in the order of the keys: on straight lines between them, or at the nearest.
+    Table {
+        pairs: Vec<[f64; 2]>,
+        is_straight: bool,
+    },
+    /// From, to, and the value there; and the value elsewhere.
+    Ranges(Vec<[f64; 3]>, f64),
+}
+
+impl Conversion {
+    /// `None` where it is one that is not read.
+    pub(super) fn read(block: &Block) -> Option<Self> {
+        let mut cursor = block.cursor();
+        let kind = cursor.u8()?;
+        cursor.take(5)?;
+        let count = cursor.u16()?;
+        cursor.take(16)?;
+        let values: Vec<f64> = (0..count).map_while(|_| cursor.f64()).collect();
+        Some(match (kind, &values[..]) {
+            // 7 and 8 say texts that numbers stand for
+            (0 | 7 | 8, _) => Self::None,
+            (1, [offset, factor, ..]) => Self::Linear(*offset, *factor),
+            (2, [a, b, c, d, e, f, ..]) => Self::Rational([*a, *b, *c, *d, *e, *f]),
+            (4 | 5, [_, _, ..]) => {
+                let mut pairs = values.as_chunks::<2>().0.to_vec();
+                pairs.sort_by(|a, b| a[0].total_cmp(&b[0]));
+                let is_straight = kind == 4;
+                Self::Table { pairs, is_straight }
+            }
+            (6, _) => {
+                let (ranges, rest) = values.as_chunks::<3>();
+                Self::Ranges(ranges.to_vec(), rest.first().copied().unwrap_or(f64::NAN))
+            }
+            _ => return None,
+        })
+    }
+
+    pub(super) fn apply(&self, raw: f64) -> f64 {
+        match self {
+            Self::None => raw,
+            Self::Linear(offset, factor) => offset + factor * raw,
+            Self::Rational([a, b, c, d, e, f]) => {
+                ((a * raw + b) * raw + c) / ((d * raw + e) * raw + f)
+            }
+            Self::Table { pairs, is_straight } => looked_up(pairs, *is_straight, raw),
+            Self::Ranges(ranges, elsewhere) => {
+                let is_in = |[from, to, _]: &&[f64; 3]| (*from..=*to).contains(&raw);
+                ranges
+                    .iter()
+                    .find(is_in)
+                    .map_or(*elsewhere, |[_, _, value]| *value)
+            }
+        }
+    }
+}
+
+fn looked_up(pairs: &[[f64; 2]], is_straight: bool, raw: f64) -> f64 {
+    let behind = pairs.partition_point(|[key, _]| *key < raw);
+    let before = behind.checked_sub(1).and_then(|before| pairs.get(before));
+    match (before, pairs.get(behind)) {
+        (Some([low, of_low]), Some([high, of_high])) => {
+            let share = (raw - low) / (high - low);
+            match is_straight {
+                true => of_low + share * (of_high - of_low),
+                false if share <= 0.5 => *of_low,
+                false => *of_high,
+            }
+        }
+        (Some([_, value]), None) | (None, Some([_, value])) => *value,
+        (None, None) => f64::NAN,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_converted() {
+        assert_eq!(Conversion::Linear(1.0, 0.5).apply(3.0), 2.5);
+        let rational = Conversion::Rational([0.0, 1.0, 2.0, 0.0, 0.0, 4.0]);
+        assert_eq!(rational.apply(6.0), 2.0);
+        let table = |is_straight| Conversion::Table {
+            pairs: vec![[0.0, 10.0], [2.0, 20.0]],
+            is_straight,
+        };
+        assert_eq!(table(true).apply(0.5), 12.5);
+        assert_eq!(
+            (table(false).apply(0.5), table(false).apply(1.5)),
+            (10.0, 20.0)
+        );
+        assert_eq!(
+            (table(true).apply(-1.0), table(true).apply(9.0)),
+            (10.0, 20.0)
+        );
+        let ranges = Conversion::Ranges(vec![[0.0, 1.0, 5.0]], 7.0);
+        assert_eq!((ranges.apply(1.0), ranges.apply(2.0)), (5.0, 7.0));
+    }
+}

@@ -1,0 +1,31 @@
+//! MDF 4 files (ASAM), as Vector's tools, asammdf and many loggers write them: groups of channels that say their units, each
+//! group with its times in a master channel.
+//!
+//! The layout of the format is described in "ASAM MDF 4.1". The crates that read it were weighed: `mdf4-rs` and `mf4-rs` are
+//! young and of one author each, bring what is needed for buses or the network, and make room for what a file says before
+//! they look whether it is there. `mdfr` is under a licence that this program does not take.
+//!
+//! Records are read from where they stand; packed ones are unpacked within the limits. Linear, rational and tabular
+//! conversions are applied; a number that stands for a text remains the number.
+
+mod block;
+mod conversion;
+mod damage;
+mod data;
+mod field;
+mod samples;
+mod scan;
+
+use super::{IngestError, Limits, groups, mapping::Mapping, reading::Reading};
+
+/// Reads all channels; or those that a mapping names, as it says.
+///
+/// # Errors
+/// It is damaged, or does not have what the mapping names.
+pub(super) fn read(
+    bytes: &[u8],
+    mapping: Option<&Mapping>,
+    limits: &Limits,
+) -> Result<Reading, IngestError> {
+    groups::read(scan::scan(bytes, limits)?, mapping, limits)
+}

@@ -1,0 +1,296 @@
+//! The segments of a file: each says what has changed since the one before, and has some of the values.
+
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use super::super::cursor::Cursor;
+use super::super::stored::Order;
+use super::super::{Limits, code, fault::of_file};
+use super::damage::damaged;
+use super::layout::{Layout, Slot};
+use super::object::{Object, Said};
+use super::property;
+use crate::flight::Fault;
+
+pub(super) struct File<'a> {
+    pub(super) bytes: &'a [u8],
+    pub(super) objects: Vec<Object>,
+    pub(super) segments: Vec<Segment>,
+}
+
+/// Chunks of one layout, one behind the other.
+pub(super) struct Segment {
+    pub(super) start: usize,
+    pub(super) chunks: usize,
+    pub(super) layout: Rc<Layout>,
+}
+
+const HEAD: usize = 28;
+/// Segments, and places of channels in all layouts of them.
+const MOST_SEGMENTS: usize = 1_000_000;
+const MOST_SLOTS: usize = 4_000_000;
+/// Bits of what a segment is.
+const HAS_META_DATA: u32 = 1 << 1;
+const HAS_NEW_LIST: u32 = 1 << 2;
+const HAS_DATA: u32 = 1 << 3;
+const IS_INTERLEAVED: u32 = 1 << 5;
+const IS_BIG_ENDIAN: u32 = 1 << 6;
+
+/// Looks at all segments.
+///
+/// # Errors
+/// The file is damaged, or has more channels or segments than are taken.
+pub(super) fn scan<'a>(bytes: &'a [u8], limits: &Limits) -> Result<File<'a>, Fault> {
+    let mut scan = Scan {
+        file: File {
+            bytes,
+            objects: Vec::new(),
+            segments: Vec::new(),
+        },
+        known: HashMap::new(),
+        list: Vec::new(),
+        is_listed: Vec::new(),
+        layout: None,
+        slots: 0,
+        // groups are objects, too
+        most: limits.max_columns.saturating_mul(2),
+    };
+    let (mut at, mut count) = (0, 0);
+    while let Some(head) = Head::read(bytes, at) {
+        count += 1;
+        scan.segment(at, &head, count)?;
+        let length = usize::try_from(head.length).unwrap_or(usize::MAX);
+        at = at.saturating_add(HEAD).saturating_add(length);
+    }
+    match count {
+        0 => Err(damaged("its first segment cannot be read")),
+        _ => Ok(scan.file),
+    }
+}
+
+struct Head {
+    flags: u32,
+    /// Of all numbers behind the flags.
+    order: Order,
+    /// Bytes of the segment, and before its values.
+    length: u64,
+    values: u64,
+}
+
+impl Head {
+    /// That of a segment; `None` where there is none.
+    fn read(bytes: &[u8], at: usize) -> Option<Self> {
+        let mut cursor = Cursor::of(bytes.get(at..)?, Order::Little);
+        if cursor.take(4)? != b"TDSm" {
+            return None;
+        }
+        let flags = cursor.u32()?;
+        let order = match flags & IS_BIG_ENDIAN {
+            0 => Order::Little,
+            _ => Order::Big,
+        };
+        let mut cursor = Cursor::of(cursor.take(20)?, order);
+        cursor.u32()?;
+        Some(Self {
+            flags,
+            order,
+            length: cursor.u64()?,
+            values: cursor.u64()?,
+        })
+    }
+}
+
+struct Scan<'a> {
+    file: File<'a>,
+    known: HashMap<&'a [u8], usize>,
+    /// The objects that have values in the segment.
+    list: Vec<usize>,
+    /// Whether each is in the list.
+    is_listed: Vec<bool>,
+    /// The layout of the segment before, with its bits.
+    layout: Option<(u32, Rc<Layout>)>,
+    slots: usize,
+    most: usize,
+}
+
+impl<'a> Scan<'a> {
+    fn segment(&mut self, at: usize, head: &Head, count: usize) -> Result<(), Fault> {
+        let bytes = self.file.bytes;
+        let wrong = || damaged(&format!("what segment {count} has cannot be read"));
+        let place = |length: u64| {
+            let length = usize::try_from(length).unwrap_or(usize::MAX);
+            at.saturating_add(HEAD)
+                .saturating_add(length)
+                .min(bytes.len())
+        };
+        let start = place(head.values);
+        if head.flags & HAS_META_DATA != 0 {
+            if head.flags & HAS_NEW_LIST != 0 {
+                self.list.clear();
+                self.is_listed.fill(false);
+                self.layout = None;
+            }
+            let mut cursor = Cursor::of(&bytes[at + HEAD..start], head.order);
+            match self.meta_data(&mut cursor, head.order) {
+                Some(()) => {}
+                // a segment that was not finished says nothing
+                None if place(head.length) == bytes.len() && count > 1 => return Ok(()),
+                None => return Err(wrong()),
+            }
+        }
+        if self.file.objects.len() > self.most {
+            let message = format!(
+                "{} channels and groups are more than are taken; leave out channels that the estimation does not need",
+                self.file.objects.len()
+            );
+            return Err(of_file(code::TOO_MANY_COLUMNS, message));
+        }
+        if head.flags & HAS_DATA == 0 {
+            return Ok(());
+        }
+        let layout = self.layout(head).ok_or_else(wrong)?;
+        let length = place(head.length).saturating_sub(start);
+        let chunks = length.checked_div(layout.length).unwrap_or(0);
+        if chunks > 0 {
+            self.file.segments.push(Segment {
+                start,
+                chunks,
+                layout,
+            });
+        }
+        if self.file.segments.len() > MOST_SEGMENTS || self.slots > MOST_SLOTS {
+            let message = "the TDMS file has too many segments; defragment it in LabVIEW (TDMS Defragment), or write it anew";
+            return Err(of_file(code::TOO_MANY_VALUES, message));
+        }
+        Ok(())
+    }
+
+    fn meta_data(&mut self, cursor: &mut Cursor<'a>, order: Order) -> Option<()> {
+        for _ in 0..cursor.u32()? {
+            let path = property::text(cursor)?;
+            let said = Said::read(cursor)?;
+            let objects = &mut self.file.objects;
+            let at = *self.known.entry(path).or_insert_with(|| {
+                objects.push(Object::of(path));
+                objects.len() - 1
+            });
+            if objects.len() > self.most {
+                return Some(());
+            }
+            let object = &mut objects[at];
+            let has_data = match said {
+                Said::None => false,
+                Said::AsBefore => object.index.is_some(),
+                Said::Index(index) => {
+                    if object.index != Some(index) {
+                        object.index = Some(index);
+                        self.layout = None;
+                    }
+                    true
+                }
+            };
+            object.read_properties(cursor, order)?;
+            self.is_listed.resize(self.file.objects.len(), false);
+            let is_listed = std::mem::replace(&mut self.is_listed[at], has_data);
+            if has_data && !is_listed {
+                self.list.push(at);
+                self.layout = None;
+            } else if !has_data && is_listed {
+                self.list.retain(|other| *other != at);
+                self.layout = None;
+            }
+        }
+        Some(())
+    }
+
+    /// Where the values of a segment are; `None` where what is said of them cannot be.
+    fn layout(&mut self, head: &Head) -> Option<Rc<Layout>> {
+        let bits = head.flags & (IS_INTERLEAVED | IS_BIG_ENDIAN);
+        if let Some((of, layout)) = &self.layout
+            && *of == bits
+        {
+            return Some(Rc::clone(layout));
+        }
+        let order = head.order;
+        let indices = self
+            .list
+            .iter()
+            .filter_map(|&at| Some((at, self.file.objects[at].index?)));
+        let mut layout = Layout {
+            slots: vec![None; self.file.objects.len()],
+            length: 0,
+        };
+        let is_of_daqmx = indices.clone().any(|(_, index)| index.daqmx.is_some());
+        let row = |width: usize, at: usize| Slot {
+            kind: super::layout::Kind::Other,
+            at,
+            step: width,
+            count: 1,
+        };
+        for (at, index) in indices {
+            let kind = index.values(order);
+            let slot = if let Some(daqmx) = index.daqmx {
+                layout.length = daqmx.row;
+                Slot {
+                    kind,
+                    ..row(daqmx.row, daqmx.at)
+                }
+            } else if is_of_daqmx {
+                continue;
+            } else if head.flags & IS_INTERLEAVED != 0 {
+                let width = index.width(order)?;
+                layout.length = layout.length.checked_add(width)?;
+                Slot {
+                    kind,
+                    ..row(width, layout.length - width)
+                }
+            } else {
+                let start = layout.length;
+                layout.length = start.checked_add(index.bytes(order)?)?;
+                Slot {
+                    kind,
+                    at: start,
+                    step: index.width(order).unwrap_or(0),
+                    count: index.count,
+                }
+            };
+            layout.slots[at] = Some(slot);
+        }
+        self.slots += layout.slots.len();
+        let layout = Rc::new(layout);
+        self.layout = Some((bits, Rc::clone(&layout)));
+        Some(layout)
+    }
+}
+
+impl File<'_> {
+    /// How many values an object has.
+    pub(super) fn count(&self, at: usize) -> usize {
+        let counts = self.segments.iter().map(|segment| {
+            let slot = segment.layout.slots.get(at).copied().flatten();
+            slot.map_or(0, |slot| slot.count.saturating_mul(segment.chunks))
+        });
+        counts.fold(0, usize::saturating_add)
+    }
+
+    /// Every value of an object, as bytes.
+    pub(super) fn each(&self, at: usize, mut each: impl FnMut(&Slot, &[u8])) -> Result<(), Fault> {
+        for segment in &self.segments {
+            let Some(slot) = segment.layout.slots.get(at).copied().flatten() else {
+                continue;
+            };
+            for chunk in 0..segment.chunks {
+                let start = segment.start + chunk * segment.layout.length;
+                let chunk = self.bytes.get(start..start + segment.layout.length);
+                let values = chunk.and_then(|chunk| chunk.get(slot.at..));
+                let mut rest = values.ok_or_else(|| damaged("a chunk is cut off"))?;
+                for _ in 0..slot.count {
+                    let value = rest.get(..slot.width());
+                    each(&slot, value.ok_or_else(|| damaged("a chunk is cut off"))?);
+                    rest = rest.get(slot.step..).unwrap_or_default();
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,77 @@
+"""Writes the HDF5 files beside this: python3 make_hdf5.py (h5py, pandas, tables)."""
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pandas as pd
+
+here = Path(__file__).parent
+time = np.arange(5) * 0.04
+alpha = np.array([1.5, 2.5, np.nan, 3.5, 4.5])
+rate = np.array([10.0, -20.0, 30.0, -40.0, 50.0])
+data = np.column_stack([time, alpha, rate])
+
+
+def matlab(parent, name, values, kind="double"):
+    """A variable as MATLAB stores it: its first dimension last, its class in an attribute."""
+    stored = parent.create_dataset(name, data=np.asarray(values).T)
+    stored.attrs["MATLAB_class"] = np.bytes_(kind)
+    return stored
+
+
+with h5py.File(here / "v73.mat", "w", userblock_size=512) as file:
+    matlab(file, "t", time.reshape(1, 5))
+    matlab(file, "data", data)
+    matlab(file, "note", np.frombuffer(b"made", np.uint8).astype("u2").reshape(1, 4), "char")
+    matlab(file, "nothing", np.zeros((2, 1), "u8")).attrs["MATLAB_empty"] = np.uint8(1)
+    z = np.zeros((1, 5), [("real", "f8"), ("imag", "f8")])
+    z["imag"] = np.arange(5)
+    matlab(file, "z", z)
+    rec = file.create_group("rec")
+    rec.attrs["MATLAB_class"] = np.bytes_("struct")
+    matlab(rec, "alpha", alpha.reshape(5, 1))
+    matlab(rec, "q", rate.astype("i2").reshape(5, 1), "int16")
+    matlab(rec.create_group("inner"), "q", rate.astype("f4").reshape(1, 5), "single")
+with open(here / "v73.mat", "r+b") as file:
+    file.write(b"MATLAB 7.3 MAT-file, as h5py writes it".ljust(124) + b"\x00\x02IM")
+
+
+def datasets(file):
+    file["time"] = time
+    air = file.create_group("air")
+    air["alpha"] = alpha
+    air["pitch rate"] = rate
+    file.create_dataset("gzip", data=data, chunks=(2, 2), compression="gzip")
+
+
+with h5py.File(here / "datasets.h5", "w") as file:
+    datasets(file)
+    file.create_dataset("lzf", data=data, chunks=(5, 3), compression="lzf")
+    file.create_dataset("shuffled", data=data, chunks=(3, 3), compression="gzip", shuffle=True, fletcher32=True)
+    file["big_endian"] = data.astype(">f4")
+    file.create_dataset("bomb", shape=(10**9,), chunks=(10**6,), dtype="f8", compression="gzip")
+
+with h5py.File(here / "latest.h5", "w", libver="latest") as file:
+    datasets(file)
+    file.create_dataset("single", data=data, chunks=data.shape, compression="gzip")
+    file.create_dataset("fixed", data=data, chunks=(2, 2))
+    early = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    early.set_chunk((2, 2))
+    early.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
+    space = h5py.h5s.create_simple(data.shape)
+    implicit = h5py.h5d.create(file.id, b"implicit", h5py.h5t.NATIVE_DOUBLE, space, early)
+    implicit.write(h5py.h5s.ALL, h5py.h5s.ALL, data)
+    file.create_dataset("paged", data=np.arange(1100, dtype="u2"), chunks=(1,))
+
+frame = pd.DataFrame({"alpha [deg]": alpha, "q [deg/s]": rate.astype("int16")})
+frame.index = pd.Index(time, name="time_s")
+frame.to_hdf(here / "fixed.h5", key="flight", mode="w")
+frame.index = pd.date_range("2026-11-21 10:00", periods=5, freq="40ms")
+frame.to_hdf(here / "packed.h5", key="flight", mode="w", format="table", index=False, complevel=5)
+
+fields = np.zeros(5, [("time [s]", "f8"), ("alpha [deg]", "f4"), ("q [deg/s]", "i2"), ("phase", "S5")])
+fields["time [s]"], fields["alpha [deg]"], fields["q [deg/s]"] = time, alpha, rate
+fields["phase"] = b"climb"
+with h5py.File(here / "fields.h5", "w") as file:
+    file["flight"] = fields
