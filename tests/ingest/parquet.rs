@@ -72,6 +72,19 @@ fn numbers_of_every_kind_are_read() {
         .map(|finding| finding.code.as_ref())
         .collect();
     assert!(left_out.contains(&"left_out"), "words are: {left_out:?}");
+    let counts = [
+        2f64.powi(32) - 1.0,
+        0.0,
+        2f64.powi(31),
+        5.0,
+        2f64.powi(31) - 1.0,
+    ];
+    let Reading { maneuver, .. } = reading("delta");
+    assert_eq!(values(&maneuver, "count"), counts);
+    assert_eq!(
+        values(&maneuver, "total"),
+        counts.map(|count| count * 2f64.powi(32))
+    );
     let Reading { maneuver, findings } = reading("nested");
     assert_eq!(known(&maneuver, "air_p"), [1.0, 2.0, -1.0, 4.0, 5.0]);
     assert_eq!(known(&maneuver, "air_T"), [-1.0, 5.0, -1.0, 1.0, 2.0]);
@@ -117,8 +130,8 @@ fn a_mapping_names_titles_as_in_a_table_of_text() {
         &Limits::default(),
     );
     let inspected = inspected.unwrap().expect("a table");
-    assert_eq!(inspected.columns[0].unit, "deg");
-    assert_eq!(inspected.columns[7].first, "2026-11-21T10:00:00Z");
+    assert_eq!(inspected.columns[1].unit, "deg");
+    assert_eq!(inspected.columns[0].first, "2026-11-21T10:00:00Z");
     assert!(inspected.draft.to_toml().contains("alpha [deg]"));
 }
 

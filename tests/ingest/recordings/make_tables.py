@@ -1,5 +1,6 @@
 """Writes the Parquet files beside this: python3 make_tables.py (pandas, pyarrow)."""
 
+from datetime import date
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,7 @@ kinds = pd.DataFrame(
     {
         "alpha [deg]": pd.array([1.5, 2.5, None, 3.5, 4.5], dtype="Float64"),
         "q [deg/s]": np.array(rate, dtype="int16"),
+        "day": [date(2026, 11, 21)] * 5,
         "gear": pd.array([True, False, None, True, False], dtype="boolean"),
         "phase": pd.Categorical(["climb", "level", "climb", "level", "level"]),
         "mode": pd.array([1, 2, None, 4, 255], dtype="UInt8"),
@@ -51,11 +53,16 @@ nested = pa.table(
     }
 )
 pq.write_table(nested, here / "nested.parquet")
+counts = [2**32 - 1, 0, 2**31, 5, 2**31 - 1]
+deltas = nested.select(["time_ms", "alpha [deg]"])
+deltas = deltas.append_column("count", pa.array(counts, pa.uint32()))
+deltas = deltas.append_column("total", pa.array([2**32 * count for count in counts], pa.uint64()))
+delta = dict.fromkeys(["time_ms", "count", "total"], "DELTA_BINARY_PACKED")
 pq.write_table(
-    nested.select(["time_ms", "alpha [deg]", "half"]),
+    deltas,
     here / "delta.parquet",
     use_dictionary=False,
-    column_encoding={"time_ms": "DELTA_BINARY_PACKED", "alpha [deg]": "BYTE_STREAM_SPLIT", "half": "PLAIN"},
+    column_encoding={**delta, "alpha [deg]": "BYTE_STREAM_SPLIT"},
 )
 pq.write_table(
     pa.table(

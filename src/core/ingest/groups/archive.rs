@@ -9,9 +9,18 @@ use super::group::{Channel, Group, Groups, Samples, Time};
 
 pub(super) struct Source<S> {
     groups: Groups<S>,
+    names: Vec<Named>,
     /// What was asked for last.
     values: Vec<f64>,
     limits: Limits,
+}
+
+/// A channel by its place, and what a mapping may call it and its group where they have other signs in their names.
+struct Named {
+    group: usize,
+    channel: usize,
+    of_group: String,
+    of_channel: String,
 }
 
 /// The times of a group that are no channel of it: no name in a mapping is like this.
@@ -21,7 +30,19 @@ const LISTED: usize = 60;
 
 impl<S> Source<S> {
     pub(super) fn of(groups: Groups<S>, limits: &Limits) -> Self {
+        let all = groups.groups.iter().enumerate();
+        let names = all.flat_map(|(at, group)| {
+            let of_group = identifier_like(&group.name);
+            let channels = group.channels.iter().enumerate();
+            channels.map(move |(channel, of)| Named {
+                group: at,
+                channel,
+                of_group: of_group.clone(),
+                of_channel: identifier_like(&of.name),
+            })
+        });
         Self {
+            names: names.collect(),
             groups,
             values: Vec::new(),
             limits: *limits,
@@ -35,18 +56,17 @@ impl<S> Source<S> {
             [name] => (None, name),
             _ => return None,
         };
-        let is_same =
-            |found: &str, wanted: &str| found == wanted || identifier_like(found) == wanted;
-        let groups = self.groups.groups.iter().enumerate();
-        let groups = groups.filter(|(_, of)| group.is_none_or(|group| is_same(&of.name, group)));
-        let mut found = groups.flat_map(|(at, group)| {
-            let channels = group.channels.iter();
-            let channels = channels.filter(|channel| is_same(&channel.name, name));
-            channels.map(move |channel| (at, group, channel))
+        let all = self.names.iter().map(|named| {
+            let group = &self.groups.groups[named.group];
+            (named, group, &group.channels[named.channel])
         });
-        found
-            .next()
-            .filter(|_| group.is_some() || found.next().is_none())
+        let mut found = all.filter(|(named, of, channel)| {
+            let is_in = |group: &String| named.of_group == *group || of.name == *group;
+            (named.of_channel == *name || channel.name == *name) && group.is_none_or(is_in)
+        });
+        let (named, of, channel) = found.next()?;
+        let is_one = group.is_some() || found.next().is_none();
+        is_one.then_some((named.group, of, channel))
     }
 
     fn contents(&self) -> String {

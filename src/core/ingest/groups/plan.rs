@@ -31,11 +31,18 @@ impl Plan {
     pub(super) fn of(groups: &[Group], limits: &Limits) -> Self {
         let mut plan = Self::default();
         let mut names = Names::new(limits);
+        let first = groups.first().map(|group| &group.name);
+        let is_one = groups.iter().all(|group| Some(&group.name) == first);
         for (at, group) in groups.iter().enumerate() {
             for channel in &group.channels {
-                let title = title(groups, group, channel);
-                match plan.channel(&mut names, groups, at, channel) {
-                    Ok(planned) => plan.channels.push(planned),
+                let title = title(is_one, group, channel);
+                match plan.channel(&mut names, group, channel, &title) {
+                    Ok((name, unit)) => plan.channels.push(Planned {
+                        group: at,
+                        name,
+                        unit,
+                        at: channel.at,
+                    }),
                     Err(why) => plan.left_out.push((quoted(&title), why)),
                 }
             }
@@ -43,14 +50,14 @@ impl Plan {
         plan
     }
 
+    /// The name and the unit of a channel.
     fn channel(
         &mut self,
         names: &mut Names,
-        groups: &[Group],
-        at: usize,
+        group: &Group,
         channel: &Channel,
-    ) -> Result<Planned, String> {
-        let group = &groups[at];
+        title: &str,
+    ) -> Result<(String, RecordedUnit), String> {
         if group.time == Time::Unknown {
             return Err("the file says no times of it".to_string());
         }
@@ -70,22 +77,16 @@ impl Plan {
         let named = match taken {
             true => name.to_string(),
             false => {
-                let title = title(groups, group, channel);
                 let is_double = is_identifier(name);
-                let named = names.take_like(if is_double { &title } else { name });
-                self.renamed.push((title, named.clone()));
+                let named = names.take_like(if is_double { title } else { name });
+                self.renamed.push((title.to_string(), named.clone()));
                 named
             }
         };
         if unit.is_empty() {
             self.without_unit.push(named.clone());
         }
-        Ok(Planned {
-            group: at,
-            name: named,
-            unit: parsed,
-            at: channel.at,
-        })
+        Ok((named, parsed))
     }
 
     /// What is told; `left_out` are those that the file itself does not give.
@@ -107,8 +108,7 @@ impl Plan {
 }
 
 /// A channel's name, behind that of its group where there are several.
-fn title(groups: &[Group], group: &Group, channel: &Channel) -> String {
-    let is_one = groups.iter().all(|other| other.name == group.name);
+fn title(is_one: bool, group: &Group, channel: &Channel) -> String {
     match is_one {
         true => channel.name.clone(),
         false => format!("{}/{}", group.name, channel.name),

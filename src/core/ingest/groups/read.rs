@@ -26,6 +26,12 @@ pub(in super::super) fn read<S: Samples>(
     if let Some(mapping) = mapping {
         return mapping.apply(&mut Source::of(groups, limits), limits);
     }
+    let timed = groups
+        .groups
+        .iter()
+        .filter(|group| group.time != Time::Unknown);
+    let columns: usize = timed.map(|group| group.channels.len()).sum();
+    limits.columns(columns + 1).map_or(Ok(()), Err)?;
     let plan = Plan::of(&groups.groups, limits);
     check(&groups, &plan, limits)?;
     let findings = plan.findings(&groups.left_out);
@@ -40,7 +46,6 @@ fn check<S>(groups: &Groups<S>, plan: &Plan, limits: &Limits) -> Result<(), Inge
     let values = plan.channels.iter().map(|channel| rows(channel.group));
     let longest = values.clone().max().unwrap_or(0);
     let too_much = [
-        limits.columns(plan.channels.len() + 1),
         limits.samples(longest),
         limits.values(values.fold(0, usize::saturating_add)),
     ];

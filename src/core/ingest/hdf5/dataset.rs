@@ -124,6 +124,10 @@ impl<'a> Dataset<'a> {
         }
         for found in index.chunks(file, &grid).ok_or_else(wrong)? {
             take(room, of_chunk)?;
+            // packing makes little of it longer
+            if found.bytes.len() > of_chunk.saturating_mul(2).saturating_add(4096) {
+                return Err(wrong());
+            }
             let undone;
             let plain = match self.filters.is_empty() {
                 true => found.bytes,

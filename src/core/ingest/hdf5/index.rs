@@ -11,6 +11,9 @@ pub(super) struct Chunk<'a> {
     pub(super) mask: u32,
 }
 
+/// Chunks of a dataset: one for every two samples of the longest recording.
+const MOST_CHUNKS: usize = 1_000_000;
+
 /// How chunks are found.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Index {
@@ -73,7 +76,7 @@ impl Grid<'_> {
 impl Index {
     /// All chunks that there are; `None` where the index is damaged, or lists more than there can be.
     pub(super) fn chunks<'a>(&self, file: &File<'a>, grid: &Grid) -> Option<Vec<Chunk<'a>>> {
-        let count = grid.count()?;
+        let count = grid.count().filter(|count| *count <= MOST_CHUNKS)?;
         match *self {
             Self::Tree { address } => {
                 let mut tree = Tree {

@@ -11,7 +11,7 @@ use super::damage::damaged;
 use crate::flight::Fault;
 
 /// Blocks of data, and lists of them.
-const MOST_BLOCKS: usize = 1_000_000;
+pub(super) const MOST_BLOCKS: usize = 1_000_000;
 /// What becomes of a list that is stored by columns, in version 4.20.
 const RESAVE: &str = "save it as version 4.10, in Python with asammdf.MDF('file.mf4').convert('4.10').save('new.mf4')";
 
@@ -23,6 +23,7 @@ pub(super) fn records<'a>(
     file: &'a [u8],
     address: u64,
     room: &mut usize,
+    left: &mut usize,
 ) -> Result<Cow<'a, [u8]>, Fault> {
     if address == 0 {
         return Ok(Cow::Borrowed(&[]));
@@ -32,19 +33,15 @@ pub(super) fn records<'a>(
         b"DT" => Ok(Cow::Borrowed(block.bytes())),
         _ => {
             let mut records = Vec::new();
-            Gathering {
-                file,
-                room,
-                left: MOST_BLOCKS,
-            }
-            .add(block, &mut records)?;
+            Gathering { file, room, left }.add(block, &mut records)?;
             Ok(Cow::Owned(records))
         }
     }
 }
 
-/// Bytes of all records behind a link, without unpacking them; what cannot be read has none.
-pub(super) fn length(file: &[u8], address: u64) -> usize {
+/// Bytes of all records behind a link, without unpacking them; what cannot be read has none. So many of the blocks `left` are
+/// taken as are looked at.
+pub(super) fn length(file: &[u8], address: u64, left: &mut usize) -> usize {
     let Ok(block) = Block::read(file, address) else {
         return 0;
     };
@@ -58,16 +55,16 @@ pub(super) fn length(file: &[u8], address: u64) -> usize {
         b"DL" => address,
         _ => return of_block(&block),
     };
-    let (mut length, mut left) = (0usize, MOST_BLOCKS);
+    let mut length = 0usize;
     while let Ok(Some(block)) = Block::find(file, list, b"DL") {
         for address in block.links().skip(1) {
             let of_link = Block::read(file, address).map_or(0, |block| of_block(&block));
             length = length.saturating_add(of_link);
-            left = left.saturating_sub(1);
+            *left = left.saturating_sub(1);
         }
         list = block.link(0);
-        left = left.saturating_sub(1);
-        if left == 0 {
+        *left = left.saturating_sub(1);
+        if *left == 0 {
             break;
         }
     }
@@ -77,7 +74,8 @@ pub(super) fn length(file: &[u8], address: u64) -> usize {
 struct Gathering<'g, 'a> {
     file: &'a [u8],
     room: &'g mut usize,
-    left: usize,
+    /// Blocks that may still be looked at.
+    left: &'g mut usize,
 }
 
 impl<'a> Gathering<'_, 'a> {
@@ -127,7 +125,7 @@ impl<'a> Gathering<'_, 'a> {
 
     fn count(&mut self) -> Result<(), Fault> {
         let left = self.left.checked_sub(1);
-        self.left = left.ok_or_else(|| damaged("its lists of data have no end"))?;
+        *self.left = left.ok_or_else(|| damaged("its lists of data have no end"))?;
         Ok(())
     }
 

@@ -15,7 +15,7 @@ pub(super) struct Wanted {
     pub(super) records: Rc<Records>,
     /// `None`: the number of the record.
     pub(super) field: Option<Field>,
-    pub(super) conversion: Conversion,
+    pub(super) conversion: Rc<Conversion>,
 }
 
 /// Records of one kind.
@@ -37,6 +37,8 @@ pub(super) struct Values<'a> {
     pub(super) wanted: Vec<Wanted>,
     /// Bytes that may still be put together.
     pub(super) room: usize,
+    /// Blocks of data that may still be looked at.
+    pub(super) blocks: usize,
     /// The data that were read last, and the records in them.
     pub(super) data: Option<(u64, Cow<'a, [u8]>)>,
     pub(super) places: Option<(Rc<Records>, Vec<usize>)>,
@@ -55,7 +57,7 @@ impl Samples for Values<'_> {
         {
             self.data = None;
             self.places = None;
-            let data = data::records(self.file, records.data, &mut self.room)?;
+            let data = data::records(self.file, records.data, &mut self.room, &mut self.blocks)?;
             self.data = Some((records.data, data));
         }
         let data = self

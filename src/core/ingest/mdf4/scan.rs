@@ -1,5 +1,6 @@
 //! The groups and channels of a file.
 
+use std::collections::HashMap;
 use std::rc::Rc;
 
 use super::super::groups::{Channel, Group, Groups, Time};
@@ -28,7 +29,9 @@ pub(super) fn scan<'a>(bytes: &'a [u8], limits: &Limits) -> Result<Groups<Values
         groups: Vec::new(),
         wanted: Vec::new(),
         left_out: Vec::new(),
+        conversions: HashMap::new(),
         left: MOST,
+        blocks: data::MOST_BLOCKS,
     };
     let mut address = head.link(0);
     while let Some(data) = Block::find(bytes, address, b"DG")? {
@@ -44,6 +47,7 @@ pub(super) fn scan<'a>(bytes: &'a [u8], limits: &Limits) -> Result<Groups<Values
             wanted: scan.wanted,
             // times and values of a group may be asked for apart
             room: limits.max_bytes.saturating_mul(2),
+            blocks: data::MOST_BLOCKS,
             data: None,
             places: None,
         },
@@ -55,7 +59,11 @@ struct Scan<'a> {
     groups: Vec<Group>,
     wanted: Vec<Wanted>,
     left_out: Vec<(String, String)>,
+    /// By their addresses: many channels may have one. `None`: it is one that is not read.
+    conversions: HashMap<u64, Option<Rc<Conversion>>>,
+    /// Groups and channels that may still follow, and blocks of data that may still be looked at.
     left: usize,
+    blocks: usize,
 }
 
 /// What a channel is for.
@@ -118,7 +126,7 @@ impl<'a> Scan<'a> {
             let mut count = said.count;
             // a file that was not finished does not say how many there are
             if count == 0 && number_width == 0 {
-                count = data::length(self.file, data.link(2))
+                count = data::length(self.file, data.link(2), &mut self.blocks)
                     .checked_div(length)
                     .unwrap_or(0);
             }
@@ -177,7 +185,7 @@ impl<'a> Scan<'a> {
 
     /// How a channel is read, and what it is for.
     fn channel(
-        &self,
+        &mut self,
         block: &Block<'a>,
         said: &Said,
         records: &Rc<Records>,
@@ -201,19 +209,25 @@ impl<'a> Scan<'a> {
             kind::VIRTUAL | kind::VIRTUAL_MASTER => None,
             _ => return Err("it does not hold numbers"),
         };
-        let conversion = match block.link(4) {
-            0 => Some(Conversion::None),
-            address => {
-                let conversion = Block::find(self.file, address, b"CC").ok().flatten();
-                conversion.and_then(|block| Conversion::read(&block))
-            }
-        };
+        let conversion = self.conversion(block.link(4));
         let wanted = Wanted {
             records: Rc::clone(records),
             field,
             conversion: conversion.ok_or("it is converted in a way that is not read")?,
         };
         Ok((wanted, kind))
+    }
+
+    fn conversion(&mut self, address: u64) -> Option<Rc<Conversion>> {
+        let file = self.file;
+        let read = || match address {
+            0 => Some(Rc::new(Conversion::None)),
+            address => {
+                let block = Block::find(file, address, b"CC").ok().flatten()?;
+                Conversion::read(&block).map(Rc::new)
+            }
+        };
+        self.conversions.entry(address).or_insert_with(read).clone()
     }
 
     /// As the channel says it, or its conversion.

@@ -80,12 +80,11 @@ impl Encoded<'_> {
                 }
                 _ => Err(Trouble::Encoding),
             },
-            encoding::DELTA => match (self.kind, values) {
-                (Kind::Integer(width, _), Values::Integers(values)) => {
-                    deltas(self.bytes, width, count, values).ok_or(Trouble::Damaged)
-                }
-                _ => Err(Trouble::Encoding),
-            },
+            encoding::DELTA => {
+                let (kind, values) = (self.kind, values);
+                let each = |value: i64| push_integer(kind, values, value);
+                deltas(self.bytes, count, each).ok_or(Trouble::Damaged)?
+            }
             encoding::SPLIT => self.split(values, count),
             _ => Err(Trouble::Encoding),
         }
@@ -153,47 +152,64 @@ impl Encoded<'_> {
     }
 }
 
-/// Values as the differences between them, in blocks of parts of which each has a width of its own.
-fn deltas(mut bytes: &[u8], width: usize, count: usize, values: &mut Vec<i64>) -> Option<()> {
+/// Adds a value of the bits of an integer; that of four bytes has only the lower ones.
+fn push_integer(kind: Kind, values: &mut Values, value: i64) -> Result<(), Trouble> {
+    let bytes = value.to_le_bytes();
+    match (kind, values) {
+        (Kind::Integer(width @ (4 | 8), read), Values::Integers(values)) => {
+            values.push(read(&bytes[..width]));
+        }
+        (Kind::Double(8, read), Values::Doubles(values)) => values.push(read(&bytes)),
+        _ => return Err(Trouble::Encoding),
+    }
+    Ok(())
+}
+
+/// Goes through values that are written as the differences between them, in blocks of parts of which each has a width of its
+/// own. `None` where there are not `count` of them.
+fn deltas(
+    mut bytes: &[u8],
+    count: usize,
+    mut each: impl FnMut(i64) -> Result<(), Trouble>,
+) -> Option<Result<(), Trouble>> {
     let rest = &mut bytes;
     let block = usize::try_from(varint(rest)?).ok()?;
     let parts = usize::try_from(varint(rest)?).ok()?;
     let _total = varint(rest)?;
     let mut value = zigzag(varint(rest)?);
     let of_part = block.checked_div(parts)?;
-    let is_sound = of_part > 0 && of_part % 8 == 0;
-    if count == 0 {
-        return Some(());
+    let is_sound = of_part > 0 && of_part.is_multiple_of(8);
+    let Some(mut left) = count.checked_sub(1) else {
+        return Some(Ok(()));
+    };
+    if let Err(trouble) = each(value) {
+        return Some(Err(trouble));
     }
-    values.push(value);
-    let mut left = count - 1;
     while left > 0 {
         let least = zigzag(varint(rest)?);
         let (widths, behind) = rest.split_at_checked(parts).filter(|_| is_sound)?;
         *rest = behind;
-        for &bits_of_each in widths {
+        for &width in widths {
             if left == 0 {
                 break;
             }
-            if bits_of_each > 64 {
+            if width > 64 {
                 return None;
             }
-            let length = (of_part / 8).checked_mul(bits_of_each.into())?;
-            let packed = length.min(rest.len());
-            let mut bits = Bits::of(&rest[..packed]);
+            let length = (of_part / 8).checked_mul(width.into())?.min(rest.len());
+            let mut bits = Bits::of(&rest[..length]);
             for _ in 0..of_part.min(left) {
-                let delta = bits.next(bits_of_each.into())? as i64;
+                let delta = bits.next(width.into())? as i64;
                 value = value.wrapping_add(least).wrapping_add(delta);
-                if width == 4 {
-                    value = i64::from(value as i32);
+                if let Err(trouble) = each(value) {
+                    return Some(Err(trouble));
                 }
-                values.push(value);
             }
             left -= of_part.min(left);
-            *rest = &rest[packed..];
+            *rest = &rest[length..];
         }
     }
-    Some(())
+    Some(Ok(()))
 }
 
 fn zigzag(value: u64) -> i64 {

@@ -46,6 +46,8 @@ pub(super) fn columns(bytes: &[u8], limits: &Limits) -> Result<Columns, Fault> {
             Err(Why::Refused(fault)) => return Err(fault),
         }
     }
+    let is_index = |column: &Column| footer.pandas.is_index(&column.title);
+    columns.list.sort_by_key(|column| !is_index(column));
     Ok(columns)
 }
 
@@ -69,6 +71,3 @@ fn column(
         cells,
     })
 }
-
-#[cfg(test)]
-mod tests;

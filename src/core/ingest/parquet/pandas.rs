@@ -1,4 +1,4 @@
-//! What pandas says of columns: which of them are durations, which Parquet has no word for.
+//! What pandas says of columns: which of them are its index, and which are durations, for which Parquet has no word.
 
 use std::collections::HashMap;
 
@@ -7,10 +7,14 @@ use serde::Deserialize;
 #[derive(Default)]
 pub(super) struct Pandas {
     durations: HashMap<String, &'static str>,
+    index: Vec<String>,
 }
 
 #[derive(Deserialize)]
 struct Note {
+    /// Names, or the description of an index that is counted.
+    #[serde(default)]
+    index_columns: Vec<serde_json::Value>,
     columns: Vec<Noted>,
 }
 
@@ -38,7 +42,17 @@ impl Pandas {
         };
         Self {
             durations: note.columns.into_iter().filter_map(duration).collect(),
+            index: note
+                .index_columns
+                .iter()
+                .filter_map(|name| Some(name.as_str()?.to_string()))
+                .collect(),
         }
+    }
+
+    /// Whether a column is the index, or one of several. In a file it stands behind the others, in a table before them.
+    pub(super) fn is_index(&self, title: &str) -> bool {
+        self.index.iter().any(|name| name == title)
     }
 
     /// The unit of a column of durations.

@@ -1,8 +1,8 @@
 //! TDMS files of LabVIEW and DIAdem: groups of channels, which say units and times themselves.
 //!
-//! The format is described in National Instruments' "TDMS File Format Internal Structure". The crates that read it were
-//! weighed: `tdms` and `tdms-rs` are one author's work of few releases each, and make room for what the file says before
-//! they look whether it is there. A file that breaks off is read up to there.
+//! The format is described in National Instruments' "TDMS File Format Internal Structure". The crates `tdms` and `tdms-rs`
+//! were weighed: both read a file by its path, and make room for a text as long as the file says it is, up to 4 GB, before they
+//! look whether it is there. A file that breaks off is read up to there.
 //!
 //! A channel has the times that its waveform properties say (`wf_increment`, `wf_start_offset`, `wf_start_time`), else those
 //! of the channel of its group that is called time or has time stamps. Values of DAQmx are scaled as the file says.

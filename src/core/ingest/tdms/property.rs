@@ -16,7 +16,7 @@ pub(super) enum Value {
 pub(super) type Properties = std::collections::HashMap<String, Value>;
 
 /// Properties of one channel.
-const MOST: usize = 1000;
+const MOST: usize = 300;
 /// Characters of a text.
 const LONGEST: usize = 100;
 
