@@ -106,6 +106,19 @@ fn bands_hold_the_truth() {
     assert!((181..=199).contains(&inside), "{inside} of {SEEDS}");
 }
 
+/// Where the data do not show a parameter the estimate has no covariance to carry over.
+#[test]
+fn a_singular_estimate_has_a_trajectory_without_errors() {
+    let mut model = ramp();
+    model["parameters"]["unseen"] = json!({"start": 2.0});
+    model["definitions"]["d"] = json!({"equation": "unseen*x"});
+    let (_, trajectories) = fitted(model, &recorded());
+    for series in &trajectories[0].quantities {
+        assert!(series.standard_errors.is_empty(), "{}", series.name);
+        assert_eq!(series.values.len(), 40);
+    }
+}
+
 #[test]
 fn what_has_no_trajectory_says_why() {
     let maneuver = recorded();

@@ -198,11 +198,27 @@ async fn states_and_definitions_are_had_along_the_trajectory() {
     );
 }
 
+/// The attitude from the rate, and a bias of both.
+fn kinematics() -> Value {
+    json!({
+        "name": "pitching",
+        "inputs": {"q": {"unit": "rad/s", "quantity": "pitch_rate"}},
+        "parameters": {
+            "q_bias": {"unit": "rad/s", "start": 0.0},
+            "theta_0": {"unit": "rad", "start": "first(alpha)"},
+        },
+        "definitions": {"q_true": {"unit": "rad/s", "quantity": "pitch_rate", "equation": "q - q_bias"}},
+        "states": {"theta": {"unit": "rad", "quantity": "pitch_angle", "initial": "theta_0", "derivative": "q_true"}},
+        "outputs": {"alpha": {"unit": "rad", "equation": "theta"}},
+    })
+}
+
 #[tokio::test]
 async fn a_corrected_recording_is_one_like_others() {
     let server = Server::start().await;
     let maneuver = server.upload(&elevator()).await;
-    let id = server.submit(&job(&maneuver)).await;
+    let of = |model: Value, id: &str| json!({"model": model, "maneuvers": [{"id": id}]});
+    let id = server.submit(&of(kinematics(), &maneuver)).await;
     server.wait(&id).await;
     let path = format!("/v1/jobs/{id}/corrected-maneuvers");
     let answer = server.post_json(&path, &json!({})).await;
@@ -211,12 +227,26 @@ async fn a_corrected_recording_is_one_like_others() {
     let name = corrected["name"].as_str().unwrap();
     assert_eq!(name, format!("1, corrected by job {id}"));
     assert_ne!(corrected["id"], maneuver);
+    let channels = corrected["summary"]["channels"].as_array().unwrap();
+    let names: Vec<&str> = (channels.iter())
+        .map(|channel| channel["name"].as_str().unwrap())
+        .collect();
+    for name in ["q", "theta", "alpha", "de", "V"] {
+        assert!(names.contains(&name), "{names:?}");
+    }
     let again = server.post_json(&path, &json!({})).await.json()[0].take();
     assert_eq!(again["id"], corrected["id"]);
-    // there is no noise left in it
-    let id = server.submit(&job(corrected["id"].as_str().unwrap())).await;
-    let done = server.wait(&id).await;
-    assert_eq!(done["outcome"], "converged", "{done:#}");
+    // the bias is out of it
+    let id = server
+        .submit(&of(kinematics(), corrected["id"].as_str().unwrap()))
+        .await;
+    server.wait(&id).await;
+    let table = server
+        .get(&format!("/v1/jobs/{id}/parameters"))
+        .await
+        .json();
+    let bias = table["parameters"][0]["estimate"].as_f64().unwrap();
+    assert!(bias.abs() < 1e-9, "{table:#}");
     let nobody = format!("/v1/jobs/{}/corrected-maneuvers", uuid::Uuid::nil());
     assert_eq!(
         server
@@ -224,6 +254,18 @@ async fn a_corrected_recording_is_one_like_others() {
             .await
             .problem(404, "unknown_job"),
         []
+    );
+    // aerodynamics are no correction
+    let id = server.submit(&job(&maneuver)).await;
+    server.wait(&id).await;
+    let refused = server
+        .post_json(&format!("/v1/jobs/{id}/corrected-maneuvers"), &json!({}))
+        .await;
+    refused.problem(409, "no_trajectory");
+    assert!(
+        refused.text().contains("a control, de"),
+        "{}",
+        refused.text()
     );
 }
 

@@ -112,7 +112,7 @@ fn unknowns(model: &Model, flights: &[&Flight], values: &Values) -> Result<Unkno
                 .map_err(|error| Unfit(format!("start of {}: {error}", info.name))),
         }
     })?;
-    Ok(unknowns.held_elsewhere(model, |segment| &flights[segment].label))
+    Ok(unknowns.held_elsewhere(model, |segment, label| flights[segment].label == label))
 }
 
 /// The values of all parameters at a θ, for another fit to start from.

@@ -2,11 +2,13 @@
 
 use super::accepted::Accepted;
 use super::case::Case;
+use super::effect::EffectKind;
 use super::fitted::Fitted;
 use super::found::Found;
 use super::report::{FitChange, NamedEffect, Refusal, RefusedEffect, Verdict};
 use crate::estimate::{Role, five_digits};
 use crate::flight::{Shown, shown_in};
+use crate::model::EditKind;
 
 /// A member of an alias group that is less likely than this does not keep the likeliest from being named singly.
 const UNLIKELY: f64 = 0.01;
@@ -65,7 +67,7 @@ pub(super) fn sentence(
     left: &Left<'_>,
 ) -> String {
     match verdict {
-        Verdict::Named | Verdict::NamedGroup => with_errors(found(effects), fits),
+        Verdict::Named | Verdict::NamedGroup => with_errors(effects, fits),
         Verdict::NothingMissing => {
             "no effect of the catalogue is missing, and what is left follows no input".into()
         }
@@ -76,7 +78,7 @@ pub(super) fn sentence(
             )
         }
         Verdict::Unexplained => {
-            let found = with_errors(found(effects), fits);
+            let found = with_errors(effects, fits);
             format!("{found}. That is not all: {}", what_is_left(left))
         }
         Verdict::NotTestable => {
@@ -103,18 +105,24 @@ fn found(effects: &[NamedEffect]) -> String {
     effects.iter().map(of).collect::<Vec<_>>().join("; ")
 }
 
-fn with_errors(found: String, fits: &[FitChange]) -> String {
-    match errors(fits) {
+fn with_errors(effects: &[NamedEffect], fits: &[FitChange]) -> String {
+    let found = found(effects);
+    // no flight tells of another's gust
+    let is_gust = |effect: &NamedEffect| effect.effect.kind == EffectKind::Edit(EditKind::Gust);
+    let roles: &[Role] = match effects.iter().all(is_gust) {
+        true => &[Role::Estimation],
+        false => &[Role::Final, Role::Validation, Role::Estimation],
+    };
+    match errors(roles, fits) {
         Some(errors) => format!("{found}. {errors}"),
         None => found,
     }
 }
 
-/// RMS errors before and after, on the data that is furthest from any decision.
-fn errors(fits: &[FitChange]) -> Option<String> {
-    let role = [Role::Final, Role::Validation, Role::Estimation]
-        .into_iter()
-        .find(|role| fits.iter().any(|fit| fit.role == *role))?;
+/// RMS errors before and after, on data of the first of some roles that there is.
+fn errors(roles: &[Role], fits: &[FitChange]) -> Option<String> {
+    let mut roles = roles.iter().copied();
+    let role = roles.find(|role| fits.iter().any(|fit| fit.role == *role))?;
     let of: Vec<String> = (fits.iter().filter(|fit| fit.role == role))
         .map(|fit| {
             let Shown { scale, unit } = shown_in(&fit.after.unit);

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::problem::Problem;
+use super::problem::unknowns::Unknowns;
 use super::problem::unusable::Unusable;
 use super::report::estimate::Estimate;
 use crate::flight::Unit;
@@ -41,8 +42,8 @@ pub struct TrajectorySeries {
     pub unit: String,
     /// At each sample, in `unit`.
     pub values: Vec<f64>,
-    /// One standard error of `values`, from the covariance of the parameters; inputs count as known. Empty where the
-    /// estimate has no standard errors.
+    /// One standard error of `values`, from the covariance of the parameters; inputs count as known. Empty where it depends
+    /// on a parameter that has no standard error, and where the estimate is singular: then the parameters have no covariance.
     pub standard_errors: Vec<f64>,
 }
 
@@ -129,38 +130,39 @@ fn seen(document: &ModelDocument, quantities: &[Quantity]) -> ModelDocument {
 
 /// An estimate, SI.
 struct At {
+    /// Free and fixed ones where they were estimated.
+    unknowns: Unknowns,
     theta: Vec<f64>,
-    /// P; `None` where a free parameter has no standard error.
-    covariance: Option<DMatrix<f64>>,
+    /// P; rows of unknowns without a standard error are zero.
+    covariance: DMatrix<f64>,
+    /// By place of θ: whether it has a standard error.
+    is_known: Vec<bool>,
 }
 
 impl At {
     fn of(problem: &Problem, estimate: &Estimate) -> Self {
         let unknowns = &problem.unknowns;
-        let row = |place: usize| {
-            let parameter = &estimate.parameters[unknowns.free[place]];
-            (parameter, problem.parameter(place).unit)
-        };
-        let theta = (0..unknowns.len()).map(|place| {
-            let (parameter, unit) = row(place);
-            unit.to_si(parameter.estimate)
-        });
-        let errors: Option<Vec<f64>> = (0..unknowns.len())
-            .map(|place| {
-                let (parameter, unit) = row(place);
-                Some(parameter.standard_error? * unit.scale)
-            })
+        let unit = |index: usize| problem.model.parameters[unknowns.all[index].parameter].unit;
+        let rows = estimate.parameters.iter().enumerate();
+        let values: Vec<f64> = rows
+            .map(|(index, row)| unit(index).to_si(row.estimate))
             .collect();
+        let unknowns = unknowns.with_starts(&values);
         let correlation = &estimate.correlation;
         let is_whole = correlation.len() == unknowns.len();
-        let covariance = errors.filter(|_| is_whole).map(|errors| {
-            DMatrix::from_fn(errors.len(), errors.len(), |i, j| {
-                errors[i] * errors[j] * correlation[i][j]
-            })
-        });
+        let errors: Vec<Option<f64>> = (unknowns.free.iter())
+            .map(|&index| Some(estimate.parameters[index].standard_error? * unit(index).scale))
+            .map(|error| error.filter(|error| is_whole && error.is_finite()))
+            .collect();
+        let covariance = |i: usize, j: usize| match (errors[i], errors[j]) {
+            (Some(a), Some(b)) => a * b * correlation[i][j],
+            _ => 0.0,
+        };
         Self {
-            theta: theta.collect(),
-            covariance,
+            theta: unknowns.start(),
+            covariance: DMatrix::from_fn(errors.len(), errors.len(), covariance),
+            is_known: errors.iter().map(Option::is_some).collect(),
+            unknowns,
         }
     }
 
@@ -171,7 +173,7 @@ impl At {
         quantities: &[Quantity],
         index: usize,
     ) -> Result<Vec<TrajectorySeries>, Unusable> {
-        let unknowns = &problem.unknowns;
+        let unknowns = &self.unknowns;
         let free: Vec<usize> = (0..model.parameters.len())
             .filter(|&parameter| unknowns.place(index, parameter).is_some())
             .collect();
@@ -190,27 +192,39 @@ impl At {
         let mut series: Vec<TrajectorySeries> = quantities.iter().map(empty).collect();
         let mut parameters = Vec::new();
         unknowns.parameters(index, &self.theta, &mut parameters);
+        // a quantity that depends on what has no standard error has none
+        let mut is_told = vec![true; quantities.len()];
         let run = machinery.run(&segment, &parameters, |block| {
             for (output, series) in series.iter_mut().enumerate() {
                 series.values.extend_from_slice(block.output(output));
                 let places: Vec<usize> = (columns.of_output(output).iter())
                     .filter_map(|&parameter| unknowns.place(index, parameter))
                     .collect();
-                let Some(covariance) = &self.covariance else {
-                    continue;
-                };
-                let among = covariance.select_rows(&places).select_columns(&places);
-                let error = |k: usize| {
-                    let row = DVector::from_column_slice(block.row(output, k));
-                    row.dot(&(&among * &row)).max(0.0).sqrt()
-                };
-                series.standard_errors.extend((0..block.len).map(error));
+                let among = (self.covariance)
+                    .select_rows(&places)
+                    .select_columns(&places);
+                for k in 0..block.len {
+                    let row = block.row(output, k);
+                    let slopes = places.iter().zip(row);
+                    is_told[output] &=
+                        { slopes }.all(|(&place, slope)| self.is_known[place] || *slope == 0.0);
+                    let row = DVector::from_column_slice(row);
+                    let variance = row.dot(&(&among * &row));
+                    series.standard_errors.push(variance.max(0.0).sqrt());
+                }
             }
         });
         run.map_err(|diverged| Unusable::LeftRange {
             segment: index,
             sample: diverged.sample,
         })?;
+        for (series, _) in series
+            .iter_mut()
+            .zip(is_told)
+            .filter(|(_, is_told)| !is_told)
+        {
+            series.standard_errors.clear();
+        }
         Ok(series)
     }
 }

@@ -97,6 +97,8 @@ codes! {
     HeldInitialState "held_initial_state" Warning;
     /// Constants of a catalog model were taken as they stand there: they are those of another aircraft.
     AssumedConstants "assumed_constants" Warning;
+    /// A parameter is free in maneuvers only that the job does not have: it is zero in all.
+    Elsewhere "elsewhere" Warning;
     /// Inputs that are held between samples explain the data far better than the straight lines that were assumed, or the reverse.
     InputInterpolation "input_interpolation" Warning;
     /// Integration steps are too long for the accuracy of the estimate: with half their length a parameter would move.

@@ -18,7 +18,7 @@ use crate::model::Quantities;
 /// has of it, else its own.
 ///
 /// # Errors
-/// As [`trajectories_of`].
+/// As [`trajectories_of`]; the model is no reconstruction: it has controls.
 pub fn corrected(
     plan: &Plan,
     estimate: &Estimate,
@@ -26,25 +26,36 @@ pub fn corrected(
 ) -> Result<Vec<(String, Maneuver)>, NoTrajectory> {
     let document = &plan.problem.model.document;
     let quantities = Quantities::of(document);
+    let mut inputs = document.inputs.keys();
+    let is_control = |name: &&String| {
+        quantities
+            .get(name)
+            .is_some_and(PhysicalQuantity::is_control)
+    };
+    if let Some(control) = inputs.find(is_control) {
+        return Err(NoTrajectory::NoReconstruction(control.clone()));
+    }
     let trajectories = trajectories_of(plan, estimate)?;
     let of_segment = |(index, trajectory): (usize, &Trajectory)| {
+        let recorded = &maneuvers[*plan.from.get(index)?];
+        let rows = Rows::of(recorded, trajectory);
         let mut channels = IndexMap::new();
         for (name, series) in motion(trajectory, &quantities) {
             let unit = Unit::parse(&series.unit).unwrap_or(Unit::NONE);
-            let channel = Channel::from_recorded(&series.unit, unit, series.values.clone());
+            let channel =
+                Channel::from_recorded(&series.unit, unit, rows.of_samples(&series.values));
             channels.insert(name, channel);
         }
-        channels.extend(wind(
-            plan,
-            estimate,
-            &trajectory.segment,
-            trajectory.time.len(),
-        ));
-        let recorded = plan.from.get(index).and_then(|&place| maneuvers.get(place));
-        if let Some(recorded) = recorded {
-            carry(recorded, trajectory, &mut channels);
+        channels.extend(wind(plan, estimate, &trajectory.segment, rows.0.len()));
+        for (name, channel) in recorded.channels() {
+            let values = rows.of_recording(&channel.values);
+            let as_recorded = || Channel {
+                values,
+                ..channel.clone()
+            };
+            channels.entry(name.clone()).or_insert_with(as_recorded);
         }
-        let maneuver = Maneuver::new(trajectory.time.clone(), channels).ok()?;
+        let maneuver = Maneuver::new(rows.of_samples(&trajectory.time), channels).ok()?;
         Some((trajectory.segment.clone(), maneuver))
     };
     Ok(trajectories
@@ -110,26 +121,24 @@ fn wind(plan: &Plan, estimate: &Estimate, segment: &str, samples: usize) -> Vec<
     estimate.parameters.iter().filter_map(of).collect()
 }
 
-/// Recorded channels of other names, at the samples that are rows of the recording.
-fn carry(recorded: &Maneuver, trajectory: &Trajectory, channels: &mut IndexMap<String, Channel>) {
-    let time = recorded.time();
-    let row = |t: &f64| {
-        let at = time.partition_point(|other| other < t);
-        (time.get(at) == Some(t)).then_some(at)
-    };
-    let rows: Vec<Option<usize>> = trajectory.time.iter().map(row).collect();
-    for (name, channel) in recorded.channels() {
-        if channels.contains_key(name) {
-            continue;
-        }
-        let value = |row: &Option<usize>| row.map_or(f64::NAN, |row| channel.values[row]);
-        let values = rows.iter().map(value).collect();
-        channels.insert(
-            name.clone(),
-            Channel {
-                values,
-                ..channel.clone()
-            },
-        );
+/// The samples of a segment that are rows of the recording, as numbers of both: those that were put into gaps are not.
+struct Rows(Vec<(usize, usize)>);
+
+impl Rows {
+    fn of(recorded: &Maneuver, trajectory: &Trajectory) -> Self {
+        let time = recorded.time();
+        let row = |(sample, t): (usize, &f64)| {
+            let at = time.partition_point(|other| other < t);
+            (time.get(at) == Some(t)).then_some((sample, at))
+        };
+        Self(trajectory.time.iter().enumerate().filter_map(row).collect())
+    }
+
+    fn of_samples(&self, values: &[f64]) -> Vec<f64> {
+        self.0.iter().map(|&(sample, _)| values[sample]).collect()
+    }
+
+    fn of_recording(&self, values: &[f64]) -> Vec<f64> {
+        self.0.iter().map(|&(_, row)| values[row]).collect()
     }
 }

@@ -17,6 +17,11 @@ pub enum NoTrajectory {
         "filter error follows the measurements: its states are those of a filter, not of the model alone; estimate by output error for a trajectory"
     )]
     Filter,
+    /// A model with controls says what aerodynamics make of them.
+    #[error(
+        "the model has a control, {0}: it is no reconstruction from what sensors record of the motion alone, and what it says is no correction of a recording; /trajectories has it"
+    )]
+    NoReconstruction(String),
     /// The job is not what it was: another program made the result.
     #[error("the result has other parameters than this program makes of the job; run it again")]
     OtherParameters,

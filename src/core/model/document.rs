@@ -230,8 +230,8 @@ pub struct Parameter {
     /// `job`: one value for all maneuvers; `maneuver`: each segment has its own (initial states, biases, wind).
     #[serde(default, skip_serializing_if = "Per::is_job")]
     pub per: Per,
-    /// Of a parameter `per = "maneuver"`: the labels of the maneuvers in which it is free. In others it is held at its
-    /// start. Empty: all.
+    /// Of a parameter `per = "maneuver"`: the labels of the maneuvers, or of their parts, in which it is free. In others it
+    /// is zero, or the bound next to zero. Empty: all.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(example = json!(["flight 2"]))]
     pub only_in: Vec<String>,

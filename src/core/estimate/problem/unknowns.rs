@@ -108,17 +108,38 @@ impl Unknowns {
         Self::of(self.all.iter().map(hold).collect(), self.places.clone())
     }
 
-    /// The same, with unknowns that are free in other segments only ([`Parameter::only_in`]) held at their start; `label`
-    /// of a segment.
+    /// The same, with unknowns that are free in other segments only ([`Parameter::only_in`]) held at zero, or at the bound
+    /// next to it; `is_called` says whether a segment has a label.
     ///
     /// [`Parameter::only_in`]: crate::model::Parameter::only_in
     #[must_use]
-    pub fn held_elsewhere<'l>(&self, model: &Model, label: impl Fn(usize) -> &'l str) -> Self {
-        self.with_held(|unknown| {
+    pub fn held_elsewhere(&self, model: &Model, is_called: impl Fn(usize, &str) -> bool) -> Self {
+        let hold = |unknown: &Unknown| {
             let only_in = &model.parameters[unknown.parameter].document.only_in;
-            let own = unknown.segment.map(&label);
-            !only_in.is_empty() && own.is_some_and(|own| only_in.iter().all(|label| label != own))
-        })
+            let is_meant = |segment| only_in.iter().any(|label| is_called(segment, label));
+            match unknown.segment {
+                Some(segment) if !only_in.is_empty() && !is_meant(segment) => Unknown {
+                    start: 0.0_f64.clamp(unknown.lower, unknown.upper),
+                    fixed: true,
+                    ..unknown.clone()
+                },
+                _ => unknown.clone(),
+            }
+        };
+        Self::of(self.all.iter().map(hold).collect(), self.places.clone())
+    }
+
+    /// The same, with each at a value, in the order of `all`: free ones start there, the others are held there.
+    #[must_use]
+    pub fn with_starts(&self, values: &[f64]) -> Self {
+        let at = |(unknown, start): (&Unknown, &f64)| Unknown {
+            start: *start,
+            ..unknown.clone()
+        };
+        Self::of(
+            self.all.iter().zip(values).map(at).collect(),
+            self.places.clone(),
+        )
     }
 
     /// Unknowns that `is_meant` picks are no less than `least`, and start no lower.

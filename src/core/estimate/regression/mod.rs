@@ -65,7 +65,7 @@ impl Regression {
             Ok::<f64, ()>(parameters[parameter])
         })
         .ok()?
-        .held_elsewhere(&model, |segment| &segments[segment].label);
+        .held_elsewhere(&model, |segment, label| segments[segment].label == label);
         let places = unknowns
             .free
             .iter()

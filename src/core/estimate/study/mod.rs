@@ -256,7 +256,9 @@ fn restricted(problem: &Problem, count: usize) -> Problem {
         Ok(unknown.map_or(0.0, |unknown| unknown.start))
     };
     let Ok(unknowns) = Unknowns::new(&model, problem.segments.len(), start);
-    let unknowns = unknowns.held_elsewhere(&model, |segment| &problem.segments[segment].label);
+    let unknowns = unknowns.held_elsewhere(&model, |segment, label| {
+        problem.segments[segment].label == label
+    });
     Problem::new(
         model,
         problem.segments.clone(),

@@ -5,6 +5,7 @@ mod bounds;
 mod checks;
 mod diagnosis;
 mod document;
+mod elsewhere;
 mod filter;
 mod gaps;
 mod initial;
@@ -65,6 +66,7 @@ pub fn prepare(
         unknowns,
         initial,
     } = with_unknowns(spec, document, model, &resolved, &mut findings)?;
+    findings.extend(elsewhere::findings(&document, &resolved.labels(spec)));
     let fitted = resolved.fitted.into_iter();
     let fitted = fitted.map(|(segment, stretch)| (segment, stretch.index));
     let (segments, from): (Vec<Segment>, Vec<usize>) = fitted.unzip();
@@ -192,6 +194,16 @@ impl<'s, 'm> Resolved<'s, 'm> {
             }
         }
         resolved
+    }
+
+    /// Of the maneuvers, and of the parts that gaps cut.
+    fn labels(&self, spec: &JobSpec) -> Vec<String> {
+        let all = self.fitted.iter().chain(&self.predicted);
+        let mut labels: Vec<String> = (0..spec.maneuvers.len()).map(|i| spec.label(i)).collect();
+        labels.extend(all.map(|(segment, _)| segment.label.clone()));
+        labels.sort();
+        labels.dedup();
+        labels
     }
 
     /// What is odd about the recordings as they are used.

@@ -39,7 +39,11 @@ pub(super) fn unknowns(
             .map_err(|(code, message)| Fault::new(pointer, code, message))
     };
     let unknowns = Unknowns::new(model, resolved.len(), start).map_err(|fault| vec![fault])?;
-    Ok(unknowns.held_elsewhere(model, |segment| &resolved[segment].0.label))
+    let is_called = |segment: usize, label: &str| {
+        let (segment, stretch) = &resolved[segment];
+        segment.label == label || spec.label(stretch.index) == label
+    };
+    Ok(unknowns.held_elsewhere(model, is_called))
 }
 
 /// Where a parameter's start was given.

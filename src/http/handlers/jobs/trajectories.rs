@@ -95,13 +95,16 @@ async fn get_trajectories(
 
 /// Leaves the named quantities alone.
 fn keep(segments: &mut [Trajectory], names: &str) -> Result<(), Problem> {
-    let names: Vec<&str> = names.split(',').map(str::trim).collect();
+    let names: Vec<&str> = (names.split(',').map(str::trim))
+        .filter(|name| !name.is_empty())
+        .collect();
     let all = segments
         .first()
         .map_or(&[][..], |segment| &segment.quantities);
     let is_known = |name: &&&str| all.iter().any(|series| series.name == **name);
     if let Some(unknown) = names.iter().find(|name| !is_known(name)) {
         let mut known: Vec<&str> = all.iter().map(|series| series.name.as_str()).collect();
+        known.sort_unstable();
         known.dedup();
         let detail = format!(
             "names: the model has no '{unknown}'; it has {}",
