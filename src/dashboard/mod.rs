@@ -13,6 +13,7 @@ mod diagnosis;
 mod eigenvalues;
 mod estimate_tables;
 mod figure;
+mod force_figure;
 mod job_page;
 mod jobs_page;
 mod layout;
@@ -35,6 +36,7 @@ mod study_figure;
 mod style;
 mod tolerances;
 mod unit_list;
+mod unmodelled;
 
 pub use assets::{Asset, asset};
 pub use decimate::rows_to_plot;

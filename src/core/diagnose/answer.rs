@@ -16,6 +16,7 @@ use super::residual::analyse;
 use super::screen::Screen;
 use super::sentence;
 use super::size::sizes;
+use super::unmodelled;
 use super::verdict::{self, Left};
 use crate::estimate::{
     Estimate, OutputFit, ParameterEstimate, Problem, Role, Solution, TimeHistory, estimate,
@@ -100,9 +101,11 @@ pub(super) fn answer(
     } else {
         coherent(case, last)
     };
+    let unmodelled = unmodelled::found(case, last).map(|picture| picture.unmodelled);
     let left = Left {
         coherent: &following,
         differs: found.differs_between_maneuvers(),
+        force: unmodelled.as_ref(),
     };
     let verdict = verdict::of(case, declared, &found, &left);
     let mut remarks = remarks.clone();
@@ -124,6 +127,7 @@ pub(super) fn answer(
         diff: difference(&case.document, &last.document),
         fits,
         residuals,
+        unmodelled,
         remarks,
     };
     Ok(Conclusion {

@@ -46,6 +46,7 @@ mod stack;
 mod starts;
 mod threshold;
 mod trial;
+mod unmodelled;
 mod verdict;
 mod watch;
 
@@ -63,6 +64,10 @@ pub use report::{
     OutputGain, ParameterChange, Refusal, RefusedEffect, Step, Verdict,
 };
 pub use residual::{ResidualAnalysis, SpectralLine, analyse};
+pub use unmodelled::{
+    ForceCurve, ForceDependence, ForceElsewhere, ForceHistory, ForceIn, ForceInterval,
+    ForceSpectrum, Unmodelled,
+};
 pub use watch::Watcher;
 
 use accepted::Accepted;

@@ -5,6 +5,7 @@ use super::case::Case;
 use super::fitted::Fitted;
 use super::found::Found;
 use super::report::{FitChange, NamedEffect, Refusal, RefusedEffect, Verdict};
+use super::unmodelled::Unmodelled;
 use crate::estimate::{Role, five_digits};
 use crate::flight::{Shown, shown_in};
 
@@ -20,6 +21,8 @@ pub(super) struct Left<'l> {
     pub coherent: &'l [(String, String)],
     /// Something that is clearly there, but not in all flights.
     pub differs: Option<&'l RefusedEffect>,
+    /// A force in one equation that noise alone does not make.
+    pub force: Option<&'l Unmodelled>,
 }
 
 pub(super) fn of(case: &Case, declared: &Fitted, found: &Found, left: &Left<'_>) -> Verdict {
@@ -30,7 +33,8 @@ pub(super) fn of(case: &Case, declared: &Fitted, found: &Found, left: &Left<'_>)
             return Verdict::NotTestable;
         }
     }
-    if !left.coherent.is_empty() || (found.accepted.is_empty() && left.differs.is_some()) {
+    let follows = !left.coherent.is_empty() || left.force.is_some();
+    if follows || (found.accepted.is_empty() && left.differs.is_some()) {
         return Verdict::Unexplained;
     }
     let members = |accepted: &Accepted| likely(&accepted.group).count();
@@ -145,5 +149,6 @@ fn what_is_left(left: &Left<'_>) -> String {
             differs.sentence
         ));
     }
+    parts.extend(left.force.map(|force| force.sentence.clone()));
     parts.join("; ")
 }
