@@ -5,12 +5,19 @@ use plotters::prelude::*;
 use super::chart::{Area, Margins, axes, extent, faint, in_words, svg};
 use super::style::{MEASURED, MODEL};
 use crate::diagnose::{ForceCurve, ForceHistory};
+use crate::estimate::Role;
 use crate::flight::{Shown, shown_in};
 
 const WIDTH: u32 = 900;
-/// Height of one flight's panel, and of a curve's.
-const PANEL: u32 = 170;
-const CURVE: (u32, u32) = (430, 240);
+/// Height of one flight's panel with the line that names it, and of a curve.
+const PANEL: u32 = 180;
+const TITLE: u32 = 18;
+const CURVE: (u32, u32) = (430, 264);
+/// Height of the line that says what is what.
+const LEGEND: u32 = 24;
+
+/// Flights drawn, at most; all are in the JSON.
+pub(super) const MOST_FLIGHTS: usize = 8;
 
 const MARGINS: Margins = Margins {
     around: 6,
@@ -26,12 +33,16 @@ struct Band {
     upper: Vec<f64>,
 }
 
-/// The force over the time of each flight, one below the other, all on one scale.
+/// The force over the time of each flight, one below the other, all on one scale. `force` is what it is called.
 ///
 /// # Errors
 /// The drawing library's words; none is known for finite numbers.
-pub(super) fn force_over_time(flights: &[ForceHistory], unit: &str) -> Result<String, String> {
+pub(super) fn force_over_time(
+    flights: &[ForceHistory],
+    (force, unit): (&str, &str),
+) -> Result<String, String> {
     let Shown { scale, unit } = shown_in(unit);
+    let flights = &flights[..flights.len().min(MOST_FLIGHTS)];
     let bands: Vec<Band> = flights
         .iter()
         .map(|flight| Band {
@@ -42,11 +53,23 @@ pub(super) fn force_over_time(flights: &[ForceHistory], unit: &str) -> Result<St
         })
         .collect();
     let range = range(&bands);
-    svg((WIDTH, PANEL * flights.len().max(1) as u32), |area| {
-        let panels = area.split_evenly((flights.len().max(1), 1));
-        for ((panel, band), flight) in panels.iter().zip(&bands).zip(flights) {
-            let label = format!("{} [{unit}]", flight.segment);
-            draw(panel, band, range, ("t [s]", &label))?;
+    let label = format!("{force} [{unit}]");
+    let height = LEGEND + PANEL * flights.len().max(1) as u32;
+    svg((WIDTH, height), |area| {
+        let (legend, mut rest) = area.split_vertically(LEGEND);
+        key(&legend, MARGINS.left as i32)?;
+        for (band, flight) in bands.iter().zip(flights) {
+            let (panel, below) = rest.split_vertically(PANEL);
+            let (title, panel) = panel.split_vertically(TITLE);
+            let told = match flight.role {
+                Role::Estimation => flight.segment.clone(),
+                _ => format!("{}, not fitted", flight.segment),
+            };
+            let at = (MARGINS.left as i32 + 12, 4);
+            let text = Text::new(told, at, ("sans-serif", 13));
+            title.draw(&text).map_err(in_words)?;
+            draw(&panel, band, range, ("t [s]", &label))?;
+            rest = below;
         }
         Ok(())
     })
@@ -73,10 +96,31 @@ pub(super) fn force_over_quantity(
         format!("{force} [{}]", y.unit),
     );
     svg(CURVE, |area| {
+        let (legend, rest) = area.split_vertically(LEGEND);
+        key(&legend, MARGINS.left as i32)?;
         let range = range(std::slice::from_ref(&band));
-        draw(area, &band, range, (&labels.0, &labels.1))
+        draw(&rest, &band, range, (&labels.0, &labels.1))
     })
 }
+
+/// What is what, above the panels, where it hides nothing.
+fn key(area: &Area<'_>, left: i32) -> Result<(), String> {
+    let middle = LEGEND as i32 / 2 + 2;
+    let (line, shade) = (left + 12, left + 150);
+    let text =
+        |text: &'static str, x: i32| Text::new(text, (x + 26, middle - 6), ("sans-serif", 12));
+    let stroke = vec![(line, middle), (line + 20, middle)];
+    let stroke = PathElement::new(stroke, MODEL.stroke_width(2));
+    area.draw(&stroke).map_err(in_words)?;
+    area.draw(&text("estimate", line)).map_err(in_words)?;
+    let corners = [(shade, middle - 5), (shade + 20, middle + 5)];
+    let patch = Rectangle::new(corners, MEASURED.mix(SHADE).filled());
+    area.draw(&patch).map_err(in_words)?;
+    area.draw(&text("95 % band", shade)).map_err(in_words)
+}
+
+/// How dark a band is.
+const SHADE: f64 = 0.18;
 
 fn scaled(values: &[f64], scale: f64) -> Vec<f64> {
     values.iter().map(|value| value * scale).collect()
@@ -88,7 +132,9 @@ fn range(bands: &[Band]) -> (f64, f64) {
     let (low, high) = extent(middle).unwrap_or((-1.0, 1.0));
     let half = (0.75 * (high - low)).max(1e-12 + 1e-6 * high.abs());
     let centre = 0.5 * (low + high);
-    let edges = bands.iter().flat_map(|band| band.lower.iter().chain(&band.upper));
+    let edges = bands
+        .iter()
+        .flat_map(|band| band.lower.iter().chain(&band.upper));
     let (least, most) = extent(edges.copied()).unwrap_or((low, high));
     (least.max(centre - half), most.min(centre + half))
 }
@@ -113,8 +159,10 @@ fn draw(
     let upper = band.x.iter().zip(&band.upper).map(inside);
     let lower = band.x.iter().zip(&band.lower).map(inside).rev();
     let outline: Vec<(f64, f64)> = upper.chain(lower).collect();
-    let shade = Polygon::new(outline, MEASURED.mix(0.18).filled());
-    chart.draw_series(std::iter::once(shade)).map_err(in_words)?;
+    let shade = Polygon::new(outline, MEASURED.mix(SHADE).filled());
+    chart
+        .draw_series(std::iter::once(shade))
+        .map_err(in_words)?;
     let zero = vec![(first, 0.0), (last, 0.0)];
     if (low..=high).contains(&0.0) {
         let line = PathElement::new(zero, BLACK.mix(0.4).stroke_width(1));
@@ -129,7 +177,6 @@ fn draw(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimate::Role;
 
     #[test]
     fn a_force_is_drawn_for_each_flight_and_over_what_it_depends_on() {
@@ -141,8 +188,16 @@ mod tests {
             lower: vec![-0.1, 0.0, -9.0],
             upper: vec![0.1, 0.2, 9.0],
         };
-        let svg = force_over_time(&[flight("A"), flight("B")], "rad/s^2").unwrap();
-        assert!(svg.contains("A [deg/s^2]") && svg.contains("B [deg/s^2]"));
+        let held_out = ForceHistory {
+            role: Role::Validation,
+            ..flight("B")
+        };
+        let force = ("force in q", "rad/s^2");
+        let svg = force_over_time(&[flight("A"), held_out], force).unwrap();
+        assert!(svg.contains("force in q [deg/s^2]") && svg.contains("B, not fitted"));
+        let many = vec![flight("A"); 100];
+        let svg = force_over_time(&many, force).unwrap();
+        assert_eq!(svg.matches("force in q").count(), MOST_FLIGHTS);
         let curve = ForceCurve {
             x: vec![0.0, 0.1],
             y: vec![0.0, 0.2],

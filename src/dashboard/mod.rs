@@ -52,3 +52,4 @@ pub use new_job_page::new_job_page;
 pub use problem_page::{ProblemView, problem_page};
 pub use report::{ReportView, report};
 pub use study_figure::{cost_figure, error_figure};
+pub use unmodelled::force_svg;

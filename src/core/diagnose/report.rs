@@ -67,7 +67,8 @@ pub struct Diagnosis {
     pub diff: Vec<DocumentChange>,
     /// Of the residuals that are left.
     pub residuals: Vec<ResidualAnalysis>,
-    /// What is left as a force that the model does not have; absent where noise alone explains what is left.
+    /// Of the verdict `unexplained`: what is left as a force that the model does not have; absent where noise alone could leave
+    /// as much.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unmodelled: Option<Unmodelled>,
     /// What the reader should know of how it was decided.

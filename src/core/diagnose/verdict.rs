@@ -21,7 +21,7 @@ pub(super) struct Left<'l> {
     pub coherent: &'l [(String, String)],
     /// Something that is clearly there, but not in all flights.
     pub differs: Option<&'l RefusedEffect>,
-    /// A force in one equation that noise alone does not make.
+    /// A force in one equation, where white noise alone would hardly leave it.
     pub force: Option<&'l Unmodelled>,
 }
 
@@ -33,7 +33,8 @@ pub(super) fn of(case: &Case, declared: &Fitted, found: &Found, left: &Left<'_>)
             return Verdict::NotTestable;
         }
     }
-    let follows = !left.coherent.is_empty() || left.force.is_some();
+    let forced = left.force.is_some_and(Unmodelled::is_clear);
+    let follows = !left.coherent.is_empty() || forced;
     if follows || (found.accepted.is_empty() && left.differs.is_some()) {
         return Verdict::Unexplained;
     }

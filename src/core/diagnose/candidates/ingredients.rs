@@ -57,7 +57,10 @@ impl<'c> Ingredients<'c> {
         let mut about = IndexMap::new();
         let mut channels = IndexMap::new();
         for (at, (name, mean)) in draft.names.iter().enumerate() {
-            let own = self.variables.iter().find(|variable| variable.name == *name);
+            let own = self
+                .variables
+                .iter()
+                .find(|variable| variable.name == *name);
             let channel = own.and_then(|variable| variable.channel.clone());
             let reference = match draft.from.filter(|_| at == 0) {
                 Some(from) => self.in_its_unit(name, from),
@@ -91,7 +94,10 @@ impl<'c> Ingredients<'c> {
     }
 
     fn reference(&self, target: &str, name: &str, mean: f64) -> Option<Reference> {
-        let variable = self.variables.iter().find(|variable| variable.name == *name);
+        let variable = self
+            .variables
+            .iter()
+            .find(|variable| variable.name == *name);
         match (variable, self.equation(target)) {
             (Some(variable), Some(equation)) => self.subject.reference(variable, &equation),
             _ => self.in_its_unit(name, mean),

@@ -22,8 +22,13 @@ impl Curve {
         let (least, most) = quantity.range(quantity.values.len());
         let splines = Splines::between(least, most, INTERVALS);
         let of = |index: usize| {
-            let spline = |values: &Vec<f64>| values.iter().map(|&x| splines.value(index, x)).collect();
-            quantity.values.iter().map(spline).collect::<Vec<Vec<f64>>>()
+            let spline =
+                |values: &Vec<f64>| values.iter().map(|&x| splines.value(index, x)).collect();
+            quantity
+                .values
+                .iter()
+                .map(spline)
+                .collect::<Vec<Vec<f64>>>()
         };
         let histories: Vec<Vec<Vec<f64>>> = (0..splines.count).map(of).collect();
         let sizes = in_time(&histories, shapes)?;

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use rayon::prelude::*;
 
 use super::curve::Curve;
-use super::metric::Normal;
+use super::normal::Normal;
 use super::parts::{Parted, stacked};
 use super::quantities::Quantity;
 use super::report::ForceCurve;
@@ -18,7 +18,7 @@ const IMITATED: f64 = 1e-3;
 
 /// Points of a curve, between these shares of the samples.
 const POINTS: usize = 60;
-const EDGES: (f64, f64) = (0.005, 0.995);
+const EDGES: [f64; 2] = [0.005, 0.995];
 
 /// Two standard deviations to either side: 95 %.
 const BAND: f64 = 2.0;
@@ -106,17 +106,19 @@ fn shown(
     let onto = &seen * seen.transpose();
     let sizes = &onto * &posterior.sizes;
     let covariance = &onto * posterior.covariance() * &onto;
-    let mut values: Vec<f64> = quantity.values[..fitted].iter().flatten().copied().collect();
-    values.sort_by(f64::total_cmp);
-    let at = |share: f64| values[(share * (values.len() - 1) as f64).round() as usize];
-    let (from, to) = (at(EDGES.0), at(EDGES.1));
+    let [from, to] = quantity.quantiles(fitted, EDGES);
     let step = (to - from) / (POINTS - 1) as f64;
     let x: Vec<f64> = (0..POINTS).map(|k| from + k as f64 * step).collect();
     let y = curve.values(&sizes, &x);
     let band: Vec<f64> = (curve.variances(&covariance, &x).iter())
         .map(|variance| BAND * variance.sqrt())
         .collect();
-    let side = |sign: f64| y.iter().zip(&band).map(|(y, band)| y + sign * band).collect();
+    let side = |sign: f64| {
+        y.iter()
+            .zip(&band)
+            .map(|(y, band)| y + sign * band)
+            .collect()
+    };
     Some(ForceCurve {
         lower: side(-1.0),
         upper: side(1.0),

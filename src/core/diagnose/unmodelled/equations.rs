@@ -82,9 +82,10 @@ mod tests {
             knowledge: Knowledge::default(),
             consumed: Vec::new(),
         };
-        let found: Vec<(String, String)> = (of(&Ingredients::new(&case, &document), &document).into_iter())
-            .map(|equation| (equation.words(), equation.unit))
-            .collect();
+        let found: Vec<(String, String)> = (of(&Ingredients::new(&case, &document), &document)
+            .into_iter())
+        .map(|equation| (equation.words(), equation.unit))
+        .collect();
         let expected = [
             ("the equation of alpha", "rad/s"),
             ("the equation of q", "rad/s^2"),

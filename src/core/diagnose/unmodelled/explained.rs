@@ -11,7 +11,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use super::flown::Samples;
-use super::metric::{Metric, Normal};
+use super::metric::Metric;
+use super::normal::Normal;
 use super::responses::Response;
 use super::smoothness::{Posterior, Smoothness};
 use crate::diagnose::colour::Colour;
@@ -68,6 +69,21 @@ pub(super) struct Explained<'f> {
 }
 
 impl<'f> Explained<'f> {
+    /// ln L with the noise as it is without a force, or white noise: what is quickly said of an equation, and at most as much as
+    /// [`Self::by`] comes to. `None` where something is not a number.
+    pub(super) fn at_first_sight(
+        from: &'f Samples,
+        noise: &Noise,
+        responses: &[&Response],
+        smoothness: &[Smoothness],
+    ) -> Option<Self> {
+        let white = Colour::white(&from.layout, &from.residual);
+        let coloured = Self::with(from, noise.colour.clone(), responses, smoothness)?;
+        let white = Self::with(from, white, responses, smoothness)?;
+        let both = [coloured, white].into_iter();
+        both.max_by(|a, b| a.ln_evidence.total_cmp(&b.ln_evidence))
+    }
+
     /// `None` where something is not a number.
     pub(super) fn by(
         from: &'f Samples,

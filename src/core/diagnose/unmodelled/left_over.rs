@@ -23,6 +23,9 @@ const KNOTS: Knots = Knots {
     most: 60,
 };
 
+/// Equations in which the noise is asked for beside the force, the best at first sight.
+const LOOKED_AT_CLOSELY: usize = 4;
+
 /// A force's size and smoothness are asked of the data.
 const FREEDOM: usize = 2;
 
@@ -60,20 +63,39 @@ pub(in crate::diagnose) fn left_over(case: &Case, fitted: &Fitted) -> Option<Lef
     let smoothness = Smoothness::all(&counts)?;
     let responses = Responses::new(&flown, &shapes, &equations)?;
     let noise = Noise::of(&flown.samples)?;
-    let of = |equation: &Equation| {
+    let force = |equation: &Equation, explained: Explained<'_>| ForceElsewhere {
+        equation: equation.name.clone(),
+        force_in: equation.force_in,
+        likelihood_ratio: 2.0 * (explained.ln_evidence - noise.ln_evidence),
+        freedom: explained.posterior.freedom,
+    };
+    let of = |equation: &Equation, closely: bool| {
         let responses = responses.to(equation)?;
         let responses: Vec<_> = responses.iter().collect();
-        let explained = Explained::by(&flown.samples, &noise, &responses, &smoothness)?;
-        Some(ForceElsewhere {
-            equation: equation.name.clone(),
-            force_in: equation.force_in,
-            likelihood_ratio: 2.0 * (explained.ln_evidence - noise.ln_evidence),
-            freedom: explained.posterior.freedom,
-        })
+        let explain = if closely {
+            Explained::by
+        } else {
+            Explained::at_first_sight
+        };
+        let explained = explain(&flown.samples, &noise, &responses, &smoothness)?;
+        Some(force(equation, explained))
     };
-    let mut all: Vec<ForceElsewhere> = equations.par_iter().filter_map(of).collect();
-    all.sort_by(|a, b| b.likelihood_ratio.total_cmp(&a.likelihood_ratio));
-    let mut all = all.into_iter();
+    let mut all: Vec<(&Equation, ForceElsewhere)> = (equations.par_iter())
+        .filter_map(|equation| Some((equation, of(equation, false)?)))
+        .collect();
+    let best_first = |a: &(&Equation, ForceElsewhere), b: &(&Equation, ForceElsewhere)| {
+        b.1.likelihood_ratio.total_cmp(&a.1.likelihood_ratio)
+    };
+    all.sort_by(best_first);
+    all.par_iter_mut()
+        .take(LOOKED_AT_CLOSELY)
+        .for_each(|(equation, found)| {
+            if let Some(closer) = of(equation, true) {
+                *found = closer;
+            }
+        });
+    all.sort_by(best_first);
+    let mut all = all.into_iter().map(|(_, force)| force);
     let best = all.next()?;
     Some(LeftOver {
         equation: best.equation,

@@ -15,6 +15,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::flown::Samples;
+use super::normal::Normal;
 use super::responses::Response;
 use super::smoothness::Posterior;
 use crate::diagnose::colour::Colour;
@@ -43,28 +44,6 @@ pub(super) struct Metric<'f> {
     pub clear: f64,
     /// Samples that there are, less what is free.
     pub samples: f64,
-}
-
-/// What the flights say of a force's sizes.
-#[derive(Clone, Debug)]
-pub(super) struct Normal {
-    /// G
-    pub gram: DMatrix<f64>,
-    /// b
-    pub moment: DVector<f64>,
-    /// (W S)ᵀ span
-    imitated: DMatrix<f64>,
-}
-
-impl Normal {
-    /// What they say of fewer numbers that the sizes are made of: c = B β.
-    pub(super) fn through(&self, made: &DMatrix<f64>) -> Self {
-        Self {
-            gram: made.tr_mul(&(&self.gram * made)),
-            moment: made.tr_mul(&self.moment),
-            imitated: made.tr_mul(&self.imitated),
-        }
-    }
 }
 
 impl<'f> Metric<'f> {
@@ -117,14 +96,16 @@ impl<'f> Metric<'f> {
             let white = self.whiten(response);
             let (rows, columns) = (response.rows.clone(), white.ncols());
             let span = self.span.rows(rows.start, rows.len());
+            // a product of matrices is far quicker than products of columns
+            let turned = white.transpose();
             gram.view_mut((first, first), (columns, columns))
-                .copy_from(&white.tr_mul(&white));
+                .copy_from(&(&turned * &white));
             moment
                 .rows_mut(first, columns)
-                .copy_from(&white.tr_mul(&self.residual.rows(rows.start, rows.len())));
+                .copy_from(&(&turned * self.residual.rows(rows.start, rows.len())));
             imitated
                 .rows_mut(first, columns)
-                .copy_from(&white.tr_mul(&span));
+                .copy_from(&(&turned * span));
             first += columns;
         }
         gram -= &imitated * imitated.transpose();
@@ -214,7 +195,12 @@ impl<'f> Metric<'f> {
         draws
     }
 
-    fn less(&self, theta: &DVector<f64>, responses: &[&Response], sizes: &DVector<f64>) -> Vec<f64> {
+    fn less(
+        &self,
+        theta: &DVector<f64>,
+        responses: &[&Response],
+        sizes: &DVector<f64>,
+    ) -> Vec<f64> {
         let response = self.response(theta, responses, sizes);
         let residual = self.from.residual.iter();
         residual.zip(&response).map(|(e, y)| e - y).collect()

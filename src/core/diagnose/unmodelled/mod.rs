@@ -13,6 +13,7 @@ mod explained;
 mod flown;
 mod left_over;
 mod metric;
+mod normal;
 mod parts;
 mod picture;
 mod proposals;
@@ -34,4 +35,4 @@ pub use report::{
     ForceSpectrum, Unmodelled,
 };
 
-pub(super) use picture::found;
+pub(super) use picture::{Picture, found};

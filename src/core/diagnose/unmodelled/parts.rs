@@ -1,20 +1,21 @@
 //! Parts of the flights: where a dependence is learned, and where it then has to hold.
 //!
-//! Flights that were held out are where it has to hold. Where there are none each flight takes its turn, and of a lone
-//! one each quarter.
+//! Flights that were held out are where it has to hold. Where there are none each flight takes its turn, of many a quarter
+//! of them, and of a lone one each quarter of it.
 
 use std::borrow::Cow;
 
 use nalgebra::{DMatrix, DVector};
 
 use super::flown::{Flown, Samples};
-use super::metric::{Metric, Normal};
+use super::metric::Metric;
+use super::normal::Normal;
 use super::responses::Response;
 use super::smoothness::{Posterior, Smoothness};
 use crate::diagnose::colour::Colour;
 
-/// Parts of a lone flight.
-const BLOCKS: usize = 4;
+/// Parts of a lone flight, or of many, at most.
+const PARTS: usize = 4;
 
 /// One way to part the flights.
 pub(super) struct Parted {
@@ -53,19 +54,23 @@ fn plans(flown: &Flown) -> Vec<Plan> {
         }];
     }
     if flights > 1 {
-        let without = |one: usize| Plan {
-            learning: (0..flights).filter(|&flight| flight != one).collect(),
-            holding: vec![one],
-            block: None,
+        let folds = flights.min(PARTS);
+        let without = |fold: usize| {
+            let (holding, learning) = (0..flights).partition(|flight| flight % folds == fold);
+            Plan {
+                learning,
+                holding,
+                block: None,
+            }
         };
-        return (0..flights).map(without).collect();
+        return (0..folds).map(without).collect();
     }
     let block = |block: usize| Plan {
         learning: vec![0],
         holding: vec![0],
         block: Some(block),
     };
-    (0..BLOCKS).map(block).collect()
+    (0..PARTS).map(block).collect()
 }
 
 impl Plan {
@@ -77,7 +82,7 @@ impl Plan {
         for series in series.filter(|series| flights.contains(&series.segment)) {
             let length = series.range.len();
             for (k, at) in series.range.clone().enumerate() {
-                let block = (k * BLOCKS / length.max(1)).min(BLOCKS - 1);
+                let block = (k * PARTS / length.max(1)).min(PARTS - 1);
                 if self.block.is_none_or(|held| (held == block) == holds) {
                     part[at] = flown.samples.residual[at];
                 }
@@ -94,13 +99,11 @@ impl Plan {
 }
 
 /// All ways to part the flights. `None` where something is not a number.
-pub(super) fn all(
-    flown: &Flown,
-    responses: &[Response],
-    colour: &Colour,
-) -> Option<Vec<Parted>> {
+pub(super) fn all(flown: &Flown, responses: &[Response], colour: &Colour) -> Option<Vec<Parted>> {
     let plans = plans(flown).into_iter();
-    plans.map(|plan| Parted::of(plan, flown, responses, colour)).collect()
+    plans
+        .map(|plan| Parted::of(plan, flown, responses, colour))
+        .collect()
 }
 
 impl Parted {
@@ -115,9 +118,16 @@ impl Parted {
         let train = Metric::new(Cow::Owned(samples), colour.clone())?;
         let normal = train.normal(&chosen(&plan.learning));
         let alone = train.moved_alone();
-        let (mut own, mut carried) = (flown.samples.declared.clone(), flown.samples.declared.clone());
+        let (mut own, mut carried) = (
+            flown.samples.declared.clone(),
+            flown.samples.declared.clone(),
+        );
         for place in 0..own.ncols() {
-            let other = if plan.is_anew(flown, place) { &mut carried } else { &mut own };
+            let other = if plan.is_anew(flown, place) {
+                &mut carried
+            } else {
+                &mut own
+            };
             other.column_mut(place).fill(0.0);
         }
         let moved = &carried * &alone;

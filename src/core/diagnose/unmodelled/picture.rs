@@ -8,7 +8,7 @@ use super::explained::{Explained, Noise};
 use super::flown::Flown;
 use super::left_over::{LeftOver, left_over};
 use super::parts::{self, Parted};
-use super::proposals::proposals;
+use super::proposals::{Proposal, proposals};
 use super::quantities;
 use super::report::{ForceDependence, ForceHistory, Unmodelled};
 use super::responses::{Response, Responses};
@@ -39,8 +39,26 @@ const BAND: f64 = 2.0;
 /// An unmodelled force with what may make it.
 pub(in crate::diagnose) struct Picture {
     pub unmodelled: Unmodelled,
-    /// Effects to be tried, the one that explains most first.
-    pub proposals: Vec<Effect>,
+    proposals: Vec<Proposal>,
+    /// Whether flights were held out to say how far a dependence holds.
+    held_out: bool,
+}
+
+/// A term that explains less than this of the force in flights that were not fitted is told of, and not tried: the worst
+/// answer is a wrong name.
+const TRIED_FROM: f64 = 0.5;
+
+impl Picture {
+    /// Terms to be tried that a catalogue does not have, the most promising first: those that make at least half of the force
+    /// in flights that were held out.
+    pub(in crate::diagnose) fn beyond(&self, catalogue: &[Effect]) -> Vec<Effect> {
+        let is_new = |effect: &Effect| !catalogue.iter().any(|other| other.name() == effect.name());
+        let is_firm = self.held_out && self.unmodelled.is_clear();
+        let good = |proposal: &&Proposal| is_firm && proposal.share > TRIED_FROM;
+        let proposed = self.proposals.iter().filter(good);
+        let effects = proposed.map(|proposal| &proposal.effect);
+        effects.filter(|effect| is_new(effect)).cloned().collect()
+    }
 }
 
 /// The picture of what a fit by output error leaves. `None` where noise alone would leave as much, and where the
@@ -68,7 +86,10 @@ fn picture(case: &Case, fitted: &Fitted, left: &LeftOver) -> Option<Picture> {
     let noise = Noise::of(&fit.samples)?;
     let explained = Explained::by(&fit.samples, &noise, &seen, &Smoothness::all(&counts)?)?;
     let Explained {
-        metric, normal, posterior, ..
+        metric,
+        normal,
+        posterior,
+        ..
     } = &explained;
     let parts = parts::all(&flown, &responses, &metric.colour)?;
     let evidence = Evidence {
@@ -81,7 +102,14 @@ fn picture(case: &Case, fitted: &Fitted, left: &LeftOver) -> Option<Picture> {
         parts: &parts,
     };
     let dependences = evidence.dependences(&quantities::all(case, &flown, &ingredients));
-    let proposals = proposals(&evidence, posterior, &dependences, &ingredients, &equation.name);
+    let mut proposals = proposals(
+        &evidence,
+        posterior,
+        &dependences,
+        &ingredients,
+        &equation.name,
+    );
+    proposals.retain(|proposal| case.knowledge.allows(&proposal.effect));
     let flights = histories(&flown, &shapes, posterior, &parts);
     let forces = forces(&flown, &shapes, posterior);
     let mut unmodelled = Unmodelled {
@@ -98,13 +126,17 @@ fn picture(case: &Case, fitted: &Fitted, left: &LeftOver) -> Option<Picture> {
         strongest: strongest(&flights[..flown.fitted]),
         flights,
         depends_on: shown(dependences),
-        proposals: proposals.iter().map(Effect::name).collect(),
+        proposals: proposals.iter().map(|p| p.effect.name()).collect(),
         sentence: String::new(),
     };
+    if !is_finite(&unmodelled) {
+        return None;
+    }
     unmodelled.sentence = sentence::of(&equation, &unmodelled);
     Some(Picture {
         unmodelled,
         proposals,
+        held_out: flown.fitted < flown.problem.segments.len(),
     })
 }
 
@@ -122,6 +154,17 @@ fn forces(flown: &Flown, shapes: &[Shapes], posterior: &Posterior) -> Vec<Force>
         }
     };
     shapes[..flown.fitted].iter().map(of).collect()
+}
+
+/// JSON has no word for what is not a number.
+fn is_finite(found: &Unmodelled) -> bool {
+    let histories = (found.flights.iter()).flat_map(|f| [&f.time, &f.value, &f.lower, &f.upper]);
+    let curves = found.depends_on.iter().filter_map(|d| d.curve.as_ref());
+    let curves = curves.flat_map(|curve| [&curve.x, &curve.y, &curve.lower, &curve.upper]);
+    let shares = found.depends_on.iter().map(|d| d.share);
+    (histories.chain(curves).flatten().copied())
+        .chain(shares)
+        .all(f64::is_finite)
 }
 
 fn rms(forces: &[Force]) -> f64 {
@@ -145,7 +188,13 @@ fn histories(
     let mut all = of_flights(flown, shapes, 0..flown.fitted, posterior, Role::Estimation);
     if let (true, [part]) = (flown.fitted < flights, parts) {
         let held_out = flown.fitted..flights;
-        all.extend(of_flights(flown, shapes, held_out, &part.held_out, Role::Validation));
+        all.extend(of_flights(
+            flown,
+            shapes,
+            held_out,
+            &part.held_out,
+            Role::Validation,
+        ));
     }
     all
 }
@@ -170,7 +219,11 @@ fn of_flights(
             .map(|variance| BAND * variance.sqrt())
             .collect();
         let side = |sign: f64| -> Vec<f64> {
-            value.iter().zip(&band).map(|(w, band)| w + sign * band).collect()
+            value
+                .iter()
+                .zip(&band)
+                .map(|(w, band)| w + sign * band)
+                .collect()
         };
         let every = segment.len().div_ceil(MOST_SAMPLES).max(1);
         let some = |all: &[f64]| all.iter().step_by(every).copied().collect();

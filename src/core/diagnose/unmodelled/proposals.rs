@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::curve::in_time;
 use super::dependence::{Dependence, Evidence};
-use super::metric::Normal;
+use super::normal::Normal;
 use super::parts::stacked;
 use super::quantities::Quantity;
 use super::smoothness::Posterior;
@@ -29,21 +29,30 @@ const BREAKS: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 0.9];
 /// Time constants of a quantity's history, s.
 const LAGS: [f64; 3] = [0.1, 0.3, 1.0];
 
+/// A term that may make a force.
+#[derive(Clone, Debug)]
+pub(super) struct Proposal {
+    pub effect: Effect,
+    /// Of the force where it has to hold.
+    pub share: f64,
+}
+
 /// A term, and what it is as a force.
 struct Term {
     effect: Effect,
+    share: f64,
     /// By flight: sizes of the shapes in time, one column.
     sizes: Vec<DMatrix<f64>>,
 }
 
-/// Effects to be tried, the one that explains most first.
+/// Terms that may make a force, those first that explain it best together.
 pub(super) fn proposals(
     evidence: &Evidence<'_>,
     force: &Posterior,
     dependences: &[Dependence],
     ingredients: &Ingredients<'_>,
     target: &str,
-) -> Vec<Effect> {
+) -> Vec<Proposal> {
     let terms = terms(evidence, dependences, ingredients, target);
     let fitted: Vec<usize> = (0..evidence.fitted).collect();
     let all: Vec<DVector<f64>> = (terms.iter())
@@ -58,14 +67,18 @@ pub(super) fn proposals(
     };
     let mut others: Vec<usize> = (0..terms.len()).filter(|at| !chosen.contains(at)).collect();
     others.sort_by(|a, b| alone(b).total_cmp(&alone(a)));
-    let order = chosen.iter().chain(&others);
-    let mut effects: Vec<Effect> = Vec::new();
-    for &at in order {
-        if effects.len() < MOST && !effects.contains(&terms[at].effect) {
-            effects.push(terms[at].effect.clone());
+    let mut proposals: Vec<Proposal> = Vec::new();
+    for &at in chosen.iter().chain(&others) {
+        let Term { effect, share, .. } = &terms[at];
+        let is_new = !proposals.iter().any(|p| p.effect == *effect);
+        if proposals.len() < MOST && is_new {
+            proposals.push(Proposal {
+                effect: effect.clone(),
+                share: *share,
+            });
         }
     }
-    effects
+    proposals
 }
 
 /// Indices of terms, as long as the predicted squared error falls.
@@ -83,10 +96,16 @@ fn chosen(normal: &Normal, force: &Posterior, terms: &[DVector<f64>]) -> Vec<usi
             let before = (&normal.gram * &terms[at]).dot(&terms[at]);
             let moment = left.dot(term);
             // of a term that those before it imitate only rounding is left
-            if length > 1e-6 * before { moment * moment / length } else { 0.0 }
+            if length > 1e-6 * before {
+                moment * moment / length
+            } else {
+                0.0
+            }
         };
         let rest = (0..terms.len()).filter(|at| !chosen.contains(at));
-        let best = rest.map(|at| (at, gain(at))).max_by(|a, b| a.1.total_cmp(&b.1));
+        let best = rest
+            .map(|at| (at, gain(at)))
+            .max_by(|a, b| a.1.total_cmp(&b.1));
         let Some((at, gain)) = best else { break };
         // of PSE N: the fit's error falls by the gain, the price of one more term is σ²_max
         if gain < whole / count || chosen.len() >= MOST {
@@ -178,10 +197,7 @@ fn drafts(
             history(&|x| (x - mean) * (x - mean).abs()),
         ),
     ];
-    let mut values: Vec<f64> = quantity.values[..fitted].iter().flatten().copied().collect();
-    values.sort_by(f64::total_cmp);
-    for share in BREAKS {
-        let from = values[(share * (values.len() - 1) as f64).round() as usize];
+    for from in quantity.quantiles(fitted, BREAKS) {
         let step = history(&|x| (x - from).max(0.0));
         drafts.push((format!("max(0, {name})"), Some(from), step));
     }
@@ -213,5 +229,9 @@ fn term(evidence: &Evidence<'_>, effect: Effect, history: History) -> Option<Ter
         (gram > 0.0).then(|| &normal.moment / gram)
     };
     let share = evidence.share(&sizes, learn)?;
-    (share > LEAST_SHARE).then_some(Term { effect, sizes })
+    (share > LEAST_SHARE).then_some(Term {
+        effect,
+        share,
+        sizes,
+    })
 }

@@ -37,11 +37,15 @@ pub(super) fn all(case: &Case, flown: &Flown, ingredients: &Ingredients<'_>) -> 
     computed.extend(recorded(case, flown, &computed));
     let place = |name: &str| known.iter().position(|v| v == name).unwrap_or(known.len());
     computed.sort_by_key(|quantity| place(&quantity.name));
-    let usual = (computed.iter()).filter(|q| known.contains(&q.name)).count();
+    let usual = (computed.iter())
+        .filter(|q| known.contains(&q.name))
+        .count();
     let mut kept: Vec<Quantity> = Vec::new();
     let mut factors = 0;
     for (at, quantity) in computed.into_iter().enumerate() {
-        let is_new = !kept.iter().any(|k| correlation(k, &quantity, flown.fitted).abs() > ALIKE);
+        let is_new = !kept
+            .iter()
+            .any(|k| correlation(k, &quantity, flown.fitted).abs() > ALIKE);
         if kept.len() < MOST && quantity.moves(flown.fitted) && is_new {
             kept.push(quantity);
             if at < usual {
@@ -81,6 +85,16 @@ impl Quantity {
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &v| {
             (least.min(v), most.max(v))
         })
+    }
+
+    /// Below each of these lies such a share of its samples in the first flights.
+    pub(super) fn quantiles<const N: usize>(&self, flights: usize, shares: [f64; N]) -> [f64; N] {
+        let samples = self.values[..flights].iter().flatten();
+        let mut sorted: Vec<f64> = samples.copied().collect();
+        sorted.sort_by(f64::total_cmp);
+        let last = sorted.len().saturating_sub(1) as f64;
+        let at = |share: f64| sorted.get((share * last).round() as usize).copied();
+        shares.map(|share| at(share).unwrap_or(0.0))
     }
 
     fn moves(&self, fitted: usize) -> bool {
@@ -148,14 +162,21 @@ fn computed(flown: &Flown) -> Option<Vec<Quantity>> {
         let rate = format!("{name}dot");
         if !is_taken(document, &rate) {
             let unit = Unit::parse(&state.unit).map_or(Dimension::NONE, |u| u.dimension);
-            add(&rate, &unit.over(Dimension::SECOND).to_string(), &state.derivative);
+            add(
+                &rate,
+                &unit.over(Dimension::SECOND).to_string(),
+                &state.derivative,
+            );
         }
     }
     let model = compile(&told).ok()?;
     let mut values = vec![Vec::new(); model.outputs.len()];
     for (index, segment) in flown.problem.segments.iter().enumerate() {
         let histories = along(flown, &model, segment, index);
-        values.iter_mut().zip(histories).for_each(|(to, from)| to.push(from));
+        values
+            .iter_mut()
+            .zip(histories)
+            .for_each(|(to, from)| to.push(from));
     }
     let all = names.iter().zip(&model.outputs).zip(values);
     Some(

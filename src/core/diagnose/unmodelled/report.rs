@@ -32,7 +32,8 @@ pub struct Unmodelled {
     /// Twice the gain of the marginal log-likelihood over noise alone, each with the colour that suits it.
     #[schema(example = 143.2)]
     pub likelihood_ratio: f64,
-    /// What noise alone exceeds once in a thousand diagnoses.
+    /// What white noise alone exceeds once in a thousand diagnoses. Beyond 40 no noise that is usual in flight does, coloured or
+    /// not; in between it is shown where something is missing for another reason, and says nothing by itself.
     #[schema(example = 16.6)]
     pub threshold: f64,
     /// Independent numbers that the force is worth.
@@ -61,6 +62,16 @@ pub struct Unmodelled {
     pub sentence: String,
 }
 
+/// A likelihood ratio that no usual noise makes: slow noise of an instrument comes to 20 and more.
+const CLEARLY: f64 = 40.0;
+
+impl Unmodelled {
+    /// Whether it says by itself that something is missing.
+    pub(in crate::diagnose) fn is_clear(&self) -> bool {
+        self.likelihood_ratio > self.threshold.max(CLEARLY)
+    }
+}
+
 /// How well a force in another equation explains the residual.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct ForceElsewhere {
@@ -77,7 +88,8 @@ pub struct ForceElsewhere {
     pub freedom: f64,
 }
 
-/// A force along one flight, with a band of 95 %. What the declared model imitates is not known: there the band is wide.
+/// A force along one flight, with a band of 95 %. What the declared model imitates is not known: there the band is wide. In a
+/// flight that was not fitted the parameters are taken as the fit has them, and the band is that of noise alone.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct ForceHistory {
     /// The flight's label.

@@ -130,7 +130,8 @@ impl<'f> Responses<'f> {
                 self.flown.problem.options.clone(),
             );
             let theta = unknowns.start();
-            let columns = sensitivities(&problem, &self.flown.samples.layout, &theta, &sizes).ok()?;
+            let columns =
+                sensitivities(&problem, &self.flown.samples.layout, &theta, &sizes).ok()?;
             for (index, column) in columns.iter().enumerate() {
                 for (response, shapes) in responses.iter_mut().zip(self.shapes) {
                     if first + index < shapes.count {

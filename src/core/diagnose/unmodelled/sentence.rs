@@ -14,7 +14,11 @@ const APART: f64 = 0.1;
 pub(super) fn of(equation: &Equation, found: &Unmodelled) -> String {
     let Shown { scale, unit } = shown_in(&found.unit);
     let number = |value: f64| three_digits(value * scale);
-    let size = format!("{} {unit} (rms {})", number(found.largest), number(found.rms));
+    let size = format!(
+        "{} {unit} (rms {})",
+        number(found.largest),
+        number(found.rms)
+    );
     let place = equation.words();
     let when = &found.strongest;
     let when = format!(

@@ -22,7 +22,7 @@ const RIDGE: f64 = 1e-9;
 
 /// Shapes of all flights together, at most, and products that one sum over all samples may take: time and memory have an
 /// end, however much was flown.
-const MOST_SHAPES: usize = 600;
+const MOST_SHAPES: usize = 240;
 const MOST_PRODUCTS: usize = 100_000_000;
 
 /// With fewer intervals over a flight a force is no history.

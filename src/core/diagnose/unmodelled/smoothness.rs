@@ -6,7 +6,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use super::metric::Normal;
+use super::normal::Normal;
 
 /// Lengths τ, in shapes.
 pub(super) const LENGTHS: [f64; 5] = [0.5, 1.0, 2.0, 4.0, 8.0];

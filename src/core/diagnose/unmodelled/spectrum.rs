@@ -21,7 +21,7 @@ pub(super) fn spectrum(flights: &[Force]) -> ForceSpectrum {
     let highest = flights.iter().map(|f| 0.5 / f.step.max(f64::MIN_POSITIVE));
     let highest = highest.fold(f64::INFINITY, f64::min);
     let mut power = [0.0; LINES];
-    for flight in flights {
+    for flight in flights.iter().filter(|flight| !flight.values.is_empty()) {
         let count = flight.values.len();
         let mean = flight.values.iter().sum::<f64>() / count.max(1) as f64;
         let mut buffer: Vec<Complex64> = (flight.values.iter().enumerate())
@@ -30,7 +30,9 @@ pub(super) fn spectrum(flights: &[Force]) -> ForceSpectrum {
                 Complex64::new((value - mean) * window, 0.0)
             })
             .collect();
-        rustfft::FftPlanner::new().plan_fft_forward(count).process(&mut buffer);
+        rustfft::FftPlanner::new()
+            .plan_fft_forward(count)
+            .process(&mut buffer);
         for (k, value) in buffer.iter().enumerate().take(count / 2).skip(1) {
             let frequency = k as f64 / (count as f64 * flight.step);
             let line = (frequency / highest * LINES as f64) as usize;
@@ -75,10 +77,11 @@ pub(super) fn strongest(flights: &[ForceHistory]) -> ForceInterval {
             best = (first, last);
         }
     }
+    let time = |at: usize| flight.time.get(at).copied().unwrap_or(0.0);
     ForceInterval {
         segment: flight.segment.clone(),
-        from: flight.time[best.0],
-        to: flight.time[best.1],
+        from: time(best.0),
+        to: time(best.1),
     }
 }
 

@@ -39,7 +39,10 @@ impl Splines {
     pub(super) fn value(&self, index: usize, x: f64) -> f64 {
         let (first, values) = self.at(x);
         let place = index.checked_sub(first);
-        place.and_then(|place| values.get(place)).copied().unwrap_or(0.0)
+        place
+            .and_then(|place| values.get(place))
+            .copied()
+            .unwrap_or(0.0)
     }
 }
 

@@ -8,9 +8,8 @@ use super::left_over::{LeftOver, left_over};
 use super::picture::found;
 use super::report::{ForceIn, Unmodelled};
 use super::truth::{Noise, Truth, steps};
-use crate::diagnose::declared::Declared;
 use crate::diagnose::case::Case;
-use crate::diagnose::effect::Effect;
+use crate::diagnose::declared::Declared;
 use crate::diagnose::fitted::Fitted;
 use crate::estimate::Role;
 use crate::model::catalog;
@@ -136,7 +135,11 @@ fn a_force_is_found_in_the_equation_in_which_it_acts() {
             let case = flown(undeclared, 1.0, colour, &[Role::Estimation; 2], 11);
             let found = left(&case);
             let place = (found.equation.as_str(), found.force_in);
-            assert_eq!(place, (equation, ForceIn::State), "{undeclared:?}, {colour}: {found:?}");
+            assert_eq!(
+                place,
+                (equation, ForceIn::State),
+                "{undeclared:?}, {colour}: {found:?}"
+            );
             assert!(
                 found.is_significant(),
                 "{undeclared:?}, {colour}: {found:?}"
@@ -154,7 +157,11 @@ fn besides(series: &[f64], others: &[&[f64]]) -> DVector<f64> {
         .collect();
     let columns = DMatrix::from_columns(&columns);
     let series = DVector::from_column_slice(series);
-    let fit = columns.clone().svd(true, true).solve(&series, 1e-12).unwrap();
+    let fit = columns
+        .clone()
+        .svd(true, true)
+        .solve(&series, 1e-12)
+        .unwrap();
     series - columns * fit
 }
 
@@ -175,10 +182,17 @@ fn a_cubic_moment_is_seen_for_what_it_is() {
     let case = flown(Undeclared::CubicMoment, 0.3, 0.0, &roles, 5);
     let picture = found(&case, &fitted(&case)).expect("something is left");
     let force = &picture.unmodelled;
-    assert_eq!((force.equation.as_str(), force.unit.as_str()), ("q", "rad/s^2"));
+    assert_eq!(
+        (force.equation.as_str(), force.unit.as_str()),
+        ("q", "rad/s^2")
+    );
     assert_eq!(force.flights.len(), 3);
     for flight in &force.flights {
-        let recorded = case.flights.iter().find(|f| f.label == flight.segment).unwrap();
+        let recorded = case
+            .flights
+            .iter()
+            .find(|f| f.label == flight.segment)
+            .unwrap();
         let every = recorded.time.len().div_ceil(flight.time.len());
         let channel = |name: &str| -> Vec<f64> {
             let (values, _) = &recorded.channels[name];
@@ -192,14 +206,24 @@ fn a_cubic_moment_is_seen_for_what_it_is() {
         assert!(like > 0.9, "{}: {like}", flight.segment);
     }
     let best = &force.depends_on[0];
-    assert!(best.quantity == "alpha" && best.share > 0.5, "{:?}", shares(force));
+    assert!(
+        best.quantity == "alpha" && best.share > 0.5,
+        "{:?}",
+        shares(force)
+    );
     let curve = best.curve.as_ref().unwrap();
     let truth: Vec<f64> = curve.x.iter().map(|x| 240.0 * (x - 0.05).powi(3)).collect();
-    let like = correlation(&besides(&curve.y, &[&curve.x]), &besides(&truth, &[&curve.x]));
+    let like = correlation(
+        &besides(&curve.y, &[&curve.x]),
+        &besides(&truth, &[&curve.x]),
+    );
     assert!(like > 0.9, "the curve: {like}");
-    let names: Vec<String> = picture.proposals.iter().map(Effect::name).collect();
-    assert!(names.iter().any(|name| name.contains("alpha^3")), "{names:?}");
-    assert!(picture.proposals.len() <= 8);
+    let names: Vec<String> = picture.unmodelled.proposals.clone();
+    assert!(
+        names.iter().any(|name| name.contains("alpha^3")),
+        "{names:?}"
+    );
+    assert!(picture.unmodelled.proposals.len() <= 8);
 }
 
 /// One flight alone: a quarter of it at a time is predicted from the rest.
@@ -208,7 +232,11 @@ fn a_lone_flight_is_its_own_judge() {
     let case = flown(Undeclared::CubicMoment, 0.3, 0.0, &[Role::Estimation], 5);
     let picture = found(&case, &fitted(&case)).expect("something is left");
     let best = &picture.unmodelled.depends_on[0];
-    assert!(best.quantity == "alpha" && best.share > 0.5, "{:?}", shares(&picture.unmodelled));
+    assert!(
+        best.quantity == "alpha" && best.share > 0.5,
+        "{:?}",
+        shares(&picture.unmodelled)
+    );
 }
 
 /// What acts once depends on nothing, and is said when it acts.
@@ -224,5 +252,9 @@ fn what_depends_on_nothing_is_said_when_it_acts() {
     assert_eq!(force.strongest.segment, "A");
     let (from, to) = (force.strongest.from, force.strongest.to);
     assert!(from > 8.5 && to < 11.5 && to - from < 2.0, "{from} to {to}");
-    assert!(force.sentence.contains("depends on nothing"), "{}", force.sentence);
+    assert!(
+        force.sentence.contains("depends on nothing"),
+        "{}",
+        force.sentence
+    );
 }
