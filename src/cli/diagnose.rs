@@ -7,7 +7,7 @@ use super::progress::ProgressLine;
 use super::request::Request;
 use super::table::{self, bordered};
 use super::{Failure, figures, notes};
-use crate::dashboard::history_svg;
+use crate::dashboard::{force_svg, history_svg};
 use crate::diagnose::{Diagnosis, FitChange, Refusal};
 use crate::estimate::{Role, TimeHistory, five_digits};
 use crate::job::{self, JobKind};
@@ -20,7 +20,8 @@ pub(super) struct Diagnose {
     /// Show every candidate that was refused, with the reason.
     #[arg(long, conflicts_with = "json")]
     all: bool,
-    /// Write a picture of each segment to this directory: measured, declared model and model with its effects.
+    /// Write a picture of each segment to this directory: measured, declared model and model with its effects; and one of the
+    /// unmodelled force, where something is left.
     #[arg(long, value_name = "DIRECTORY")]
     figures: Option<PathBuf>,
     /// Print the whole result as JSON instead.
@@ -54,7 +55,9 @@ impl Diagnose {
             println!("{}", conclusion(diagnosis, self.all));
         }
         if let Some(directory) = &self.figures {
-            figures::write(directory, pictures(&result.histories))?;
+            let force = diagnosis.unmodelled.as_ref();
+            let force = force.map(|found| ("unmodelled.svg".to_string(), force_svg(found)));
+            figures::write(directory, pictures(&result.histories).chain(force))?;
         }
         Ok(())
     }

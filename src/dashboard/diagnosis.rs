@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::model_diff;
+use super::{model_diff, unmodelled};
 use crate::diagnose::{Diagnosis, FitChange, NamedEffect, Refusal, RefusedEffect, Verdict};
 use crate::estimate::{Role, five_digits as number};
 use crate::flight::{Shown, shown_in};
@@ -23,6 +23,7 @@ pub(super) fn story(diagnosis: &Diagnosis) -> Markup {
                 h3 { "What that did to the declared parameters" }
                 (parameters(diagnosis))
             }
+            @if let Some(found) = &diagnosis.unmodelled { (unmodelled::section(found)) }
             (refused(&diagnosis.refused))
         }
     }

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use crate::common::process::Process;
+use crate::common::swinging::swinging;
 use serde_json::Value;
 use trimtab::model::ModelDocument;
 
@@ -325,6 +326,39 @@ fn parts_of_a_recording_are_diagnosed_and_drawn() {
             "2-elevator-lag-fit_501-626.svg"
         ]
     );
+}
+
+/// What no catalogue has: the equation in which it acts, its size and when it acts, in words and as pictures.
+#[test]
+fn a_force_that_no_catalogue_has_is_told_and_drawn() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let path = |name: &str| {
+        let path = directory.path().join(name);
+        path.to_str().expect("a path").to_string()
+    };
+    for (name, csv) in ["fit.csv", "check.csv"].iter().zip(swinging()) {
+        std::fs::write(path(name), csv).expect("written");
+    }
+    let told = succeeds(&[
+        "diagnose",
+        &path("fit.csv"),
+        "--validate",
+        &path("check.csv"),
+        "-m",
+        "short-period",
+        "--figures",
+        &path("figures"),
+    ]);
+    assert!(told.contains("verdict: unexplained"), "{told}");
+    for part in [
+        "a force in the equation of q",
+        "deg/s^2",
+        "depends on nothing",
+    ] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+    let drawn = std::fs::read_to_string(directory.path().join("figures/unmodelled.svg"));
+    assert!(drawn.expect("a figure").contains("force in q [deg/s^2]"));
 }
 
 #[test]

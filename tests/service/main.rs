@@ -17,6 +17,7 @@ mod common {
     pub(crate) mod repository;
     pub(crate) mod server;
     pub(crate) mod sse;
+    pub(crate) mod swinging;
 }
 
 mod abuse;

@@ -12,11 +12,12 @@ use super::difference::difference;
 use super::fitted::Fitted;
 use super::found::Found;
 use super::lines::{Line, lines};
-use super::report::{Diagnosis, EffectParameter, FitChange, NamedEffect, ParameterChange};
+use super::report::{Diagnosis, EffectParameter, FitChange, NamedEffect, ParameterChange, Verdict};
 use super::residual::analyse;
 use super::screen::Screen;
 use super::sentence;
 use super::size::sizes;
+use super::unmodelled::Picture;
 use super::verdict::{self, Left};
 use crate::estimate::{
     Estimate, OutputFit, ParameterEstimate, Problem, Role, Solution, TimeHistory, estimate,
@@ -43,6 +44,7 @@ pub(super) fn answer(
     declared: &Declared,
     last: &Fitted,
     found: Found,
+    picture: Option<Picture>,
 ) -> Result<Conclusion, Unfit> {
     let Declared {
         fitted: declared,
@@ -101,11 +103,14 @@ pub(super) fn answer(
     } else {
         coherent(case, last)
     };
+    let unmodelled = picture.map(|picture| picture.unmodelled);
     let left = Left {
         coherent: &following,
         differs: found.differs_between_maneuvers(),
+        force: unmodelled.as_ref(),
     };
     let verdict = verdict::of(case, declared, &found, &left);
+    let is_shown = verdict == Verdict::Unexplained;
     let mut remarks = remarks.clone();
     remarks.extend(remarks_on(case, &fits));
     remarks.extend(lines(&after.solution.histories).iter().map(swings));
@@ -126,6 +131,7 @@ pub(super) fn answer(
         diff: difference(&case.document, &last.document),
         fits,
         residuals,
+        unmodelled: unmodelled.filter(|_| is_shown),
         remarks,
     };
     Ok(Conclusion {

@@ -26,12 +26,14 @@ pub(super) const MOST_ORDER: usize = 12;
 impl Autoregression {
     /// Of the order of least Schwarz criterion N ln σ² + order ln N.
     pub(super) fn of_best_order(series: &[&[f64]]) -> Self {
+        Self::of_copies(series, 1)
+    }
+
+    /// As [`Self::of_best_order`], of series that are so many draws of the same noise.
+    fn of_copies(series: &[&[f64]], copies: usize) -> Self {
         let full = Self::of_order(series, MOST_ORDER);
-        let n: f64 = series
-            .iter()
-            .flat_map(|s| s.iter())
-            .filter(|e| e.is_finite())
-            .count() as f64;
+        let finite = series.iter().flat_map(|s| s.iter());
+        let n = finite.filter(|e| e.is_finite()).count() as f64 / copies.max(1) as f64;
         let criterion = |order: &usize| n * full.variances[*order].ln() + *order as f64 * n.ln();
         let orders = 0..full.variances.len();
         let best = orders
@@ -147,6 +149,15 @@ impl Colour {
         Self((0..layout.outputs).map(of).collect())
     }
 
+    /// Of noise that is known but for some uncertainty, of which each of `draws` is as likely as the others.
+    pub(super) fn of_draws(layout: &Layout, draws: &[Vec<f64>]) -> Self {
+        let of = |output| {
+            let series = draws.iter().flat_map(|draw| layout.of_output(draw, output));
+            Autoregression::of_copies(&series.collect::<Vec<_>>(), draws.len())
+        };
+        Self((0..layout.outputs).map(of).collect())
+    }
+
     /// Of given orders, by output: so that two models of the same data are compared on equal terms.
     pub(super) fn of_orders(layout: &Layout, residual: &[f64], orders: &[usize]) -> Self {
         let of = |(output, &order): (usize, &usize)| {
@@ -191,14 +202,18 @@ impl Colour {
     /// would take the effect for noise.
     pub(super) fn ln_evidence(layout: &Layout, residual: &[f64]) -> f64 {
         let own = Self::of_best_order(layout, residual);
-        let price = |output: usize| {
+        own.ln_likelihood(layout, residual) - own.price(layout, residual)
+    }
+
+    /// What its orders cost by Schwarz's criterion: ½ order ln N.
+    pub(super) fn price(&self, layout: &Layout, residual: &[f64]) -> f64 {
+        let of_output = |output: usize| {
             let samples = layout.of_output(residual, output);
             let count = samples.iter().flat_map(|s| s.iter());
             let count = count.filter(|e| e.is_finite()).count().max(1) as f64;
-            0.5 * own.0[output].order() as f64 * count.ln()
+            0.5 * self.0[output].order() as f64 * count.ln()
         };
-        let price: f64 = (0..layout.outputs).map(price).sum();
-        own.ln_likelihood(layout, residual) - price
+        (0..layout.outputs).map(of_output).sum()
     }
 
     /// The share of one output.

@@ -76,18 +76,17 @@ impl Knowledge {
         entry == kind || entry == effect.target || entry == of || entry == effect.name()
     }
 
+    /// Whether an effect may be there, for all that is known.
+    pub(super) fn allows(&self, effect: &Effect) -> bool {
+        let is_excluded = |entry: &String| Self::excludes(entry, effect);
+        let is_nothing = |known: &KnownSize| known.size_sd == Some(0.0) && known.means(effect);
+        !self.exclude.iter().any(is_excluded) && !self.known.iter().any(is_nothing)
+    }
+
     /// Takes out what is known not to be there, and bounds what is known.
     pub(super) fn apply(&self, effects: &mut Vec<Effect>) {
-        effects.retain(|effect| {
-            !self
-                .exclude
-                .iter()
-                .any(|entry| Self::excludes(entry, effect))
-        });
+        effects.retain(|effect| self.allows(effect));
         for known in &self.known {
-            if known.size_sd == Some(0.0) {
-                effects.retain(|effect| !known.means(effect));
-            }
             for effect in effects.iter_mut().filter(|effect| known.means(effect)) {
                 effect.plausible = Some(known.range(effect.plausible));
             }

@@ -47,6 +47,7 @@ mod stack;
 mod starts;
 mod threshold;
 mod trial;
+mod unmodelled;
 mod verdict;
 mod watch;
 
@@ -64,6 +65,10 @@ pub use report::{
     OutputGain, ParameterChange, Refusal, RefusedEffect, Step, Verdict,
 };
 pub use residual::{ResidualAnalysis, SpectralLine, analyse};
+pub use unmodelled::{
+    ForceCurve, ForceDependence, ForceElsewhere, ForceHistory, ForceIn, ForceInterval,
+    ForceSpectrum, Unmodelled,
+};
 pub use watch::Watcher;
 
 use accepted::Accepted;
@@ -74,7 +79,7 @@ use fitted::Fitted;
 use found::Found;
 use review::review;
 use round::round;
-use watch::{Stopped, tell};
+use watch::{Stopped, ask, tell};
 
 /// Rounds, and so effects, at most: who lacks more than these has another model.
 const MOST_ROUNDS: usize = 6;
@@ -93,17 +98,36 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
     let cleaned = clean(case, &declared.fitted, &mut base, &mut found, watcher)?;
     let case = cleaned.as_ref().unwrap_or(case);
     let catalogue = candidates::candidates(case, &declared.fitted.problem.model);
+    let mut pool = catalogue.clone();
+    // of the last fit, where it was looked for
+    let mut picture = None;
     let mut number = 1;
     while number <= MOST_ROUNDS {
-        let left: Vec<Effect> = (catalogue.iter())
+        let left: Vec<Effect> = (pool.iter())
             .filter(|effect| !found.accepted.iter().any(|a| a.effect.rules_out(effect)))
             .cloned()
             .collect();
         let round = round(case, &base, left, &found.added(), number, watcher)?;
         let Some(accepted) = round.accepted else {
             found.refuse(round.refused);
-            break;
+            if picture.is_some() {
+                break;
+            }
+            // what the catalogue has no word for may still have a form
+            ask(watcher)?;
+            let seen = unmodelled::found(case, &base);
+            pool = seen
+                .as_ref()
+                .map_or_else(Vec::new, |seen| seen.beyond(&catalogue));
+            case.knowledge.apply(&mut pool);
+            picture = Some(seen);
+            if pool.is_empty() {
+                break;
+            }
+            continue;
         };
+        picture = None;
+        pool.clone_from(&catalogue);
         // what made the difference may be where the fit began, not the effect
         if found.accepted.is_empty()
             && !accepted.effect.is_noise()
@@ -124,8 +148,16 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
         }
         number += 1;
     }
+    let standing = found.accepted.len();
     review(case, &declared.fitted, &mut base, &mut found);
-    Ok(answer(case, &declared, &base, found)?)
+    let picture = match picture {
+        Some(seen) if found.accepted.len() == standing => seen,
+        _ => {
+            ask(watcher)?;
+            unmodelled::found(case, &base)
+        }
+    };
+    Ok(answer(case, &declared, &base, found, picture)?)
 }
 
 /// Leaves out samples that are no measurements; `None` where there are none.

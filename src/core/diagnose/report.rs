@@ -6,6 +6,7 @@ use utoipa::ToSchema;
 use super::candidates::TakenFor;
 use super::effect::Effect;
 use super::residual::ResidualAnalysis;
+use super::unmodelled::Unmodelled;
 use crate::estimate::{Estimate, OutputFit, Role};
 use crate::model::ModelDocument;
 
@@ -66,6 +67,10 @@ pub struct Diagnosis {
     pub diff: Vec<DocumentChange>,
     /// Of the residuals that are left.
     pub residuals: Vec<ResidualAnalysis>,
+    /// Of the verdict `unexplained`: what is left as a force that the model does not have; absent where noise alone could leave
+    /// as much.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unmodelled: Option<Unmodelled>,
     /// What the reader should know of how it was decided.
     pub remarks: Vec<String>,
 }

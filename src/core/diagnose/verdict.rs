@@ -6,6 +6,7 @@ use super::effect::EffectKind;
 use super::fitted::Fitted;
 use super::found::Found;
 use super::report::{FitChange, NamedEffect, Refusal, RefusedEffect, Verdict};
+use super::unmodelled::Unmodelled;
 use crate::estimate::{Role, five_digits};
 use crate::flight::{Shown, shown_in};
 use crate::model::EditKind;
@@ -22,6 +23,8 @@ pub(super) struct Left<'l> {
     pub coherent: &'l [(String, String)],
     /// Something that is clearly there, but not in all flights.
     pub differs: Option<&'l RefusedEffect>,
+    /// A force in one equation, where white noise alone would hardly leave it.
+    pub force: Option<&'l Unmodelled>,
 }
 
 pub(super) fn of(case: &Case, declared: &Fitted, found: &Found, left: &Left<'_>) -> Verdict {
@@ -32,7 +35,9 @@ pub(super) fn of(case: &Case, declared: &Fitted, found: &Found, left: &Left<'_>)
             return Verdict::NotTestable;
         }
     }
-    if !left.coherent.is_empty() || (found.accepted.is_empty() && left.differs.is_some()) {
+    let forced = left.force.is_some_and(Unmodelled::is_clear);
+    let follows = !left.coherent.is_empty() || forced;
+    if follows || (found.accepted.is_empty() && left.differs.is_some()) {
         return Verdict::Unexplained;
     }
     let members = |accepted: &Accepted| likely(&accepted.group).count();
@@ -153,5 +158,6 @@ fn what_is_left(left: &Left<'_>) -> String {
             differs.sentence
         ));
     }
+    parts.extend(left.force.map(|force| force.sentence.clone()));
     parts.join("; ")
 }

@@ -4,7 +4,7 @@ use super::ModelDocument;
 use crate::flight::Fault;
 
 const MOST_STATES: usize = 64;
-const MOST_INPUTS: usize = 64;
+pub(crate) const MOST_INPUTS: usize = 64;
 const MOST_OUTPUTS: usize = 64;
 const MOST_PARAMETERS: usize = 512;
 const MOST_DEFINITIONS: usize = 256;

@@ -19,7 +19,7 @@ mod formula;
 mod graph;
 mod instruction;
 mod jacobian;
-mod limits;
+pub(crate) mod limits;
 mod names;
 mod native;
 mod operation;

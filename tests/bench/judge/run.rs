@@ -38,6 +38,10 @@ pub(crate) struct Line {
     pub group: Vec<String>,
     /// Of what is in no catalogue: whether the answer points to where it is.
     pub points: Option<bool>,
+    /// Whether the unmodelled force that is shown acts there.
+    pub force_points: Option<bool>,
+    /// Equation and likelihood ratio of the unmodelled force that is shown.
+    pub force: Option<(String, f64)>,
     /// ln L that the catalogue's own edit of the truth falls short of the truth by.
     pub shortfall: Option<f64>,
     /// Why the truth was refused.
@@ -93,6 +97,8 @@ pub(crate) fn run(design: &Design, seed: u64, manner: &Manner<'_>) -> Line {
         named: Vec::new(),
         group: Vec::new(),
         points: None,
+        force_points: None,
+        force: None,
         shortfall: None,
         refused: None,
         sentence: String::new(),
@@ -150,6 +156,7 @@ pub(crate) fn run(design: &Design, seed: u64, manner: &Manner<'_>) -> Line {
             };
             line.outcome = judge.outcome(&diagnosis);
             line.points = (design.set == Set::Unknown).then(|| judge.points(&diagnosis));
+            line.force_points = judge.force_points(&diagnosis);
             line.refused = judge.refusal(&diagnosis);
             tell(&mut line, &setting, &diagnosis);
         }
@@ -160,6 +167,8 @@ pub(crate) fn run(design: &Design, seed: u64, manner: &Manner<'_>) -> Line {
 fn tell(line: &mut Line, setting: &Setting, diagnosis: &Diagnosis) {
     line.verdict = diagnosis.verdict.name();
     line.sentence = diagnosis.sentence.clone();
+    let force = diagnosis.unmodelled.as_ref();
+    line.force = force.map(|force| (setting.own(&force.equation), force.likelihood_ratio));
     line.named = diagnosis
         .effects
         .iter()

@@ -273,6 +273,11 @@ fn summary(lines: &[Line]) {
             "in no catalogue, points to the right place: {}",
             share(points, unknown.len())
         );
+        let shown = || unknown.iter().filter_map(|line| line.force_points);
+        println!(
+            "in no catalogue, the unmodelled force that is shown acts there: {}",
+            share(shown().filter(|points| *points).count(), shown().count())
+        );
     }
     if !pairs.is_empty() {
         println!(

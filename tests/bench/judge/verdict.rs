@@ -135,21 +135,36 @@ impl Judge<'_> {
         }
     }
 
-    /// Whether an answer to what is in no catalogue points to where it is: by name, in what it says is left.
+    /// Whether an answer to what is in no catalogue points to where it is: by the equation of the unmodelled force, or by
+    /// name in what else is said. Of the force itself only the equation counts: its sentence names what it depends on, too.
     pub(crate) fn points(&self, diagnosis: &Diagnosis) -> bool {
-        let said = diagnosis.remarks.iter().chain([&diagnosis.sentence]);
+        let force = diagnosis.unmodelled.as_ref();
+        let of_force = force.map_or("", |force| force.sentence.as_str());
+        let sentence = match of_force {
+            "" => diagnosis.sentence.clone(),
+            told => diagnosis.sentence.replace(told, ""),
+        };
+        let said = diagnosis.remarks.iter().chain([&sentence]);
+        let said = said.chain(force.map(|force| &force.equation));
         let said: Vec<String> = said.map(|text| self.setting.own(text)).collect();
         let is_part = |c: char| c.is_alphanumeric() || c == '_';
         let words: Vec<&str> = said
             .iter()
             .flat_map(|text| text.split(|c| !is_part(c)))
             .collect();
-        self.faults().any(|fault| {
-            fault
-                .shows_in
-                .iter()
-                .any(|place| words.contains(&place.as_str()))
-        })
+        self.is_shown_in(|place| words.contains(&place))
+    }
+
+    /// Whether the unmodelled force acts where the truth is; `None` where none is shown.
+    pub(crate) fn force_points(&self, diagnosis: &Diagnosis) -> Option<bool> {
+        let force = diagnosis.unmodelled.as_ref()?;
+        let equation = self.setting.own(&force.equation);
+        Some(self.is_shown_in(|place| place == equation))
+    }
+
+    fn is_shown_in(&self, says: impl Fn(&str) -> bool) -> bool {
+        self.faults()
+            .any(|fault| fault.shows_in.iter().any(|place| says(place)))
     }
 
     /// Why the truth itself was refused, if it was.

@@ -5,6 +5,7 @@ use crate::common::jobs::{endless_job, job};
 use crate::common::process::{Process, own_address};
 use crate::common::recordings::{elevator, elevator_of};
 use crate::common::server::{Server, client, send};
+use crate::common::swinging::swinging;
 use fantoccini::key::Key;
 use reqwest::StatusCode;
 use serde_json::{Value, json};
@@ -398,6 +399,46 @@ async fn a_diagnosis_is_told_as_a_story() {
         is_drawn(browser).await;
         browser.fits().await;
         browser.picture("narrow").await;
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn what_no_catalogue_has_is_drawn() {
+    browse("unmodelled", async |browser| {
+        let server = Server::start().await;
+        let [fit, check] = swinging();
+        let uses = json!([
+            {"id": server.upload(&fit).await, "label": "fit", "role": "estimation"},
+            {"id": server.upload(&check).await, "label": "check", "role": "validation"},
+        ]);
+        let spec = json!({"kind": "diagnose", "model": "short-period", "maneuvers": uses});
+        let id = server.submit(&spec).await;
+        go(browser, &server, &format!("/jobs/{id}")).await;
+        over(browser, &server, &id).await;
+        let left = browser.text("[aria-labelledby=unmodelled]").await;
+        for part in [
+            "What is left, as a force in the equation of q",
+            "force in q [deg/s^2]",
+            "check, not fitted",
+            "share in flights not fitted",
+            "spectrum",
+        ] {
+            assert!(left.contains(part), "{part}: {left}");
+        }
+        for dark in [false, true] {
+            browser.dark(dark).await;
+            is_drawn(browser).await;
+            browser.is_accessible().await;
+            browser.picture("force").await;
+        }
+        browser.resize(360, 800).await;
+        is_drawn(browser).await;
+        browser.fits().await;
+        browser.picture("narrow").await;
+        // the printed report has it too
+        go(browser, &server, &format!("/jobs/{id}/report")).await;
+        browser.says("main", "What is left, as a force in").await;
     })
     .await;
 }

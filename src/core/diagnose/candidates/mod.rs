@@ -6,6 +6,7 @@ mod aerodynamics;
 mod clocks;
 mod disturbances;
 mod fixed;
+mod ingredients;
 mod inputs;
 mod monomials;
 mod ranges;
@@ -18,6 +19,7 @@ mod terms;
 mod tests;
 mod variables;
 
+pub(super) use ingredients::{Draft, Ingredients};
 pub use taken::TakenFor;
 pub(super) use taken::taken_for;
 
