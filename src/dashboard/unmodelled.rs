@@ -15,8 +15,8 @@ pub(super) fn section(found: &Unmodelled) -> Markup {
     html! {
         section.whole aria-labelledby="unmodelled" {
             h3 id="unmodelled" { "What is left, as " (words(found.force_in)) " " (found.equation) }
-            figure.paper role="img" aria-label={ "unmodelled force in " (found.equation) " over time" } {
-                (drawn(force_svg(found)))
+            figure.paper {
+                div role="img" aria-label={ "unmodelled force in " (found.equation) " over time" } { (drawn(force_svg(found))) }
                 figcaption.soft {
                     "Where the declared parameters imitate it the band is wide."
                     @if found.flights.iter().any(|flight| flight.role != Role::Estimation) {
@@ -27,8 +27,10 @@ pub(super) fn section(found: &Unmodelled) -> Markup {
             }
             @if let Some((best, curve)) = found.depends_on.iter().find_map(|d| Some((d, d.curve.as_ref()?))) {
                 div.columns {
-                    figure.paper role="img" aria-label={ "unmodelled force over " (best.quantity) } {
-                        (drawn(force_over_quantity(curve, (&best.quantity, &best.unit), (&force, &found.unit))))
+                    figure.paper {
+                        div role="img" aria-label={ "unmodelled force over " (best.quantity) } {
+                            (drawn(force_over_quantity(curve, (&best.quantity, &best.unit), (&force, &found.unit))))
+                        }
                         figcaption.soft { "Over " (best.quantity) ", without what the declared parameters imitate of it" }
                     }
                     (dependences(&found.depends_on))
