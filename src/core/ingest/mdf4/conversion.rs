@@ -46,7 +46,11 @@ impl Conversion {
         })
     }
 
+    /// NaN, which is no value, remains NaN.
     pub(super) fn apply(&self, raw: f64) -> f64 {
+        if raw.is_nan() {
+            return f64::NAN;
+        }
         match self {
             Self::None => raw,
             Self::Linear(offset, factor) => offset + factor * raw,
@@ -85,6 +89,18 @@ fn looked_up(pairs: &[[f64; 2]], is_straight: bool, raw: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_no_value_is_not_looked_up() {
+        let pairs = vec![[0.0, 10.0], [2.0, 20.0]];
+        for is_straight in [true, false] {
+            let pairs = pairs.clone();
+            let table = Conversion::Table { pairs, is_straight };
+            assert!(table.apply(f64::NAN).is_nan());
+        }
+        let ranges = Conversion::Ranges(vec![[0.0, 1.0, 5.0]], 7.0);
+        assert!(ranges.apply(f64::NAN).is_nan());
+    }
 
     #[test]
     fn numbers_are_converted() {
