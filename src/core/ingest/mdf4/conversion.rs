@@ -20,7 +20,7 @@ pub(super) enum Conversion {
 
 impl Conversion {
     /// `None` where it is one that is not read.
-    pub(super) fn read(block: &Block) -> Option<Self> {
+    pub(super) fn read(file: &[u8], block: &Block) -> Option<Self> {
         let mut cursor = block.cursor();
         let kind = cursor.u8()?;
         cursor.take(5)?;
@@ -28,7 +28,8 @@ impl Conversion {
         cursor.take(16)?;
         let values: Vec<f64> = (0..count).map_while(|_| cursor.f64()).collect();
         Some(match (kind, &values[..]) {
-            // 7 and 8 say texts that numbers stand for
+            // texts that numbers stand for; but there may be conversions between them
+            (7 | 8, _) if leads_to_another(file, block) => return None,
             (0 | 7 | 8, _) => Self::None,
             (1, [offset, factor, ..]) => Self::Linear(*offset, *factor),
             (2, [a, b, c, d, e, f, ..]) => Self::Rational([*a, *b, *c, *d, *e, *f]),
@@ -69,6 +70,14 @@ impl Conversion {
     }
 }
 
+/// Links of a conversion that are not to what it leads to: its name, unit, comment, and the way back.
+const OTHER_LINKS: usize = 4;
+
+fn leads_to_another(file: &[u8], block: &Block) -> bool {
+    let mut links = block.links().skip(OTHER_LINKS);
+    links.any(|link| Block::read(file, link).is_ok_and(|block| block.kind == *b"CC"))
+}
+
 fn looked_up(pairs: &[[f64; 2]], is_straight: bool, raw: f64) -> f64 {
     let behind = pairs.partition_point(|[key, _]| *key < raw);
     let before = behind.checked_sub(1).and_then(|before| pairs.get(before));
@@ -89,6 +98,28 @@ fn looked_up(pairs: &[[f64; 2]], is_straight: bool, raw: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Bytes of a block before its links.
+    const HEAD: usize = 24;
+
+    #[test]
+    fn texts_between_which_there_is_a_conversion_are_not_read() {
+        let mut bytes = Vec::new();
+        for (kind, link) in [(b"CC", 104u64), (b"CC", 208), (b"TX", 0)] {
+            bytes.extend(b"##");
+            bytes.extend(kind);
+            bytes.extend([0; 4]);
+            let data = [&[7, 0, 0, 0, 1, 0, 0, 0][..], &[0; 32]].concat();
+            let links = [0, 0, 0, 0, link];
+            bytes.extend((HEAD + 8 * links.len() + data.len()).to_le_bytes());
+            bytes.extend(links.len().to_le_bytes());
+            bytes.extend(links.iter().flat_map(|link| link.to_le_bytes()));
+            bytes.extend(data);
+        }
+        let read = |at| Conversion::read(&bytes, &Block::read(&bytes, at).unwrap());
+        assert!(read(0).is_none());
+        assert!(matches!(read(104), Some(Conversion::None)));
+    }
 
     #[test]
     fn what_is_no_value_is_not_looked_up() {

@@ -224,7 +224,7 @@ impl<'a> Scan<'a> {
             0 => Some(Rc::new(Conversion::None)),
             address => {
                 let block = Block::find(file, address, b"CC").ok().flatten()?;
-                Conversion::read(&block).map(Rc::new)
+                Conversion::read(file, &block).map(Rc::new)
             }
         };
         self.conversions.entry(address).or_insert_with(read).clone()
