@@ -19,14 +19,15 @@ pub(super) enum Conversion {
 }
 
 impl Conversion {
-    /// `None` where it is one that is not read.
-    pub(super) fn read(file: &[u8], block: &Block) -> Option<Self> {
+    /// `None` where it is one that is not read, or has more numbers than the `room`, of which they are taken.
+    pub(super) fn read(file: &[u8], block: &Block, room: &mut usize) -> Option<Self> {
         let mut cursor = block.cursor();
         let kind = cursor.u8()?;
         cursor.take(5)?;
         let count = cursor.u16()?;
         cursor.take(16)?;
         let values: Vec<f64> = (0..count).map_while(|_| cursor.f64()).collect();
+        *room = room.checked_sub(values.len())?;
         Some(match (kind, &values[..]) {
             // texts that numbers stand for; but there may be conversions between them
             (7 | 8, _) if leads_to_another(file, block) => return None,
@@ -103,6 +104,19 @@ mod tests {
     const HEAD: usize = 24;
 
     #[test]
+    fn numbers_are_within_a_budget() {
+        let mut bytes = b"##CC\0\0\0\0".to_vec();
+        let data = [&[1, 0, 0, 0, 0, 0, 2, 0][..], &[0; 32]].concat();
+        bytes.extend((HEAD + data.len()).to_le_bytes());
+        bytes.extend([0; 8]);
+        bytes.extend(data);
+        let block = Block::read(&bytes, 0).unwrap();
+        let mut room = 3;
+        assert!(Conversion::read(&bytes, &block, &mut room).is_some());
+        assert!(Conversion::read(&bytes, &block, &mut room).is_none());
+    }
+
+    #[test]
     fn texts_between_which_there_is_a_conversion_are_not_read() {
         let mut bytes = Vec::new();
         for (kind, link) in [(b"CC", 104u64), (b"CC", 208), (b"TX", 0)] {
@@ -116,7 +130,7 @@ mod tests {
             bytes.extend(links.iter().flat_map(|link| link.to_le_bytes()));
             bytes.extend(data);
         }
-        let read = |at| Conversion::read(&bytes, &Block::read(&bytes, at).unwrap());
+        let read = |at| Conversion::read(&bytes, &Block::read(&bytes, at).unwrap(), &mut 0);
         assert!(read(0).is_none());
         assert!(matches!(read(104), Some(Conversion::None)));
     }
