@@ -84,8 +84,13 @@ impl Making {
                 continue;
             }
             if !matches!(found.kind, Kind::Number(_)) {
-                let why = "it does not hold numbers".to_string();
-                self.left_out.push((format!("{name}/{}", found.name), why));
+                let index = found.object.index;
+                let why = match index.is_some_and(|index| index.daqmx.is_some()) {
+                    true => "DAQmx stores it in a way that is not read, such as digital lines",
+                    false => "it does not hold numbers",
+                };
+                let left_out = (format!("{name}/{}", found.name), why.to_string());
+                self.left_out.push(left_out);
                 continue;
             }
             let time = match (found.time, recorded) {

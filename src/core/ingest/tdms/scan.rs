@@ -307,6 +307,16 @@ mod tests {
         bytes
     }
 
+    /// That of a segment with so many bytes of what is said, and of values.
+    fn head(flags: u32, said: usize, values: usize) -> Vec<u8> {
+        let mut bytes = b"TDSm".to_vec();
+        bytes.extend(flags.to_le_bytes());
+        bytes.extend(4713u32.to_le_bytes());
+        bytes.extend(((said + values) as u64).to_le_bytes());
+        bytes.extend((said as u64).to_le_bytes());
+        bytes
+    }
+
     /// A segment of objects, each with what is said of its values; all have values of one byte.
     fn segment(is_new: bool, objects: &[(&str, &[u32])], values: &[u8]) -> Vec<u8> {
         let mut said = (objects.len() as u32).to_le_bytes().to_vec();
@@ -317,11 +327,7 @@ mod tests {
             said.extend([0; 4]);
         }
         let flags = HAS_META_DATA | HAS_DATA | if is_new { HAS_NEW_LIST } else { 0 };
-        let mut bytes = b"TDSm".to_vec();
-        bytes.extend(flags.to_le_bytes());
-        bytes.extend(4713u32.to_le_bytes());
-        bytes.extend((said.len() as u64 + values.len() as u64).to_le_bytes());
-        bytes.extend((said.len() as u64).to_le_bytes());
+        let mut bytes = head(flags, said.len(), values.len());
         bytes.extend(said);
         bytes.extend(values);
         bytes
@@ -347,5 +353,32 @@ mod tests {
         let file = scan(&bytes, &Limits::default()).unwrap();
         assert_eq!(values(&file, 0), [1, 2, 3, 4, 5, 6]);
         assert_eq!(values(&file, 1), [11, 12, 13, 14, 15, 16]);
+    }
+
+    #[test]
+    fn digital_lines_are_left_out_and_what_is_beside_them_is_read() {
+        // one scaler in 17 bytes, then one buffer of rows of one byte
+        let digital: Vec<u8> = [
+            &[0x6a, 0x12, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0][..],
+            &[3, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0],
+            &[0; 17],
+            &[1, 0, 0, 0, 1, 0, 0, 0],
+            // no properties
+            &[0; 4],
+        ]
+        .concat();
+        let mut said = 1u32.to_le_bytes().to_vec();
+        said.extend(text("/'G'/'line'"));
+        said.extend(digital);
+        let mut bytes = head(HAS_META_DATA | HAS_NEW_LIST | HAS_DATA, said.len(), 3);
+        bytes.extend(said);
+        bytes.extend([1, 0, 1]);
+        bytes.extend(segment(true, &[("/'G'/'a'", &[20, 5, 1, 2, 0])], &[1, 2]));
+        let file = scan(&bytes, &Limits::default()).unwrap();
+        assert_eq!((file.count(0), file.count(1)), (3, 2));
+        let groups = super::super::groups::of(file);
+        assert_eq!(groups.groups.len(), 1);
+        assert_eq!(groups.left_out.len(), 1);
+        assert!(groups.left_out[0].1.contains("digital"));
     }
 }
