@@ -122,6 +122,7 @@ impl<'a> Scan<'a> {
             .collect();
         lengths.sort_unstable();
         let lengths = Rc::new(lengths);
+        let mut of_data = None;
         for said in said
             .iter()
             .filter(|said| said.flags & IS_OF_ANY_LENGTH == 0)
@@ -130,9 +131,13 @@ impl<'a> Scan<'a> {
             let mut count = said.count;
             // a file that was not finished does not say how many there are
             if count == 0 && number_width == 0 {
-                count = data::length(self.file, data.link(2), &mut self.blocks)
-                    .checked_div(length)
-                    .unwrap_or(0);
+                let (file, blocks) = (self.file, &mut self.blocks);
+                let of_data =
+                    *of_data.get_or_insert_with(|| data::length(file, data.link(2), blocks));
+                if self.blocks == 0 {
+                    return Err(damaged("its lists of data have no end"));
+                }
+                count = of_data.checked_div(length).unwrap_or(0);
             }
             let records = Records {
                 data: data.link(2),
