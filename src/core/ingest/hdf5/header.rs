@@ -9,6 +9,7 @@ pub(super) mod kind {
     pub(in super::super) const DATASPACE: u16 = 0x01;
     pub(in super::super) const LINK_INFO: u16 = 0x02;
     pub(in super::super) const DATATYPE: u16 = 0x03;
+    pub(in super::super) const FILL: u16 = 0x05;
     pub(in super::super) const LINK: u16 = 0x06;
     pub(in super::super) const LAYOUT: u16 = 0x08;
     pub(in super::super) const FILTERS: u16 = 0x0b;
