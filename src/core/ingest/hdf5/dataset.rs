@@ -12,6 +12,8 @@ use crate::flight::Fault;
 pub(super) struct Dataset<'a> {
     pub(super) dimensions: Vec<u64>,
     pub(super) kind: Type,
+    /// What the dimensions may become.
+    largest: Vec<u64>,
     layout: Layout<'a>,
     filters: Filters,
     /// An element that was not written; `None`: zeros.
@@ -39,7 +41,7 @@ impl<'a> Dataset<'a> {
         };
         let of_message = |kind| header.find(kind).map(|message| file.within(message));
         let dimensions = of_message(kind::DATASPACE).and_then(dimensions);
-        let dimensions = dimensions.ok_or_else(|| damaged("a dataset has no shape"))?;
+        let (dimensions, largest) = dimensions.ok_or_else(|| damaged("a dataset has no shape"))?;
         // a type that stands elsewhere is one that somebody named
         let kind = match of_message(kind::DATATYPE) {
             Some(mut cursor) => Type::read(&mut cursor)
@@ -55,6 +57,7 @@ impl<'a> Dataset<'a> {
         Ok(Some(Self {
             dimensions,
             kind,
+            largest,
             layout,
             filters,
             fill: of_message(kind::FILL).and_then(fill),
@@ -129,8 +132,13 @@ impl<'a> Dataset<'a> {
         if chunk.len() != self.dimensions.len() {
             return Err(wrong());
         }
+        // some chunks have numbers, which leave room for those that may still come
+        let is_numbered = matches!(index, Index::Implicit { .. } | Index::FixedArray { .. });
         let grid = Grid {
-            dimensions: &self.dimensions,
+            dimensions: match is_numbered {
+                true => &self.largest,
+                false => &self.dimensions,
+            },
             chunk,
             length: of_chunk,
         };
@@ -139,6 +147,10 @@ impl<'a> Dataset<'a> {
             return Ok(bytes);
         }
         for found in index.chunks(file, &grid).ok_or_else(wrong)? {
+            let mut places = found.at.iter().zip(&self.dimensions);
+            if places.any(|(at, size)| at >= size) {
+                continue;
+            }
             take(room, of_chunk)?;
             // packing makes little of it longer
             if found.bytes.len() > of_chunk.saturating_mul(2).saturating_add(4096) {
@@ -226,16 +238,16 @@ fn place(
     }
 }
 
-/// The size in every dimension; none of a single value.
-fn dimensions(mut cursor: Cursor) -> Option<Vec<u64>> {
+/// The size in every dimension, and the largest that it may have; none of a single value.
+fn dimensions(mut cursor: Cursor) -> Option<(Vec<u64>, Vec<u64>)> {
     let version = cursor.u8()?;
     let rank = usize::from(cursor.u8()?);
-    cursor.u8()?;
+    let has_largest = cursor.u8()? & 1 != 0;
     match version {
         1 => cursor.take(5)?,
         // 2: there is nothing
         2 => match cursor.u8()? {
-            2 => return Some(vec![0]),
+            2 => return Some((vec![0], vec![0])),
             _ => &[],
         },
         _ => return None,
@@ -243,7 +255,17 @@ fn dimensions(mut cursor: Cursor) -> Option<Vec<u64>> {
     if rank > MOST_DIMENSIONS {
         return None;
     }
-    (0..rank).map(|_| cursor.size()).collect()
+    let mut sizes = || {
+        (0..rank)
+            .map(|_| cursor.size())
+            .collect::<Option<Vec<u64>>>()
+    };
+    let dimensions = sizes()?;
+    let largest = match has_largest {
+        true => sizes()?,
+        false => dimensions.clone(),
+    };
+    Some((dimensions, largest))
 }
 
 /// The element that stands where nothing was written; `None` where it is not said.
@@ -403,5 +425,13 @@ mod tests {
         let messages = [(kind::LAYOUT, layout), fill];
         assert_eq!(read(&[2, 2], &[2, 2], &messages, &[]).unwrap(), [9; 4]);
     }
-    // more
+
+    #[test]
+    fn chunks_are_numbered_by_the_largest_shape() {
+        let (layout, array) = in_array(&[Some([1, 2]), None, Some([3, 4]), None]);
+        assert_eq!(
+            read(&[2, 2], &[2, 4], &[layout], &array).unwrap(),
+            [1, 2, 3, 4]
+        );
+    }
 }
