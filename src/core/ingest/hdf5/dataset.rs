@@ -383,7 +383,7 @@ mod tests {
         bytes.resize(ELSEWHERE, 0);
         bytes.extend(elsewhere);
         let file = File::of(&bytes)?;
-        let header = Header::read(&file, HEADER as u64)?;
+        let header = Header::read(&file, HEADER as u64, &mut 1000)?;
         let dataset = Dataset::read(&file, &header)?.expect("a dataset");
         dataset.bytes(&file, &mut 1000)
     }
