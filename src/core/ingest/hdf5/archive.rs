@@ -3,6 +3,7 @@
 use super::super::mapping::Archive;
 use super::super::matrix::Matrix;
 use super::super::name::identifier_like;
+use super::super::stored::Stored;
 use super::super::text::{LISTED, listed, quoted};
 use super::super::{Limits, code};
 use super::attribute;
@@ -21,6 +22,8 @@ pub(in super::super) struct Datasets<'a> {
     /// What was asked for last: as it is stored, or row by row.
     bytes: Vec<u8>,
     values: Vec<f64>,
+    /// The table that was read last, and its bytes: all of its fields are in them.
+    table: Option<(usize, Vec<u8>)>,
 }
 
 /// A code and a message.
@@ -40,6 +43,7 @@ impl<'a> Datasets<'a> {
             room: room::of(limits),
             bytes: Vec::new(),
             values: Vec::new(),
+            table: None,
         }
     }
 
@@ -128,8 +132,15 @@ impl Archive for Datasets<'_> {
         }
         let of_fault = |fault: Fault| (code_of(&fault), fault.message);
         if let Some(name) = field {
-            let (columns, values) = of_field(dataset, &self.file, name, &mut self.room)?;
-            self.values = values;
+            let field = InTable::find(dataset, name)?;
+            if self.table.as_ref().is_none_or(|(of, _)| *of != at) {
+                self.table = None;
+                let bytes = dataset.bytes(&self.file, &mut self.room);
+                self.table = Some((at, bytes.map_err(of_fault)?));
+            }
+            let bytes = self.table.as_ref().map_or(&[][..], |(_, bytes)| bytes);
+            self.values = field.values(bytes);
+            let columns = field.columns;
             return Ok(Matrix::of_rows(&self.values, columns));
         }
         let Some(number) = dataset.kind.number() else {
@@ -172,46 +183,61 @@ impl Archive for Datasets<'_> {
     }
 }
 
-/// The values of a field of a table, row by row, and how many there are in each.
-fn of_field(
-    dataset: &Dataset,
-    file: &File,
-    name: &str,
-    room: &mut usize,
-) -> Result<(usize, Vec<f64>), Why> {
-    let Type::Compound(fields, width) = &dataset.kind else {
-        return Err((code::UNKNOWN_SOURCE, "it is no table".to_string()));
-    };
-    let is_called = |field: &&Field| field.name == name || identifier_like(&field.name) == name;
-    let Some(field) = fields.iter().find(is_called) else {
-        let message = format!(
-            "there is no field {}; the table has {}",
-            quoted(name),
-            names(fields)
-        );
-        return Err((code::UNKNOWN_SOURCE, message));
-    };
-    let (of, columns) = match &field.kind {
-        Type::Array(of, count) => (of.as_ref(), *count),
-        of => (of, 1),
-    };
-    let Some(number) = of.number() else {
-        let message = format!(
-            "field {} does not hold numbers but {}",
-            quoted(name),
-            of.name()
-        );
-        return Err((code::UNREADABLE_SOURCE, message));
-    };
-    let bytes = dataset.bytes(file, room);
-    let bytes = bytes.map_err(|fault| (code_of(&fault), fault.message))?;
-    let cells = |row: &[u8]| -> Vec<f64> {
-        let cells = row.get(field.at..).unwrap_or_default();
-        let cells = cells.chunks_exact(number.width).take(columns);
-        cells.map(number.read).collect()
-    };
-    let values = bytes.chunks_exact(*width).flat_map(cells);
-    Ok((columns, values.collect()))
+/// Where the numbers of a field are in the rows of a table.
+struct InTable {
+    at: usize,
+    number: Stored,
+    columns: usize,
+    /// Bytes of a row.
+    width: usize,
+}
+
+impl InTable {
+    fn find(dataset: &Dataset, name: &str) -> Result<Self, Why> {
+        let Type::Compound(fields, width) = &dataset.kind else {
+            return Err((code::UNKNOWN_SOURCE, "it is no table".to_string()));
+        };
+        let is_called = |field: &&Field| field.name == name || identifier_like(&field.name) == name;
+        let Some(field) = fields.iter().find(is_called) else {
+            let message = format!(
+                "there is no field {}; the table has {}",
+                quoted(name),
+                names(fields)
+            );
+            return Err((code::UNKNOWN_SOURCE, message));
+        };
+        let (of, columns) = match &field.kind {
+            Type::Array(of, count) => (of.as_ref(), *count),
+            of => (of, 1),
+        };
+        let Some(number) = of.number() else {
+            let message = format!(
+                "field {} does not hold numbers but {}",
+                quoted(name),
+                of.name()
+            );
+            return Err((code::UNREADABLE_SOURCE, message));
+        };
+        Ok(Self {
+            at: field.at,
+            number,
+            columns,
+            width: *width,
+        })
+    }
+
+    /// The values, row by row.
+    fn values(&self, bytes: &[u8]) -> Vec<f64> {
+        let cells = |row: &[u8]| -> Vec<f64> {
+            let cells = row.get(self.at..).unwrap_or_default();
+            let cells = cells.chunks_exact(self.number.width).take(self.columns);
+            cells.map(self.number.read).collect()
+        };
+        bytes
+            .chunks_exact(self.width.max(1))
+            .flat_map(cells)
+            .collect()
+    }
 }
 
 fn names(fields: &[Field]) -> String {
@@ -245,5 +271,53 @@ fn code_of(fault: &Fault) -> &'static str {
         code::TOO_MANY_VALUES => code::TOO_MANY_VALUES,
         code::FORMAT_NOT_READ => code::FORMAT_NOT_READ,
         _ => code::DAMAGED_FILE,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::header::Header;
+    use super::*;
+
+    #[test]
+    fn a_table_is_read_once_for_all_of_its_fields() {
+        let mut bytes = super::super::file::SIGNATURE.to_vec();
+        bytes.extend([2, 8, 8, 0]);
+        bytes.resize(48, 0);
+        // two rows of the fields a and b, each of one byte
+        let space = [&[1, 1, 0, 0, 0, 0, 0, 0][..], &2u64.to_le_bytes()].concat();
+        let number = [0x30, 0, 0, 0, 1, 0, 0, 0, 0, 0, 8, 0];
+        let mut kind = vec![0x36, 2, 0, 0, 2, 0, 0, 0];
+        for (at, name) in [b"a\0", b"b\0"].into_iter().enumerate() {
+            kind.extend(name);
+            kind.push(at as u8);
+            kind.extend(number);
+        }
+        let layout = vec![3, 0, 4, 0, 1, 2, 3, 4];
+        let mut header = Vec::new();
+        for (number, message) in [(1u16, space), (3, kind), (8, layout)] {
+            header.extend(number.to_le_bytes());
+            header.extend((message.len() as u16).to_le_bytes());
+            header.extend([0; 4]);
+            header.extend(message);
+        }
+        bytes.extend([1, 0, 3, 0, 1, 0, 0, 0]);
+        bytes.extend((header.len() as u64).to_le_bytes());
+        bytes.extend(header);
+        let file = File::of(&bytes).unwrap();
+        let header = Header::read(&file, 48, &mut 1000).unwrap();
+        let table = Object {
+            path: vec!["t".to_string()],
+            dataset: Dataset::read(&file, &header).unwrap(),
+            header,
+            class: None,
+        };
+        let mut datasets = Datasets::of(file, vec![table], &Limits::default());
+        datasets.room = 4;
+        for (field, values) in [("a", [1.0, 3.0]), ("b", [2.0, 4.0])] {
+            let path = ["t".to_string(), field.to_string()];
+            datasets.matrix(&path).unwrap();
+            assert_eq!(datasets.values, values);
+        }
     }
 }

@@ -6,14 +6,18 @@ use super::datatype::Type;
 use super::file::{Cursor, File};
 use super::filters::Filters;
 use super::header::{Header, kind};
-use super::index::{self, Grid, Index};
+use super::index::{Grid, Index};
 use crate::flight::Fault;
 
 pub(super) struct Dataset<'a> {
     pub(super) dimensions: Vec<u64>,
     pub(super) kind: Type,
+    /// What the dimensions may become.
+    largest: Vec<u64>,
     layout: Layout<'a>,
     filters: Filters,
+    /// An element that was not written; `None`: zeros.
+    fill: Option<&'a [u8]>,
 }
 
 enum Layout<'a> {
@@ -37,7 +41,7 @@ impl<'a> Dataset<'a> {
         };
         let of_message = |kind| header.find(kind).map(|message| file.within(message));
         let dimensions = of_message(kind::DATASPACE).and_then(dimensions);
-        let dimensions = dimensions.ok_or_else(|| damaged("a dataset has no shape"))?;
+        let (dimensions, largest) = dimensions.ok_or_else(|| damaged("a dataset has no shape"))?;
         // a type that stands elsewhere is one that somebody named
         let kind = match of_message(kind::DATATYPE) {
             Some(mut cursor) => Type::read(&mut cursor)
@@ -53,8 +57,10 @@ impl<'a> Dataset<'a> {
         Ok(Some(Self {
             dimensions,
             kind,
+            largest,
             layout,
             filters,
+            fill: of_message(kind::FILL).and_then(fill),
         }))
     }
 
@@ -83,6 +89,7 @@ impl<'a> Dataset<'a> {
                 let bytes = bytes.get(..length).ok_or_else(cut_off)?;
                 Ok(bytes.to_vec())
             }
+            Layout::Contiguous(address) if file.is_undefined(*address) => self.unwritten(length),
             Layout::Contiguous(address) => {
                 let bytes = file.slice(*address, length).ok_or_else(cut_off)?;
                 Ok(bytes.to_vec())
@@ -90,6 +97,18 @@ impl<'a> Dataset<'a> {
             Layout::Chunked(index, chunk) => self.chunked(file, index, chunk, length, room),
             Layout::NotRead => Err(not_read()),
         }
+    }
+
+    /// So many bytes of a dataset of which nothing was written.
+    fn unwritten(&self, length: usize) -> Result<Vec<u8>, Fault> {
+        let fill = self.fill.unwrap_or_default();
+        if fill.iter().all(|byte| *byte == 0) {
+            return Ok(vec![0; length]);
+        }
+        if fill.len() != self.kind.width() {
+            return Err(damaged("what a dataset is filled with is no element"));
+        }
+        Ok(fill.repeat(length / fill.len()))
     }
 
     fn chunked(
@@ -113,16 +132,25 @@ impl<'a> Dataset<'a> {
         if chunk.len() != self.dimensions.len() {
             return Err(wrong());
         }
+        // some chunks have numbers, which leave room for those that may still come
+        let is_numbered = matches!(index, Index::Implicit { .. } | Index::FixedArray { .. });
         let grid = Grid {
-            dimensions: &self.dimensions,
+            dimensions: match is_numbered {
+                true => &self.largest,
+                false => &self.dimensions,
+            },
             chunk,
             length: of_chunk,
         };
-        let mut bytes = vec![0; length];
+        let mut bytes = self.unwritten(length)?;
         if length == 0 {
             return Ok(bytes);
         }
         for found in index.chunks(file, &grid).ok_or_else(wrong)? {
+            let mut places = found.at.iter().zip(&self.dimensions);
+            if places.any(|(at, size)| at >= size) {
+                continue;
+            }
             take(room, of_chunk)?;
             // packing makes little of it longer
             if found.bytes.len() > of_chunk.saturating_mul(2).saturating_add(4096) {
@@ -210,16 +238,16 @@ fn place(
     }
 }
 
-/// The size in every dimension; none of a single value.
-fn dimensions(mut cursor: Cursor) -> Option<Vec<u64>> {
+/// The size in every dimension, and the largest that it may have; none of a single value.
+fn dimensions(mut cursor: Cursor) -> Option<(Vec<u64>, Vec<u64>)> {
     let version = cursor.u8()?;
     let rank = usize::from(cursor.u8()?);
-    cursor.u8()?;
+    let has_largest = cursor.u8()? & 1 != 0;
     match version {
         1 => cursor.take(5)?,
         // 2: there is nothing
         2 => match cursor.u8()? {
-            2 => return Some(vec![0]),
+            2 => return Some((vec![0], vec![0])),
             _ => &[],
         },
         _ => return None,
@@ -227,7 +255,28 @@ fn dimensions(mut cursor: Cursor) -> Option<Vec<u64>> {
     if rank > MOST_DIMENSIONS {
         return None;
     }
-    (0..rank).map(|_| cursor.size()).collect()
+    let mut sizes = || {
+        (0..rank)
+            .map(|_| cursor.size())
+            .collect::<Option<Vec<u64>>>()
+    };
+    let dimensions = sizes()?;
+    let largest = match has_largest {
+        true => sizes()?,
+        false => dimensions.clone(),
+    };
+    Some((dimensions, largest))
+}
+
+/// The element that stands where nothing was written; `None` where it is not said.
+fn fill(mut cursor: Cursor<'_>) -> Option<&[u8]> {
+    let is_said = match cursor.u8()? {
+        1 | 2 => cursor.take(3)?[2] != 0,
+        3 => cursor.u8()? & 0x20 != 0,
+        _ => false,
+    };
+    let length = is_said.then(|| cursor.u32()).flatten()?;
+    cursor.take(length as usize)
 }
 
 fn layout(mut cursor: Cursor<'_>) -> Option<Layout<'_>> {
@@ -284,12 +333,105 @@ fn chunked<'a>(cursor: &mut Cursor<'a>) -> Option<Layout<'a>> {
     let is_written = match index {
         Index::Single { address, .. }
         | Index::Implicit { address }
-        | Index::FixedArray { address } => !index::is_undefined(address),
+        | Index::FixedArray { address } => !cursor.is_undefined(address),
         _ => true,
     };
-    let tree = Index::Tree { address: u64::MAX };
     Some(Layout::Chunked(
-        if is_written { index } else { tree },
+        if is_written { index } else { Index::Empty },
         chunk,
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where a header is, and what is elsewhere.
+    const HEADER: usize = 48;
+    const ELSEWHERE: usize = 512;
+    const NOWHERE: u64 = u64::MAX;
+
+    fn words(words: &[u64]) -> Vec<u8> {
+        words.iter().flat_map(|word| word.to_le_bytes()).collect()
+    }
+
+    /// The bytes of a dataset of bytes with a shape, the largest one, and some messages.
+    fn read(
+        shape: &[u64],
+        largest: &[u64],
+        messages: &[(u16, Vec<u8>)],
+        elsewhere: &[u8],
+    ) -> Result<Vec<u8>, Fault> {
+        let mut space = vec![1, shape.len() as u8, 1, 0, 0, 0, 0, 0];
+        space.extend(words(shape));
+        space.extend(words(largest));
+        let of_bytes = vec![0x10, 0, 0, 0, 1, 0, 0, 0, 0, 0, 8, 0];
+        let own = [(kind::DATASPACE, space), (kind::DATATYPE, of_bytes)];
+        let mut header = Vec::new();
+        for (kind, message) in own.iter().chain(messages) {
+            header.extend(kind.to_le_bytes());
+            header.extend((message.len() as u16).to_le_bytes());
+            header.extend([0; 4]);
+            header.extend(message);
+        }
+        let mut bytes = super::super::file::SIGNATURE.to_vec();
+        bytes.extend([2, 8, 8, 0]);
+        bytes.resize(HEADER, 0);
+        bytes.extend([1, 0, 0, 0, 1, 0, 0, 0]);
+        bytes.extend((header.len() as u64).to_le_bytes());
+        bytes.extend(header);
+        bytes.resize(ELSEWHERE, 0);
+        bytes.extend(elsewhere);
+        let file = File::of(&bytes)?;
+        let header = Header::read(&file, HEADER as u64, &mut 1000)?;
+        let dataset = Dataset::read(&file, &header)?.expect("a dataset");
+        dataset.bytes(&file, &mut 1000)
+    }
+
+    /// Chunks of one row and two columns in an array of so many, of which some are written.
+    fn in_array(chunks: &[Option<[u8; 2]>]) -> ((u16, Vec<u8>), Vec<u8>) {
+        let mut layout = vec![4, 2, 0, 3, 1, 1, 2, 1, 3, 10];
+        layout.extend(words(&[ELSEWHERE as u64]));
+        let block = ELSEWHERE + 24;
+        let mut array = b"FAHD\0\0\x08\x0a".to_vec();
+        array.extend(words(&[chunks.len() as u64, block as u64]));
+        array.extend(b"FADB\0\0");
+        array.extend(words(&[ELSEWHERE as u64]));
+        let start = block + 14 + 8 * chunks.len();
+        let mut values: Vec<u8> = Vec::new();
+        for chunk in chunks {
+            let address = chunk.map_or(NOWHERE, |_| (start + values.len()) as u64);
+            array.extend(words(&[address]));
+            values.extend(chunk.iter().flatten());
+        }
+        array.extend(values);
+        ((kind::LAYOUT, layout), array)
+    }
+
+    #[test]
+    fn what_was_not_written_has_the_value_that_the_file_says() {
+        let (layout, array) = in_array(&[Some([1, 2]), None]);
+        let of_chunks = |fill: &[u8]| {
+            let messages = [layout.clone(), (kind::FILL, fill.to_vec())];
+            read(&[2, 2], &[2, 2], &messages, &array).unwrap()
+        };
+        assert_eq!(of_chunks(&[3, 0x20, 1, 0, 0, 0, 7]), [1, 2, 7, 7]);
+        assert_eq!(of_chunks(&[2, 1, 0, 1, 1, 0, 0, 0, 7]), [1, 2, 7, 7]);
+        assert_eq!(of_chunks(&[2, 1, 0, 0]), [1, 2, 0, 0]);
+        assert_eq!(of_chunks(&[3, 0]), [1, 2, 0, 0]);
+        let mut layout = vec![3, 1];
+        layout.extend(words(&[NOWHERE, 4]));
+        let fill = (kind::FILL, vec![1, 1, 0, 1, 1, 0, 0, 0, 9]);
+        let messages = [(kind::LAYOUT, layout), fill];
+        assert_eq!(read(&[2, 2], &[2, 2], &messages, &[]).unwrap(), [9; 4]);
+    }
+
+    #[test]
+    fn chunks_are_numbered_by_the_largest_shape() {
+        let (layout, array) = in_array(&[Some([1, 2]), None, Some([3, 4]), None]);
+        assert_eq!(
+            read(&[2, 2], &[2, 4], &[layout], &array).unwrap(),
+            [1, 2, 3, 4]
+        );
+    }
 }

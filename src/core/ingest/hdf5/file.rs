@@ -96,6 +96,11 @@ impl<'a> File<'a> {
         self.cursor(address)?.take(length)
     }
 
+    /// Whether an address leads nowhere.
+    pub(super) fn is_undefined(&self, address: u64) -> bool {
+        is_undefined(address, self.offset)
+    }
+
     pub(super) fn len(&self) -> usize {
         self.bytes.len()
     }
@@ -170,11 +175,34 @@ impl<'a> Cursor<'a> {
         self.offset
     }
 
+    /// Whether an address leads nowhere.
+    pub(super) fn is_undefined(&self, address: u64) -> bool {
+        is_undefined(address, self.offset)
+    }
+
     /// A text up to a zero byte, behind which reading goes on.
     pub(super) fn text(&mut self) -> Option<String> {
         let end = memchr::memchr(0, self.rest)?;
         let text = self.take(end)?;
         self.take(1)?;
         Some(String::from_utf8_lossy(text).into_owned())
+    }
+}
+
+/// All bits of an address that leads nowhere are set, of as many bytes as addresses have.
+fn is_undefined(address: u64, width: usize) -> bool {
+    let bits = u32::try_from(width.saturating_mul(8)).unwrap_or(u64::BITS);
+    address == u64::MAX >> u64::BITS.saturating_sub(bits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_address_that_leads_nowhere_is_as_wide_as_others() {
+        assert!(is_undefined(u64::MAX, 8) && is_undefined(0xffff_ffff, 4));
+        assert!(!is_undefined(0xffff_ffff, 8) && !is_undefined(0xffff, 4));
+        assert!(is_undefined(0xffff, 2));
     }
 }

@@ -102,20 +102,26 @@ impl<'a> Reading<'_, 'a> {
         self.add(title, dataset, &kind)?;
         for at in 0..MOST_BLOCKS {
             let part = |name: &str| {
-                let found = member(objects, frame, &format!("block{at}_{name}"));
-                found.and_then(|object| object.dataset.as_ref())
+                let found = member(objects, frame, &format!("block{at}_{name}"))?;
+                Some((found, found.dataset.as_ref()?))
             };
-            let Some((items, values)) = part("items").zip(part("values")) else {
+            let Some(((_, items), (object, values))) = part("items").zip(part("values")) else {
                 break;
             };
             let titles = self.texts(items)?;
-            self.block(titles, values)?;
+            let kind = attribute::text(self.file, &object.header, "value_type");
+            self.block(titles, values, &kind.unwrap_or_default())?;
         }
         Ok(())
     }
 
-    /// Columns beside each other in one dataset.
-    fn block(&mut self, titles: Vec<String>, values: &Dataset<'a>) -> Result<(), Fault> {
+    /// Columns beside each other in one dataset; `kind` is what pandas says of them.
+    fn block(
+        &mut self,
+        titles: Vec<String>,
+        values: &Dataset<'a>,
+        kind: &str,
+    ) -> Result<(), Fault> {
         self.check(self.columns.list.len() + titles.len())?;
         let Some(number) = values.kind.number() else {
             let why = format!("it holds {}, not numbers", values.kind.name());
@@ -133,6 +139,12 @@ impl<'a> Reading<'_, 'a> {
         let row = number.width * titles.len();
         for (at, title) in titles.into_iter().enumerate() {
             let from = at * number.width;
+            if is_of_time(kind) {
+                let cells = bytes.chunks_exact(row);
+                let cells = cells.map(|row| row.get(from..from + number.width).unwrap_or_default());
+                self.cells(title, &values.kind, cells, kind);
+                continue;
+            }
             let cells = bytes.chunks_exact(row);
             let cells = cells.map(|row| {
                 row.get(from..from + number.width)
@@ -154,20 +166,16 @@ impl<'a> Reading<'_, 'a> {
         };
         let text =
             |name: &str| attribute::text(self.file, &object.header, name).unwrap_or_default();
-        // the titles of what pandas puts into one field, and what its index is
+        // the titles of what pandas puts into one field, and what its index or the field is
         let described: Vec<(Vec<String>, String)> = fields
             .iter()
             .map(|field| {
                 let titles = pickled(&text(&format!("{}_kind", field.name)));
-                let is_index = field.name == "index";
-                (
-                    titles,
-                    if is_index {
-                        text("index_kind")
-                    } else {
-                        String::new()
-                    },
-                )
+                let kind = match field.name == "index" {
+                    true => text("index_kind"),
+                    false => text(&format!("{}_dtype", field.name)),
+                };
+                (titles, kind)
             })
             .collect();
         self.columns.rows = dataset.count().unwrap_or(usize::MAX);
@@ -204,7 +212,7 @@ impl<'a> Reading<'_, 'a> {
         Ok(())
     }
 
-    /// Adds a column of stored values; `kind` is what pandas says of an index.
+    /// Adds a column of stored values; `kind` is what pandas says of them.
     fn cells<'v>(
         &mut self,
         title: String,
@@ -212,11 +220,18 @@ impl<'a> Reading<'_, 'a> {
         values: impl Iterator<Item = &'v [u8]>,
         kind: &str,
     ) {
+        let kind = without_zone(kind);
+        let is_known = instants(&kind).is_some() || !duration(&kind).is_empty();
+        if is_of_time(&kind) && !(is_known && matches!(of, Type::Long)) {
+            let why = format!("it is of {}, which is not read", quoted(&kind));
+            self.columns.left_out.push((title, why));
+            return;
+        }
         let long = |bytes: &[u8]| bytes.try_into().map_or(NONE, i64::from_le_bytes);
         match of {
             Type::Long => {
                 let longs = values.map(long);
-                let (cells, unit) = match instants(kind) {
+                let (cells, unit) = match instants(&kind) {
                     Some(each) => {
                         let longs = longs.map(|value| match value {
                             NONE => NONE,
@@ -224,7 +239,7 @@ impl<'a> Reading<'_, 'a> {
                         });
                         (Cells::Instants(longs.collect()), "")
                     }
-                    None => (Cells::Integers(longs.collect()), duration(kind)),
+                    None => (Cells::Integers(longs.collect()), duration(&kind)),
                 };
                 self.push(title, unit, cells);
             }
@@ -274,6 +289,19 @@ impl<'a> Reading<'_, 'a> {
     }
 }
 
+/// Whether pandas counts instants or durations.
+fn is_of_time(kind: &str) -> bool {
+    kind.starts_with("datetime64") || kind.starts_with("timedelta64")
+}
+
+/// Instants count from 1970 in Greenwich, whatever zone they are shown in: `datetime64[ns, UTC]`.
+fn without_zone(kind: &str) -> String {
+    match kind.split_once(',') {
+        Some((kind, _)) if is_of_time(kind) => format!("{kind}]"),
+        _ => kind.to_string(),
+    }
+}
+
 /// Nanoseconds of a unit in which pandas counts from 1970.
 fn instants(kind: &str) -> Option<i64> {
     match kind {
@@ -313,4 +341,40 @@ fn pickled(text: &str) -> Vec<String> {
         line.strip_prefix('V').map(str::to_string)
     });
     texts.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_no_counts() {
+        let bytes = super::super::file::SIGNATURE.to_vec();
+        let bytes = [&bytes[..], &[2, 8, 8, 0], &[0; 36]].concat();
+        let file = File::of(&bytes).unwrap();
+        let limits = Limits::default();
+        let mut reading = Reading {
+            file: &file,
+            limits: &limits,
+            room: 0,
+            columns: Columns::default(),
+        };
+        let counts = [7i64.to_le_bytes(), i64::MIN.to_le_bytes()];
+        let mut add = |kind: &str| {
+            let values = counts.iter().map(|count| &count[..]);
+            reading.cells(kind.to_string(), &Type::Long, values, kind);
+        };
+        add("datetime64[us, UTC]");
+        add("timedelta64[ms]");
+        add("int64");
+        add("datetime64[D]");
+        let columns = &reading.columns;
+        let instants = Cells::Instants(vec![7000, NONE]);
+        assert!(matches!((&columns.list[0].cells, &instants),
+            (Cells::Instants(one), Cells::Instants(other)) if one == other));
+        assert_eq!(columns.list[1].unit, "ms");
+        assert_eq!(columns.list[2].unit, "");
+        assert_eq!(columns.list.len(), 3);
+        assert_eq!(columns.left_out[0].0, "datetime64[D]");
+    }
 }

@@ -9,12 +9,24 @@ pub(super) mod kind {
     pub(in super::super) const DATASPACE: u16 = 0x01;
     pub(in super::super) const LINK_INFO: u16 = 0x02;
     pub(in super::super) const DATATYPE: u16 = 0x03;
+    pub(in super::super) const FILL: u16 = 0x05;
     pub(in super::super) const LINK: u16 = 0x06;
     pub(in super::super) const LAYOUT: u16 = 0x08;
     pub(in super::super) const FILTERS: u16 = 0x0b;
     pub(in super::super) const ATTRIBUTE: u16 = 0x0c;
     pub(super) const CONTINUATION: u16 = 0x10;
     pub(in super::super) const SYMBOL_TABLE: u16 = 0x11;
+    pub(super) const ALL: [u16; 9] = [
+        DATASPACE,
+        LINK_INFO,
+        DATATYPE,
+        FILL,
+        LINK,
+        LAYOUT,
+        FILTERS,
+        ATTRIBUTE,
+        SYMBOL_TABLE,
+    ];
 }
 
 pub(super) struct Message<'a> {
@@ -33,13 +45,16 @@ const MOST_MESSAGES: usize = 20_000;
 const SHARED: u8 = 2;
 
 impl<'a> Header<'a> {
+    /// So many bytes of `room` are taken as it has.
+    ///
     /// # Errors
-    /// It is damaged.
-    pub(super) fn read(file: &File<'a>, address: u64) -> Result<Self, Fault> {
-        Self::of(file, address).ok_or_else(|| damaged("the header of an object cannot be read"))
+    /// It is damaged, or there is less room.
+    pub(super) fn read(file: &File<'a>, address: u64, room: &mut usize) -> Result<Self, Fault> {
+        Self::of(file, address, room)
+            .ok_or_else(|| damaged("the header of an object cannot be read"))
     }
 
-    fn of(file: &File<'a>, address: u64) -> Option<Self> {
+    fn of(file: &File<'a>, address: u64, room: &mut usize) -> Option<Self> {
         let mut cursor = file.cursor(address)?;
         let is_second = cursor.rest().starts_with(b"OHDR");
         let (first, is_ordered) = match is_second {
@@ -51,6 +66,7 @@ impl<'a> Header<'a> {
         let (mut read, mut count) = (0, 0);
         while let Some(block) = blocks.get(read).copied() {
             read += 1;
+            *room = room.checked_sub(block.len())?;
             let mut cursor = file.within(block);
             while let Some((message, flags)) = message(&mut cursor, is_second, is_ordered) {
                 if message.kind == kind::CONTINUATION {
@@ -61,7 +77,7 @@ impl<'a> Header<'a> {
                         true => block.strip_prefix(b"OCHK")?,
                         false => block,
                     });
-                } else if flags & SHARED == 0 {
+                } else if flags & SHARED == 0 && kind::ALL.contains(&message.kind) {
                     messages.push(message);
                 }
                 count += 1;
@@ -84,6 +100,11 @@ impl<'a> Header<'a> {
     pub(super) fn find(&self, kind: u16) -> Option<&'a [u8]> {
         self.all(kind).next()
     }
+}
+
+/// Bytes of all headers of a file: several objects may have one.
+pub(super) fn room(file: &File) -> usize {
+    file.len().saturating_mul(4).saturating_add(1 << 20)
 }
 
 /// The messages of a header of version 1.
@@ -131,4 +152,26 @@ fn message<'a>(
     }
     let bytes = cursor.take(length.into())?;
     Some((Message { kind, bytes }, flags))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headers_are_within_a_budget_and_have_what_is_read() {
+        let mut bytes = super::super::file::SIGNATURE.to_vec();
+        bytes.extend([2, 8, 8, 0]);
+        bytes.resize(48, 0);
+        // two messages without bytes: nothing, and a filter
+        bytes.extend([1, 0, 2, 0, 1, 0, 0, 0, 16, 0, 0, 0, 0, 0, 0, 0]);
+        bytes.extend([0, 0, 0, 0, 0, 0, 0, 0]);
+        bytes.extend([0x0b, 0, 0, 0, 0, 0, 0, 0]);
+        let file = File::of(&bytes).unwrap();
+        let mut room = 31;
+        let header = Header::read(&file, 48, &mut room).unwrap();
+        assert_eq!(header.messages.len(), 1);
+        assert!(header.find(kind::FILTERS).is_some());
+        assert!(Header::read(&file, 48, &mut room).is_err());
+    }
 }

@@ -32,6 +32,8 @@ pub(super) enum Index {
     FixedArray {
         address: u64,
     },
+    /// No chunk was written.
+    Empty,
     NotRead,
 }
 
@@ -86,7 +88,7 @@ impl Index {
                     most: count,
                     nodes: 0,
                 };
-                if !is_undefined(address) {
+                if !file.is_undefined(address) {
                     tree.node(address, None)?;
                 }
                 Some(tree.chunks)
@@ -111,14 +113,10 @@ impl Index {
                 (0..count).map(chunk).collect()
             }
             Self::FixedArray { address } => fixed_array(file, grid, address, count),
+            Self::Empty => Some(Vec::new()),
             Self::NotRead => None,
         }
     }
-}
-
-/// An address that leads nowhere, whatever its width.
-pub(super) fn is_undefined(address: u64) -> bool {
-    [u64::MAX, 0xffff_ffff, 0xffff].contains(&address)
 }
 
 /// A tree of chunks by their places.
@@ -228,7 +226,7 @@ fn entry<'a>(
         length = usize::try_from(cursor.uint(of_length)?).ok()?;
         mask = cursor.u32()?;
     }
-    if is_undefined(address) {
+    if file.is_undefined(address) {
         return Some(None);
     }
     Some(Some(Chunk {

@@ -5,7 +5,7 @@ use super::attribute;
 use super::dataset::Dataset;
 use super::file::File;
 use super::group;
-use super::header::Header;
+use super::header::{self, Header};
 use crate::flight::Fault;
 
 /// A dataset or a group.
@@ -29,9 +29,10 @@ const INTERNAL: [&str; 3] = ["#refs#", "#subsystem#", "_i_table"];
 /// # Errors
 /// The file is damaged, or has more in it than the limit of columns.
 pub(super) fn all<'a>(file: &File<'a>, limits: &Limits) -> Result<Vec<Object<'a>>, Fault> {
+    let mut room = header::room(file);
     let root = Object {
         path: Vec::new(),
-        header: Header::read(file, file.root)?,
+        header: Header::read(file, file.root, &mut room)?,
         dataset: None,
         class: None,
     };
@@ -48,7 +49,7 @@ pub(super) fn all<'a>(file: &File<'a>, limits: &Limits) -> Result<Vec<Object<'a>
             if INTERNAL.contains(&name.as_str()) {
                 continue;
             }
-            let header = Header::read(file, address)?;
+            let header = Header::read(file, address, &mut room)?;
             let mut path = path.clone();
             path.push(super::super::text::short_message(&name));
             objects.push(Object {

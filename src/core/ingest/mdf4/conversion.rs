@@ -19,16 +19,18 @@ pub(super) enum Conversion {
 }
 
 impl Conversion {
-    /// `None` where it is one that is not read.
-    pub(super) fn read(block: &Block) -> Option<Self> {
+    /// `None` where it is one that is not read, or has more numbers than the `room`, of which they are taken.
+    pub(super) fn read(file: &[u8], block: &Block, room: &mut usize) -> Option<Self> {
         let mut cursor = block.cursor();
         let kind = cursor.u8()?;
         cursor.take(5)?;
         let count = cursor.u16()?;
         cursor.take(16)?;
         let values: Vec<f64> = (0..count).map_while(|_| cursor.f64()).collect();
+        *room = room.checked_sub(values.len())?;
         Some(match (kind, &values[..]) {
-            // 7 and 8 say texts that numbers stand for
+            // texts that numbers stand for; but there may be conversions between them
+            (7 | 8, _) if leads_to_another(file, block) => return None,
             (0 | 7 | 8, _) => Self::None,
             (1, [offset, factor, ..]) => Self::Linear(*offset, *factor),
             (2, [a, b, c, d, e, f, ..]) => Self::Rational([*a, *b, *c, *d, *e, *f]),
@@ -46,7 +48,11 @@ impl Conversion {
         })
     }
 
+    /// NaN, which is no value, remains NaN.
     pub(super) fn apply(&self, raw: f64) -> f64 {
+        if raw.is_nan() {
+            return f64::NAN;
+        }
         match self {
             Self::None => raw,
             Self::Linear(offset, factor) => offset + factor * raw,
@@ -63,6 +69,14 @@ impl Conversion {
             }
         }
     }
+}
+
+/// Links of a conversion that are not to what it leads to: its name, unit, comment, and the way back.
+const OTHER_LINKS: usize = 4;
+
+fn leads_to_another(file: &[u8], block: &Block) -> bool {
+    let mut links = block.links().skip(OTHER_LINKS);
+    links.any(|link| Block::read(file, link).is_ok_and(|block| block.kind == *b"CC"))
 }
 
 fn looked_up(pairs: &[[f64; 2]], is_straight: bool, raw: f64) -> f64 {
@@ -85,6 +99,53 @@ fn looked_up(pairs: &[[f64; 2]], is_straight: bool, raw: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Bytes of a block before its links.
+    const HEAD: usize = 24;
+
+    #[test]
+    fn numbers_are_within_a_budget() {
+        let mut bytes = b"##CC\0\0\0\0".to_vec();
+        let data = [&[1, 0, 0, 0, 0, 0, 2, 0][..], &[0; 32]].concat();
+        bytes.extend((HEAD + data.len()).to_le_bytes());
+        bytes.extend([0; 8]);
+        bytes.extend(data);
+        let block = Block::read(&bytes, 0).unwrap();
+        let mut room = 3;
+        assert!(Conversion::read(&bytes, &block, &mut room).is_some());
+        assert!(Conversion::read(&bytes, &block, &mut room).is_none());
+    }
+
+    #[test]
+    fn texts_between_which_there_is_a_conversion_are_not_read() {
+        let mut bytes = Vec::new();
+        for (kind, link) in [(b"CC", 104u64), (b"CC", 208), (b"TX", 0)] {
+            bytes.extend(b"##");
+            bytes.extend(kind);
+            bytes.extend([0; 4]);
+            let data = [&[7, 0, 0, 0, 1, 0, 0, 0][..], &[0; 32]].concat();
+            let links = [0, 0, 0, 0, link];
+            bytes.extend((HEAD + 8 * links.len() + data.len()).to_le_bytes());
+            bytes.extend(links.len().to_le_bytes());
+            bytes.extend(links.iter().flat_map(|link| link.to_le_bytes()));
+            bytes.extend(data);
+        }
+        let read = |at| Conversion::read(&bytes, &Block::read(&bytes, at).unwrap(), &mut 0);
+        assert!(read(0).is_none());
+        assert!(matches!(read(104), Some(Conversion::None)));
+    }
+
+    #[test]
+    fn what_is_no_value_is_not_looked_up() {
+        let pairs = vec![[0.0, 10.0], [2.0, 20.0]];
+        for is_straight in [true, false] {
+            let pairs = pairs.clone();
+            let table = Conversion::Table { pairs, is_straight };
+            assert!(table.apply(f64::NAN).is_nan());
+        }
+        let ranges = Conversion::Ranges(vec![[0.0, 1.0, 5.0]], 7.0);
+        assert!(ranges.apply(f64::NAN).is_nan());
+    }
 
     #[test]
     fn numbers_are_converted() {

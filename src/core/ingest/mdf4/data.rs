@@ -61,6 +61,9 @@ pub(super) fn length(file: &[u8], address: u64, left: &mut usize) -> usize {
             let of_link = Block::read(file, address).map_or(0, |block| of_block(&block));
             length = length.saturating_add(of_link);
             *left = left.saturating_sub(1);
+            if *left == 0 {
+                return length;
+            }
         }
         list = block.link(0);
         *left = left.saturating_sub(1);
@@ -195,5 +198,29 @@ impl<'a> Packed<'a> {
             }
         }
         Some(plain)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_list_of_data_is_looked_at_within_a_budget() {
+        // a list of four, all of which are one block of five bytes; nothing is at address 0
+        let mut bytes = vec![0; 8];
+        bytes.extend(b"##DL\0\0\0\0");
+        bytes.extend(64u64.to_le_bytes());
+        bytes.extend(5u64.to_le_bytes());
+        let links = [0u64, 72, 72, 72, 72];
+        bytes.extend(links.iter().flat_map(|link| link.to_le_bytes()));
+        bytes.extend(b"##DT\0\0\0\0");
+        bytes.extend(29u64.to_le_bytes());
+        bytes.extend(0u64.to_le_bytes());
+        bytes.extend([0; 5]);
+        let mut left = 100;
+        assert_eq!((length(&bytes, 8, &mut left), left), (20, 95));
+        left = 2;
+        assert_eq!((length(&bytes, 8, &mut left), left), (10, 0));
     }
 }

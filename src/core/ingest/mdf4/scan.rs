@@ -30,6 +30,8 @@ pub(super) fn scan<'a>(bytes: &'a [u8], limits: &Limits) -> Result<Groups<Values
         wanted: Vec::new(),
         left_out: Vec::new(),
         conversions: HashMap::new(),
+        // conversions that overlap in the file would be more in memory than it is
+        numbers: bytes.len() / size_of::<f64>(),
         left: MOST,
         blocks: data::MOST_BLOCKS,
     };
@@ -61,6 +63,8 @@ struct Scan<'a> {
     left_out: Vec<(String, String)>,
     /// By their addresses: many channels may have one. `None`: it is one that is not read.
     conversions: HashMap<u64, Option<Rc<Conversion>>>,
+    /// Numbers that conversions may still have.
+    numbers: usize,
     /// Groups and channels that may still follow, and blocks of data that may still be looked at.
     left: usize,
     blocks: usize,
@@ -118,6 +122,7 @@ impl<'a> Scan<'a> {
             .collect();
         lengths.sort_unstable();
         let lengths = Rc::new(lengths);
+        let mut of_data = None;
         for said in said
             .iter()
             .filter(|said| said.flags & IS_OF_ANY_LENGTH == 0)
@@ -126,9 +131,13 @@ impl<'a> Scan<'a> {
             let mut count = said.count;
             // a file that was not finished does not say how many there are
             if count == 0 && number_width == 0 {
-                count = data::length(self.file, data.link(2), &mut self.blocks)
-                    .checked_div(length)
-                    .unwrap_or(0);
+                let (file, blocks) = (self.file, &mut self.blocks);
+                let of_data =
+                    *of_data.get_or_insert_with(|| data::length(file, data.link(2), blocks));
+                if self.blocks == 0 {
+                    return Err(damaged("its lists of data have no end"));
+                }
+                count = of_data.checked_div(length).unwrap_or(0);
             }
             let records = Records {
                 data: data.link(2),
@@ -219,12 +228,12 @@ impl<'a> Scan<'a> {
     }
 
     fn conversion(&mut self, address: u64) -> Option<Rc<Conversion>> {
-        let file = self.file;
+        let (file, numbers) = (self.file, &mut self.numbers);
         let read = || match address {
             0 => Some(Rc::new(Conversion::None)),
             address => {
                 let block = Block::find(file, address, b"CC").ok().flatten()?;
-                Conversion::read(&block).map(Rc::new)
+                Conversion::read(file, &block, numbers).map(Rc::new)
             }
         };
         self.conversions.entry(address).or_insert_with(read).clone()

@@ -5,7 +5,7 @@ use super::super::label::Label;
 use super::super::units::RecordedUnit;
 use super::layout::Kind;
 use super::object::Object;
-use super::property::Value;
+use super::property::{Properties, Value};
 use super::samples::{Values, Wanted};
 use super::scale::Scales;
 use super::scan::File;
@@ -78,14 +78,25 @@ impl Making {
         let clock = found.iter().find_map(|found| Some((found, found.clock()?)));
         let clock = clock.filter(|_| found.iter().any(|found| found.time.is_none()));
         let recorded =
-            clock.map(|(found, unit)| (found.rows, found.at, self.want(found, Some(unit))));
+            clock.map(|(found, unit)| (found.rows, found.at, self.want(file, found, Some(unit))));
         for found in &found {
-            if recorded.is_some_and(|(_, at, _)| at == found.at) {
+            if let Some((_, at, wanted)) = recorded
+                && at == found.at
+            {
+                if wanted.is_none() {
+                    let why = "it is scaled in a way that is not read".to_string();
+                    self.left_out.push((format!("{name}/{}", found.name), why));
+                }
                 continue;
             }
             if !matches!(found.kind, Kind::Number(_)) {
-                let why = "it does not hold numbers".to_string();
-                self.left_out.push((format!("{name}/{}", found.name), why));
+                let index = found.object.index;
+                let why = match index.is_some_and(|index| index.daqmx.is_some()) {
+                    true => "DAQmx stores it in a way that is not read, such as digital lines",
+                    false => "it does not hold numbers",
+                };
+                let left_out = (format!("{name}/{}", found.name), why.to_string());
+                self.left_out.push(left_out);
                 continue;
             }
             let time = match (found.time, recorded) {
@@ -93,7 +104,7 @@ impl Making {
                 (None, Some((rows, _, Some(at)))) if rows == found.rows => Time::Recorded(at),
                 _ => Time::Unknown,
             };
-            let Some(at) = self.want(found, None) else {
+            let Some(at) = self.want(file, found, None) else {
                 let why = "it is scaled in a way that is not read".to_string();
                 self.left_out.push((format!("{name}/{}", found.name), why));
                 continue;
@@ -117,8 +128,11 @@ impl Making {
     }
 
     /// What a channel will be read by; `None` where it is scaled in a way that is not read.
-    fn want(&mut self, found: &Found, unit: Option<Unit>) -> Option<usize> {
-        let scales = Scales::of(&found.object.properties)?;
+    fn want(&mut self, file: &File, found: &Found, unit: Option<Unit>) -> Option<usize> {
+        let scales = match found.kind {
+            Kind::Number(_) => Scales::first(file.above(found.object))?,
+            _ => Scales::default(),
+        };
         self.wanted.push(Wanted {
             object: found.at,
             scales,
@@ -192,6 +206,19 @@ impl Found<'_> {
 }
 
 impl File<'_> {
+    /// The properties of an object, of its group, and of the file.
+    fn above<'f>(&'f self, object: &'f Object) -> impl Iterator<Item = &'f Properties> {
+        let paths = (0..object.path.len())
+            .rev()
+            .map(|length| &object.path[..length]);
+        let above = paths.filter_map(|path| {
+            let is_at = |object: &&Object| object.path == path;
+            self.objects.iter().find(is_at)
+        });
+        let above = above.map(|object| &object.properties);
+        std::iter::once(&object.properties).chain(above)
+    }
+
     /// What the values of an object are, where they are the same everywhere.
     fn kind(&self, at: usize) -> Kind {
         let kinds = self.segments.iter().filter_map(|segment| {

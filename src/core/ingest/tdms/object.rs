@@ -28,7 +28,8 @@ pub(super) struct Index {
 /// Values as a device of DAQmx gives them, those of all channels side by side.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Daqmx {
-    kind: u32,
+    /// `None` where they are stored in a way that is not read.
+    kind: Option<u32>,
     pub(super) at: usize,
     /// Bytes of all channels.
     pub(super) row: usize,
@@ -43,7 +44,9 @@ pub(super) enum Said {
 
 const NO_DATA: u32 = 0xffff_ffff;
 const AS_BEFORE: u32 = 0;
-const DAQMX: [u32; 2] = [0x1269, 0x1369];
+/// Numbers of a device of DAQmx; and bits of digital lines, by two numbers that are in use.
+const DAQMX: u32 = 0x1269;
+const DIGITAL: [u32; 2] = [0x126a, 0x1369];
 /// Channels that are measured together, or scalers of one.
 const MOST_SCALERS: u32 = 10_000;
 
@@ -53,7 +56,8 @@ impl Said {
         Some(match head {
             NO_DATA => Self::None,
             AS_BEFORE => Self::AsBefore,
-            _ if DAQMX.contains(&head) => Self::Index(daqmx(cursor)?),
+            DAQMX => Self::Index(daqmx(cursor, false)?),
+            _ if DIGITAL.contains(&head) => Self::Index(daqmx(cursor, true)?),
             _ => {
                 let kind = cursor.u32()?;
                 cursor.u32()?;
@@ -73,7 +77,7 @@ impl Said {
     }
 }
 
-fn daqmx(cursor: &mut Cursor) -> Option<Index> {
+fn daqmx(cursor: &mut Cursor, is_digital: bool) -> Option<Index> {
     let kind = cursor.u32()?;
     cursor.u32()?;
     let count = cursor.count()?;
@@ -81,42 +85,43 @@ fn daqmx(cursor: &mut Cursor) -> Option<Index> {
     let mut first = None;
     for _ in 0..scalers.min(MOST_SCALERS) {
         let (kind, buffer, at) = (cursor.u32()?, cursor.u32()?, cursor.u32()?);
-        cursor.take(8)?;
+        // a map of bits, and the number of the scaler
+        cursor.take(if is_digital { 5 } else { 8 })?;
         first = first.or(Some((kind, buffer, at)));
     }
     let buffers = cursor.u32()?;
-    let mut row = 0;
+    let mut row = 0usize;
     for _ in 0..buffers.min(MOST_SCALERS) {
-        row = cursor.u32()? as usize;
+        row = row.checked_add(cursor.u32()? as usize)?;
     }
     // one device with values of one kind of channel is what is read
-    let daqmx = match (first, buffers) {
-        (Some((kind, 0, at)), 1) => Some(Daqmx {
-            kind,
-            at: at as usize,
-            row,
-        }),
-        _ => None,
+    let (stored, at) = match (first, scalers, buffers) {
+        (Some((kind, 0, at)), 1, 1) if !is_digital => (Some(kind), at as usize),
+        _ => (None, 0),
     };
-    let length = daqmx.is_none().then_some(0);
+    let daqmx = Daqmx {
+        kind: stored,
+        at,
+        row,
+    };
     Some(Index {
         kind,
         count,
-        length,
-        daqmx,
+        length: None,
+        daqmx: Some(daqmx),
     })
 }
 
 impl Index {
     pub(super) fn values(&self, order: Order) -> Kind {
         let number = match (self.daqmx, self.length) {
-            (Some(daqmx), _) => kind::of_daqmx(daqmx.kind, order),
+            (Some(daqmx), _) => daqmx.kind.and_then(|kind| kind::of_daqmx(kind, order)),
             (None, Some(_)) => None,
             (None, None) => kind::number(self.kind, order),
         };
         match number {
             Some(number) => Kind::Number(number),
-            None if self.kind == kind::STAMP => Kind::Stamp(order),
+            None if self.kind == kind::STAMP && self.daqmx.is_none() => Kind::Stamp(order),
             None => Kind::Other,
         }
     }

@@ -49,6 +49,7 @@ pub(super) fn scan<'a>(bytes: &'a [u8], limits: &Limits) -> Result<File<'a>, Fau
         },
         known: HashMap::new(),
         list: Vec::new(),
+        has_data: Vec::new(),
         is_listed: Vec::new(),
         layout: None,
         slots: 0,
@@ -103,10 +104,11 @@ impl Head {
 struct Scan<'a> {
     file: File<'a>,
     known: HashMap<&'a [u8], usize>,
-    /// The objects that have values in the segment.
+    /// The objects of the segment that have values, or had some in one before: they keep their places.
     list: Vec<usize>,
-    /// Whether each is in the list.
+    /// Whether each is in the list, and whether it has values in the segment.
     is_listed: Vec<bool>,
+    has_data: Vec<bool>,
     /// The layout of the segment before, with its bits.
     layout: Option<(u32, Rc<Layout>)>,
     slots: usize,
@@ -128,6 +130,7 @@ impl<'a> Scan<'a> {
             if head.flags & HAS_NEW_LIST != 0 {
                 self.list.clear();
                 self.is_listed.fill(false);
+                self.has_data.fill(false);
                 self.layout = None;
             }
             let mut cursor = Cursor::of(&bytes[at + HEAD..start], head.order);
@@ -191,13 +194,13 @@ impl<'a> Scan<'a> {
             };
             object.read_properties(cursor, order)?;
             self.is_listed.resize(self.file.objects.len(), false);
-            let is_listed = std::mem::replace(&mut self.is_listed[at], has_data);
-            if has_data && !is_listed {
+            self.has_data.resize(self.file.objects.len(), false);
+            if std::mem::replace(&mut self.has_data[at], has_data) != has_data {
+                self.layout = None;
+            }
+            // those without values have a place, too, for when they have some
+            if !std::mem::replace(&mut self.is_listed[at], true) {
                 self.list.push(at);
-                self.layout = None;
-            } else if !has_data && is_listed {
-                self.list.retain(|other| *other != at);
-                self.layout = None;
             }
         }
         Some(())
@@ -212,10 +215,8 @@ impl<'a> Scan<'a> {
             return Some(Rc::clone(layout));
         }
         let order = head.order;
-        let indices = self
-            .list
-            .iter()
-            .filter_map(|&at| Some((at, self.file.objects[at].index?)));
+        let with_data = self.list.iter().filter(|at| self.has_data[**at]);
+        let indices = with_data.filter_map(|&at| Some((at, self.file.objects[at].index?)));
         let mut layout = Layout {
             slots: vec![None; self.file.objects.len()],
             length: 0,
@@ -292,5 +293,92 @@ impl File<'_> {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The first bytes of a text, and the text.
+    fn text(text: &str) -> Vec<u8> {
+        let mut bytes = (text.len() as u32).to_le_bytes().to_vec();
+        bytes.extend(text.as_bytes());
+        bytes
+    }
+
+    /// That of a segment with so many bytes of what is said, and of values.
+    fn head(flags: u32, said: usize, values: usize) -> Vec<u8> {
+        let mut bytes = b"TDSm".to_vec();
+        bytes.extend(flags.to_le_bytes());
+        bytes.extend(4713u32.to_le_bytes());
+        bytes.extend(((said + values) as u64).to_le_bytes());
+        bytes.extend((said as u64).to_le_bytes());
+        bytes
+    }
+
+    /// A segment of objects, each with what is said of its values; all have values of one byte.
+    fn segment(is_new: bool, objects: &[(&str, &[u32])], values: &[u8]) -> Vec<u8> {
+        let mut said = (objects.len() as u32).to_le_bytes().to_vec();
+        for (path, words) in objects {
+            said.extend(text(path));
+            said.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+            // no properties
+            said.extend([0; 4]);
+        }
+        let flags = HAS_META_DATA | HAS_DATA | if is_new { HAS_NEW_LIST } else { 0 };
+        let mut bytes = head(flags, said.len(), values.len());
+        bytes.extend(said);
+        bytes.extend(values);
+        bytes
+    }
+
+    fn values(file: &File, at: usize) -> Vec<u8> {
+        let mut values = Vec::new();
+        let each = |_: &Slot, bytes: &[u8]| values.extend(bytes);
+        file.each(at, each).unwrap();
+        values
+    }
+
+    #[test]
+    fn a_channel_that_goes_on_has_its_place() {
+        // bytes, of which there are two
+        let two: &[u32] = &[20, 5, 1, 2, 0];
+        let (none, before): (&[u32], &[u32]) = (&[0xffff_ffff], &[0]);
+        let (a, b) = ("/'G'/'a'", "/'G'/'b'");
+        let mut bytes = segment(true, &[(a, two), (b, two)], &[1, 2, 11, 12]);
+        bytes.extend(segment(false, &[(a, none)], &[13, 14]));
+        bytes.extend(segment(false, &[(a, before)], &[3, 4, 15, 16]));
+        bytes.extend(segment(false, &[(b, none)], &[5, 6]));
+        let file = scan(&bytes, &Limits::default()).unwrap();
+        assert_eq!(values(&file, 0), [1, 2, 3, 4, 5, 6]);
+        assert_eq!(values(&file, 1), [11, 12, 13, 14, 15, 16]);
+    }
+
+    #[test]
+    fn digital_lines_are_left_out_and_what_is_beside_them_is_read() {
+        // one scaler in 17 bytes, then one buffer of rows of one byte
+        let digital: Vec<u8> = [
+            &[0x6a, 0x12, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0][..],
+            &[3, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0],
+            &[0; 17],
+            &[1, 0, 0, 0, 1, 0, 0, 0],
+            // no properties
+            &[0; 4],
+        ]
+        .concat();
+        let mut said = 1u32.to_le_bytes().to_vec();
+        said.extend(text("/'G'/'line'"));
+        said.extend(digital);
+        let mut bytes = head(HAS_META_DATA | HAS_NEW_LIST | HAS_DATA, said.len(), 3);
+        bytes.extend(said);
+        bytes.extend([1, 0, 1]);
+        bytes.extend(segment(true, &[("/'G'/'a'", &[20, 5, 1, 2, 0])], &[1, 2]));
+        let file = scan(&bytes, &Limits::default()).unwrap();
+        assert_eq!((file.count(0), file.count(1)), (3, 2));
+        let groups = super::super::groups::of(file);
+        assert_eq!(groups.groups.len(), 1);
+        assert_eq!(groups.left_out.len(), 1);
+        assert!(groups.left_out[0].1.contains("digital"));
     }
 }
