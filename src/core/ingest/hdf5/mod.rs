@@ -21,6 +21,7 @@ mod frame;
 mod group;
 mod header;
 mod index;
+mod layout;
 mod objects;
 mod room;
 
