@@ -132,6 +132,8 @@ codes! {
     Busy "busy" SERVICE_UNAVAILABLE "The service is busy";
     /// The database does not answer in time. Nothing was lost that was accepted; try again.
     StoreUnavailable "store_unavailable" SERVICE_UNAVAILABLE "The store does not answer";
+    /// The database's disk is full. Nothing was lost that was accepted; make room, and try again.
+    StoreFull "store_full" INSUFFICIENT_STORAGE "The store is full";
 }
 
 impl Code {
