@@ -125,7 +125,9 @@ fn a_file_that_is_cut_off_has_what_is_there() {
 
 fn memmem(bytes: &[u8], part: &[u8]) -> usize {
     let mut windows = bytes.windows(part.len());
-    windows.position(|window| window == part).expect("it is there")
+    windows
+        .position(|window| window == part)
+        .expect("it is there")
 }
 
 #[test]
@@ -168,7 +170,12 @@ fn no_damage_to_an_mdf_file_panics() {
         max_bytes: 100_000,
         ..Limits::default()
     };
-    for (name, step) in [("groups", 3), ("texts", 2), ("unsorted", 1), ("transposed", 7)] {
+    for (name, step) in [
+        ("groups", 3),
+        ("texts", 2),
+        ("unsorted", 1),
+        ("transposed", 7),
+    ] {
         let good = bytes(name);
         for at in (0..good.len()).step_by(step) {
             let mut damaged: Vec<Vec<u8>> = vec![good[..at].to_vec()];

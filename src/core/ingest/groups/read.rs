@@ -53,7 +53,10 @@ fn cut_off(groups: &[Group]) -> Option<Finding> {
             format!("{name} has {} of {} samples", group.rows, group.said)
         })
         .collect();
-    let message = format!("the file is cut off: {}", note::listed(told.iter().cloned()));
+    let message = format!(
+        "the file is cut off: {}",
+        note::listed(told.iter().cloned())
+    );
     let remedy = "copy the file again, if it was whole where it was recorded";
     (!told.is_empty()).then(|| note::note(FindingCode::CutOff, message, remedy))
 }

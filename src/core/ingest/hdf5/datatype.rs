@@ -235,7 +235,10 @@ mod tests {
         let file = File::of(&bytes).unwrap();
         // of version 1: names end at a multiple of eight bytes
         let mut kind = vec![0x16, 2, 0, 0, 2, 0, 0, 0];
-        for (at, name) in [&b"[deg]\0\0\0"[..], b"alpha [\xb0]\0\0\0\0\0\0\0"].into_iter().enumerate() {
+        for (at, name) in [&b"[deg]\0\0\0"[..], b"alpha [\xb0]\0\0\0\0\0\0\0"]
+            .into_iter()
+            .enumerate()
+        {
             kind.extend(name);
             kind.extend([at as u8, 0, 0, 0]);
             kind.extend([0; 28]);

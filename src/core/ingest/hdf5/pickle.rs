@@ -40,7 +40,8 @@ mod tests {
     #[test]
     fn titles_are_read_as_python_pickles_them() {
         // pickle.dumps(["alpha [°]", "β", "a\\b", "😀"], 0) of Python 3.11
-        let text = b"(lp0\nValpha [\xb0]\np1\naV\\u03b2\np2\naVa\\u005cb\np3\naV\\U0001f600\np4\na.\0Vx\n";
+        let text =
+            b"(lp0\nValpha [\xb0]\np1\naV\\u03b2\np2\naVa\\u005cb\np3\naV\\U0001f600\np4\na.\0Vx\n";
         assert_eq!(pickled(text), ["alpha [°]", "β", "a\\b", "😀"]);
         assert_eq!(unescaped(b"\\x \\u12 \\uzzzz \\"), "\\x \\u12 \\uzzzz \\");
     }
