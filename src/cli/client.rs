@@ -101,6 +101,31 @@ impl Client {
         json(self.send(request).await?).await
     }
 
+    /// A page of the recordings that are wanted.
+    pub(super) async fn maneuvers<T: DeserializeOwned>(
+        &self,
+        wanted: &[(&str, &str)],
+    ) -> Result<T, Failure> {
+        let mut url = self.url("/v1/maneuvers")?;
+        url.query_pairs_mut().extend_pairs(wanted);
+        json(self.send(self.http.get(url)).await?).await
+    }
+
+    pub(super) async fn maneuver<T: DeserializeOwned>(&self, id: &str) -> Result<T, Failure> {
+        let url = self.url(&format!("/v1/maneuvers/{id}"))?;
+        json(self.send(self.http.get(url)).await?).await
+    }
+
+    /// Changes what is said of a recording, by a merge patch.
+    pub(super) async fn change_maneuver<T: DeserializeOwned>(
+        &self,
+        id: &str,
+        change: &Value,
+    ) -> Result<T, Failure> {
+        let url = self.url(&format!("/v1/maneuvers/{id}"))?;
+        json(self.send(self.http.patch(url).json(change)).await?).await
+    }
+
     pub(super) async fn submit(&self, spec: &JobSpec) -> Result<Stored, Failure> {
         json(
             self.send(self.http.post(self.url("/v1/jobs")?).json(spec))

@@ -15,6 +15,7 @@ mod health;
 mod inspect;
 mod key;
 mod local;
+mod maneuver;
 mod mapping;
 mod model;
 mod notes;
@@ -24,6 +25,7 @@ mod progress;
 mod recording;
 mod request;
 mod retain;
+mod segments;
 mod serve;
 mod server;
 mod simulate;
@@ -66,6 +68,9 @@ enum Command {
     Watch(watch::Watch),
     Simulate(simulate::Simulate),
     Inspect(inspect::Inspect),
+    Segments(segments::Segments),
+    #[command(name = "maneuver")]
+    Maneuvers(maneuver::Maneuvers),
     Model(model::ShowModel),
     Derivatives(derivatives::Derivatives),
     Health(health::Health),
@@ -89,6 +94,8 @@ pub fn main() -> ExitCode {
         Command::Watch(watch) => block_on(watch.run()),
         Command::Simulate(simulate) => simulate.run(),
         Command::Inspect(inspect) => inspect.run(),
+        Command::Segments(segments) => segments.run(),
+        Command::Maneuvers(maneuvers) => block_on(maneuvers.run()),
         Command::Model(model) => model.run(),
         Command::Derivatives(derivatives) => derivatives.run(),
         Command::Health(health) => block_on(health.run()),

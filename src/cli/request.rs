@@ -12,7 +12,8 @@ use super::recording::{read_recording, read_text};
 use crate::estimate::{Derivatives, Estimator, Method, Options, Role};
 use crate::flight::Maneuver;
 use crate::job::{
-    self, Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride, Plan, Strict,
+    self, ConstantValue, Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride, Plan,
+    Strict,
 };
 use crate::model::{ModelDocument, Start, catalog};
 use crate::simulate::{InputInterpolation, Integrator};
@@ -42,7 +43,7 @@ pub(super) struct Request {
     /// Another start value: "Ma=-3.5", or "alpha_0=first(alpha)".
     #[arg(long = "start", short, value_name = "NAME=VALUE")]
     starts: Vec<String>,
-    /// Another value of one of the model's constants: "m=17600".
+    /// Another value of one of the model's constants: "m=17600", or "m=recording.mass" where the server was told what was flown.
     #[arg(long = "constant", value_name = "NAME=VALUE")]
     constants: Vec<String>,
     /// Hold a parameter at its start value.
@@ -193,10 +194,17 @@ impl Request {
         }
         for text in &self.constants {
             let (name, value) = pair(text, "--constant")?;
-            let number = (value.parse()).map_err(|_| {
-                Failure::new(format!("--constant '{text}': '{value}' is not a number"))
-            })?;
-            let before = constants.insert(name.to_string(), number);
+            let value = match (value.parse::<f64>(), value.starts_with("recording.")) {
+                (Ok(number), _) => ConstantValue::Number(number),
+                (Err(_), true) => ConstantValue::Recording(value.to_string()),
+                (Err(_), false) => {
+                    let message = format!(
+                        "--constant '{text}': '{value}' is not a number, nor recording.mass or the like"
+                    );
+                    return Err(Failure::new(message));
+                }
+            };
+            let before = constants.insert(name.to_string(), value);
             once("--constant", name, before.is_some())?;
         }
         let fitted = self.files.iter().map(|file| (file, Role::Estimation));

@@ -6,7 +6,7 @@ use super::jobs_page::moment;
 use super::layout::{Frame, page};
 use super::maneuvers_page::title;
 use crate::estimate::five_digits as number;
-use crate::flight::{Finding, Severity, Shown, shown_in};
+use crate::flight::{Finding, Flown, Severity, Shown, shown_in};
 use crate::ingest::{ChannelSummary, Summary};
 
 /// What the page shows.
@@ -16,6 +16,7 @@ pub struct ManeuverView {
     /// RFC 3339, UTC.
     pub created: String,
     pub summary: Summary,
+    pub flown: Flown,
 }
 
 /// Channels that are plotted unless others are asked for.
@@ -30,6 +31,7 @@ pub fn maneuver_page(view: &ManeuverView) -> String {
             h1 { (title) }
             (facts(view))
             (actions(id, title))
+            (flown(&view.flown))
             (findings(&summary.findings))
             h2 { "Over time" }
             (choice(&summary.channels))
@@ -108,6 +110,46 @@ fn findings(findings: &[Finding]) -> Markup {
                 }
             }
         }
+    }
+}
+
+/// What was flown, as far as it was said.
+fn flown(flown: &Flown) -> Markup {
+    let texts = [
+        ("aircraft", &flown.aircraft),
+        ("registration", &flown.registration),
+        ("flight", &flown.flight),
+        ("test point", &flown.test_point),
+        ("date", &flown.date),
+        ("configuration", &flown.configuration),
+        ("gear", &flown.gear),
+        ("flaps", &flown.flaps),
+    ];
+    html! {
+        @if !flown.is_empty() {
+            h2 { "What was flown" }
+            dl.facts {
+                @for (name, text) in texts {
+                    @if let Some(text) = text { dt { (name) } dd { (text) } }
+                }
+                @for (name, quantity) in flown.quantities() {
+                    dt { (called(&name)) } dd { (number(quantity.value)) " " (quantity.unit) }
+                }
+                @if !flown.tags.is_empty() { dt { "tags" } dd { (flown.tags.join(", ")) } }
+                @if let Some(notes) = &flown.notes { dt { "notes" } dd { (notes) } }
+            }
+        }
+    }
+}
+
+/// What people call a quantity: `centre of gravity x`, `Iy`, `fuel`.
+fn called(name: &str) -> String {
+    let name = name
+        .trim_start_matches("inertia.")
+        .trim_start_matches("quantities.");
+    match name.strip_prefix("centre_of_gravity.") {
+        Some(axis) => format!("centre of gravity {axis}"),
+        None => name.to_string(),
     }
 }
 

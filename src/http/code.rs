@@ -114,6 +114,8 @@ codes! {
     UnsupportedMediaType "unsupported_media_type" UNSUPPORTED_MEDIA_TYPE "The media type is not supported";
     /// The recording cannot be a maneuver. `errors` lists all faults, each with its place.
     InvalidManeuver "invalid_maneuver" UNPROCESSABLE_ENTITY "The recording has faults";
+    /// What was flown cannot be said like this. `errors` lists all faults, each with its place.
+    InvalidFlown "invalid_flown" UNPROCESSABLE_ENTITY "What was flown has faults";
     /// The model document has faults. `errors` lists all of them, each with its place.
     InvalidModel "invalid_model" UNPROCESSABLE_ENTITY "The model has faults";
     /// The job cannot be started. `errors` lists all faults, each with its place in the spec.

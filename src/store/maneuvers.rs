@@ -4,13 +4,12 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use sqlx::Row;
 use sqlx::any::AnyRow;
+use sqlx::{AssertSqlSafe, Row};
 
-use super::page::one_more;
 use super::reactor::off_reactor;
-use super::{BadCursor, Page, Project, StoreError, columns};
-use crate::flight::{Channel, Maneuver, Unit};
+use super::{Project, StoreError, columns};
+use crate::flight::{Channel, Flown, Maneuver, Unit};
 
 /// A maneuver without its data.
 #[derive(Clone, PartialEq, Debug)]
@@ -21,6 +20,18 @@ pub struct ManeuverRecord {
     pub created: String,
     /// JSON, as it was given.
     pub summary: String,
+    /// What was flown, as it was said last.
+    pub flown: Flown,
+}
+
+/// Which maneuvers a list shows; `None` shows all.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct ManeuverFilter {
+    pub tag: Option<String>,
+    pub aircraft: Option<String>,
+    pub registration: Option<String>,
+    pub flight: Option<String>,
+    pub test_point: Option<String>,
 }
 
 /// What an upload amounted to.
@@ -101,9 +112,16 @@ fn decode(id: &str, bytes: &[u8]) -> Result<Maneuver, StoreError> {
     Maneuver::new(time, channels).map_err(|error| corrupt(error.to_string()))
 }
 
-fn read_record(row: &AnyRow) -> Result<ManeuverRecord, StoreError> {
+/// What is read of a maneuver.
+pub(super) const COLUMNS: &str = "id, name, created, summary, flown";
+
+pub(super) fn read_record(row: &AnyRow) -> Result<ManeuverRecord, StoreError> {
+    let id: String = row.try_get("id")?;
+    let flown = serde_json::from_str(row.try_get("flown")?)
+        .map_err(|error| StoreError::corrupt(format!("maneuver {id}"), error))?;
     Ok(ManeuverRecord {
-        id: row.try_get("id")?,
+        id,
+        flown,
         name: row.try_get("name")?,
         created: row.try_get("created")?,
         summary: row.try_get("summary")?,
@@ -134,6 +152,7 @@ impl Project {
             name: name.to_string(),
             created: self.store.clock.now_text(),
             summary,
+            flown: Flown::default(),
         };
         let sql = "INSERT INTO maneuvers (project, id, name, created, summary, content, bytes) \
                    VALUES ($1, $2, $3, $4, $5, $6, $7) ON CONFLICT (project, id) DO NOTHING";
@@ -173,13 +192,13 @@ impl Project {
     /// # Errors
     /// The database does not answer.
     pub async fn maneuver(&self, id: &str) -> Result<Option<ManeuverRecord>, StoreError> {
-        let row = sqlx::query(
-            "SELECT id, name, created, summary FROM maneuvers WHERE project = $1 AND id = $2",
-        )
-        .bind(&*self.name)
-        .bind(id)
-        .fetch_optional(&self.store.readers)
-        .await?;
+        // safe: put together from a constant
+        let sql = format!("SELECT {COLUMNS} FROM maneuvers WHERE project = $1 AND id = $2");
+        let row = sqlx::query(AssertSqlSafe(sql))
+            .bind(&*self.name)
+            .bind(id)
+            .fetch_optional(&self.store.readers)
+            .await?;
         row.as_ref().map(read_record).transpose()
     }
 
@@ -235,37 +254,6 @@ impl Project {
         } else {
             Err(missing)
         })
-    }
-
-    /// Maneuvers, newest first.
-    ///
-    /// # Errors
-    /// The database does not answer.
-    pub async fn maneuvers(
-        &self,
-        cursor: Option<&str>,
-        limit: usize,
-    ) -> Result<Result<Page<ManeuverRecord>, BadCursor>, StoreError> {
-        const LATEST: &str = "9999-12-31T23:59:59.999Z";
-        let (created, id) = match cursor.map(|cursor| cursor.split_once('~')) {
-            None => (LATEST, ""),
-            Some(Some(position)) => position,
-            Some(None) => return Ok(Err(BadCursor)),
-        };
-        let sql = "SELECT id, name, created, summary FROM maneuvers \
-                   WHERE project = $1 AND (created < $2 OR (created = $2 AND id < $3)) \
-                   ORDER BY created DESC, id DESC LIMIT $4";
-        let rows = sqlx::query(sql)
-            .bind(&*self.name)
-            .bind(created)
-            .bind(id)
-            .bind(one_more(limit))
-            .fetch_all(&self.store.readers)
-            .await?;
-        let records = rows.iter().map(read_record).collect::<Result<_, _>>()?;
-        Ok(Ok(Page::new(records, limit, |record| {
-            format!("{}~{}", record.created, record.id)
-        })))
     }
 }
 

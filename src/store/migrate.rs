@@ -15,6 +15,7 @@ const STEPS: &[&str] = &[
     include_str!("migrations/0006_webhooks.sql"),
     include_str!("migrations/0007_mappings.sql"),
     include_str!("migrations/0008_key_lifetimes.sql"),
+    include_str!("migrations/0009_flown.sql"),
 ];
 
 /// Brings the schema up to date. Processes that start at once do not disturb each other: all steps are looked for and
@@ -66,6 +67,7 @@ mod tests {
         "1375de8c5df088e5",
         "286817a4153ddb4a",
         "60f30e3c820afbf3",
+        "6afee731f25bbcee",
     ];
 
     #[test]

@@ -7,7 +7,8 @@
 //!   result of a job arrives in the transaction of its last event: no reader sees a half of it.
 //! * A worker holds a job by a lease. Each claim counts the job's `attempt` up; whoever writes with
 //!   the number of an earlier attempt is refused ([`StoreError::LeaseLost`]).
-//! * Maneuvers, models, specs, events and results are never changed once written.
+//! * Maneuvers, models, specs, events and results are never changed once written; a maneuver's name and what is said of the
+//!   flight may be.
 //! * What users ask for is asked of a [`Project`], and no project sees anything of another.
 //!
 //! Invariant: SQL is here and nowhere else; both engines give the same answers.
@@ -19,6 +20,7 @@ mod columns;
 mod database;
 mod engine;
 mod error;
+mod flown;
 mod jobs;
 mod keys;
 mod lease;
@@ -51,7 +53,7 @@ pub use jobs::{CancelReply, JobFilter, JobRecord, NewJob};
 pub use keys::{Key, KeyCheck, KeyRecord, NewKey, Scope};
 pub use lease::{Claim, LEASE, MOST_LOST_WORKERS};
 pub use log::StoredEvent;
-pub use maneuvers::{ManeuverRecord, NotLoaded, Uploaded};
+pub use maneuvers::{ManeuverFilter, ManeuverRecord, NotLoaded, Uploaded};
 pub use mappings::MappingRecord;
 pub use models::ModelRecord;
 pub use page::{BadCursor, Page};

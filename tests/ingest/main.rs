@@ -18,3 +18,4 @@ mod newcomers;
 mod parquet;
 mod structs;
 mod tdms;
+mod times;

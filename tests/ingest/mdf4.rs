@@ -1,6 +1,6 @@
 //! MDF 4 files; `recordings/make_mdf.py` says what is in each.
 
-use trimtab_core::flight::Maneuver;
+use trimtab_core::flight::{Finding, Maneuver};
 use trimtab_core::ingest::{Format, IngestError, Limits, Mapping, Reading, code, read_recording};
 
 use crate::common::repository;
@@ -89,6 +89,48 @@ fn records_of_several_kinds_may_stand_between_each_other() {
 }
 
 #[test]
+fn what_a_table_of_texts_converts_are_numbers() {
+    // as asammdf reads them
+    let Reading { maneuver, findings } = reading("texts");
+    assert_eq!(maneuver.len(), 5);
+    assert_eq!(degrees(&maneuver, "alpha"), [-4.0, -3.0, -2.0]);
+    assert_eq!(degrees(&maneuver, "beta"), [3.0, 5.0, 7.0]);
+    assert!(findings.is_empty(), "{findings:?}");
+}
+
+#[test]
+fn a_file_that_is_cut_off_has_what_is_there() {
+    let mut bytes = bytes("groups");
+    let of_group = memmem(&bytes, b"##CG");
+    // behind the head, six links and the number of its records; it has five
+    let count = of_group + 24 + 6 * 8 + 8;
+    assert_eq!(bytes[count..count + 8], 5u64.to_le_bytes());
+    bytes[count] = 50;
+    let Reading { maneuver, findings } = read(&bytes, None).unwrap();
+    assert_eq!(degrees(&maneuver, "q"), [10.0, -20.0, 30.0, -40.0, 50.0]);
+    let cut_off = |findings: &[Finding]| {
+        let found = findings.iter().find(|finding| finding.code == "cut_off");
+        found.map(|finding| finding.message.clone())
+    };
+    let told = cut_off(&findings).expect("it is told");
+    assert!(told.contains("'IMU' has 5 of 50 samples"), "{told}");
+    let text = r#"{"channels": {"q": {"from": "IMU.q", "unit": "deg/s"}}}"#;
+    let mapping = Mapping::from_json(text).unwrap();
+    let Reading { maneuver, findings } = read(&bytes, Some(&mapping)).unwrap();
+    assert_eq!(maneuver.len(), 5);
+    assert_eq!(cut_off(&findings), Some(told));
+    let whole = reading("groups").findings;
+    assert_eq!(cut_off(&whole), None);
+}
+
+fn memmem(bytes: &[u8], part: &[u8]) -> usize {
+    let mut windows = bytes.windows(part.len());
+    windows
+        .position(|window| window == part)
+        .expect("it is there")
+}
+
+#[test]
 fn what_is_not_read_says_so() {
     for (bytes, code, expected) in [
         (
@@ -128,7 +170,12 @@ fn no_damage_to_an_mdf_file_panics() {
         max_bytes: 100_000,
         ..Limits::default()
     };
-    for (name, step) in [("groups", 3), ("unsorted", 1), ("transposed", 7)] {
+    for (name, step) in [
+        ("groups", 3),
+        ("texts", 2),
+        ("unsorted", 1),
+        ("transposed", 7),
+    ] {
         let good = bytes(name);
         for at in (0..good.len()).step_by(step) {
             let mut damaged: Vec<Vec<u8>> = vec![good[..at].to_vec()];

@@ -46,6 +46,7 @@ mod options;
 mod paths;
 mod play_and_limits;
 mod priors;
+mod segments;
 mod sensitivities;
 mod starts;
 mod steps;

@@ -37,7 +37,7 @@ async fn ask(server: &Server, method: Method, path: &str, key: &str, body: &Valu
     if !key.is_empty() {
         request = request.bearer_auth(key);
     }
-    if method == Method::POST {
+    if method == Method::POST || method == Method::PATCH {
         request = request
             .header("content-type", "application/json")
             .body(body.to_string());
@@ -60,6 +60,7 @@ const NEEDED: &[(&str, &[&str])] = &[
             "getMapping",
             "getManeuver",
             "getManeuverData",
+            "proposeSegments",
             "listModels",
             "getModel",
             "listJobs",
@@ -84,6 +85,7 @@ const NEEDED: &[(&str, &[&str])] = &[
         "submit",
         &[
             "uploadManeuver",
+            "updateManeuver",
             "addMapping",
             "addModel",
             "submitJob",
@@ -186,10 +188,10 @@ async fn every_operation_is_open_to_whom_it_should_be_and_to_nobody_else() {
                     .iter()
                     .any(|of| template.contains(of))
             {
-                let body = if id == "rotateKey" {
-                    json!({})
-                } else {
-                    json!({"mass": 1.0})
+                let body = match id {
+                    "rotateKey" => json!({}),
+                    "updateManeuver" => json!({"name": "mine"}),
+                    _ => json!({"mass": 1.0}),
                 };
                 let answer = ask(&server, method.clone(), &path, &stranger, &body).await;
                 let is_hidden =

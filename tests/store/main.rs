@@ -7,6 +7,7 @@ mod common {
 }
 
 mod bench;
+mod flown;
 mod leases;
 mod projects;
 mod queue;

@@ -5,7 +5,8 @@ use std::time::Duration;
 use crate::bench::{Bench, finish_next, new_job, on_both, succeeded};
 use crate::common::recordings::{elevator, maneuver};
 use trimtab::store::{
-    CancelReply, DEFAULT_PROJECT, JobFilter, Key, KeyCheck, NewKey, Once, Rule, Scope, Uploaded,
+    CancelReply, DEFAULT_PROJECT, JobFilter, Key, KeyCheck, ManeuverFilter, NewKey, Once, Rule,
+    Scope, Uploaded,
 };
 
 on_both! {
@@ -48,7 +49,12 @@ async fn projects_see_nothing_of_each_other(bench: Bench) {
     assert_eq!(ours_has.await, theirs_has.await, "it is the same content");
     let third = bench.store.project("third", "");
     assert_eq!(
-        third.maneuvers(None, 10).await.unwrap().unwrap().entries,
+        third
+            .maneuvers(&ManeuverFilter::default(), None, 10)
+            .await
+            .unwrap()
+            .unwrap()
+            .entries,
         []
     );
     let mine = ours.take_in_hand("key", "request").await.unwrap();

@@ -51,6 +51,8 @@ codes! {
     Footer "footer" Note;
     /// The last line of the file is cut off: it was left out.
     IncompleteLine "incomplete_line" Note;
+    /// The file ends before all samples that it announces: those that are there were read.
+    CutOff "cut_off" Warning;
     /// The header stands in the file again: a logger was switched on a second time.
     RepeatedHeader "repeated_header" Note;
     /// Rows have the time of the row before them.

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::{
-    IngestError, Limits,
+    IngestError, Limits, flysight,
     format::Format,
     mat,
     packed::{self, Unpacked},
@@ -22,6 +22,7 @@ pub(super) enum Contents {
     Hdf5,
     Tdms,
     Mdf4,
+    FlySight,
     /// A table of text.
     Table,
     /// A table of text, or a matrix of which a mapping names the parts.
@@ -58,6 +59,7 @@ pub(super) fn open<'a>(
         Some(Kind::Tdms) => Contents::Tdms,
         Some(Kind::Mdf4) => Contents::Mdf4,
         Some(Kind::Foreign(foreign)) => return Err(foreign.fault().into()),
+        None if flysight::is_of_several(&bytes) => Contents::FlySight,
         Some(Kind::Gzip) | None => of_text(&bytes, of_name.unwrap_or(format)),
     };
     Ok(Opened { bytes, contents })

@@ -31,6 +31,7 @@ mod dataflash;
 mod encoding;
 mod export;
 mod fault;
+mod flysight;
 mod format;
 mod groups;
 mod hdf5;
@@ -133,6 +134,7 @@ pub fn read_recording(
             let mut columns = parquet::columns(bytes, limits)?;
             csv::read_columns(&mut columns, mapping, limits)
         }
+        (Contents::FlySight, _) => flysight::read(bytes, mapping, limits),
         (Contents::Tdms, _) => tdms::read(bytes, mapping, limits),
         (Contents::Mdf4, _) => mdf4::read(bytes, mapping, limits),
         (Contents::Hdf5, _) => match hdf5::open(bytes, limits)? {

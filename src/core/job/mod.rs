@@ -3,6 +3,7 @@
 //!
 //! Invariant: spec and data alone decide the result; all that bad input could break is found by [`prepare()`].
 
+mod constant;
 mod corrected;
 mod event;
 mod no_start;
@@ -18,6 +19,7 @@ mod strict;
 mod trajectories;
 
 pub use crate::flight::{Fault, Faults};
+pub use constant::ConstantValue;
 pub use corrected::corrected;
 pub use event::{Event, EventBody, Prepared};
 pub use one_call::{diagnose, fit};

@@ -8,9 +8,11 @@ use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use utoipa::ToSchema;
 
+use super::constant::ConstantValue;
 use super::strict::Strict;
 use crate::diagnose::Knowledge;
 use crate::estimate::{Options, Role};
+use crate::flight::Flown;
 use crate::model::{Edit, ModelDocument, Prior, Start};
 
 /// A job: a kind, a model, maneuvers, and how the one meets the others.
@@ -59,14 +61,15 @@ pub struct JobSpec {
     )]
     #[schema(example = json!({"q_bias": {"fixed": true, "start": 0.0}}))]
     pub parameters: IndexMap<String, ParameterOverride>,
-    /// Other values of the model's constants (mass, wing area, lever arms), each in the constant's own unit.
+    /// Other values of the model's constants (mass, wing area, lever arms): a number in the constant's own unit, or where it
+    /// stands in what is said of each recording, as `recording.mass`.
     #[serde(
         default,
         deserialize_with = "crate::model::unique",
         skip_serializing_if = "IndexMap::is_empty"
     )]
-    #[schema(example = json!({"m": 17600.0}))]
-    pub constants: IndexMap<String, f64>,
+    #[schema(example = json!({"m": 17600.0, "Iy": "recording.inertia.Iy"}))]
+    pub constants: IndexMap<String, ConstantValue>,
     /// Of a diagnosis: effects of your own, tried beside those of the catalogue.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub candidates: Vec<Candidate>,
@@ -106,6 +109,16 @@ impl JobSpec {
 }
 
 impl JobSpec {
+    /// Whether a constant stands in what is said of a recording.
+    pub fn refers_to_recordings(&self) -> bool {
+        let of_maneuvers = self
+            .maneuvers
+            .iter()
+            .flat_map(|usage| usage.constants.values());
+        let mut all = self.constants.values().chain(of_maneuvers);
+        all.any(|value| value.number().is_none())
+    }
+
     /// How the model's quantity `name` is made from the channels of a maneuver: as the maneuver says, or the job, or by
     /// name.
     pub(super) fn formula<'s>(&'s self, maneuver: usize, name: &'s str) -> &'s str {
@@ -253,15 +266,18 @@ pub struct ManeuverUse {
     /// What to do where the recording has gaps.
     #[serde(default)]
     pub gaps: Gaps,
+    /// What was flown, where constants refer to it. Absent: as it is said of the recording when the job is submitted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flown: Option<Flown>,
     /// Values of the model's constants that hold for this maneuver alone (mass, centre of gravity, speed), each in the
-    /// constant's own unit.
+    /// constant's own unit, or as `recording.mass`.
     #[serde(
         default,
         deserialize_with = "crate::model::unique",
         skip_serializing_if = "IndexMap::is_empty"
     )]
     #[schema(example = json!({"m": 17100.0}))]
-    pub constants: IndexMap<String, f64>,
+    pub constants: IndexMap<String, ConstantValue>,
     /// How model inputs and outputs are made from the channels of this maneuver, where not as the job says.
     #[serde(
         default,
@@ -290,6 +306,7 @@ impl ManeuverUse {
             seconds: None,
             role,
             gaps: Gaps::default(),
+            flown: None,
             constants: IndexMap::new(),
             channels: IndexMap::new(),
             start: IndexMap::new(),

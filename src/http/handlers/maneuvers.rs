@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use axum::Json;
 use axum::body::Body;
-use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
+use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
@@ -13,23 +13,20 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::mappings;
-use crate::flight::{Channel, Maneuver};
-use crate::http::answer::decimate::{Wanted, pick};
-use crate::http::answer::format::{Format, cacheable, choose};
+use crate::flight::{Flown, Maneuver};
+use crate::http::answer::format::{Format, cacheable};
 use crate::http::code::Code;
 use crate::http::problem::{Problem, ProblemDocument};
 use crate::http::request::body;
-use crate::http::request::query::{Id, PageQuery, Parameters, bad_cursor, page_limit};
+use crate::http::request::query::{Id, Parameters, bad_cursor, page_limit};
 use crate::http::service::{Server, Service};
 use crate::ingest::{self, Summary};
-use crate::job::Fault;
-use crate::store::{ManeuverRecord, Uploaded};
+use crate::store::{ManeuverFilter, ManeuverRecord, Uploaded};
 
 pub(crate) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(upload_maneuver, list_maneuvers))
         .routes(routes!(get_maneuver))
-        .routes(routes!(get_maneuver_data))
 }
 
 pub(crate) const LONGEST_NAME: usize = 200;
@@ -47,6 +44,8 @@ pub(crate) struct ManeuverResource {
     created: String,
     #[schema(value_type = Summary)]
     summary: Box<RawValue>,
+    /// What was flown, as far as it was said; `PATCH` says more of it.
+    flown: Flown,
     links: ManeuverLinks,
 }
 
@@ -58,13 +57,14 @@ struct ManeuverLinks {
 }
 
 impl ManeuverResource {
-    fn of(record: ManeuverRecord) -> Result<Self, Problem> {
+    pub(crate) fn of(record: ManeuverRecord) -> Result<Self, Problem> {
         let this = format!("/v1/maneuvers/{}", record.id);
         Ok(Self {
             summary: RawValue::from_string(record.summary)?,
             id: record.id,
             name: record.name,
             created: record.created,
+            flown: record.flown,
             links: ManeuverLinks {
                 data: format!("{this}/data"),
                 this,
@@ -217,18 +217,46 @@ pub(crate) async fn keep_maneuver(
     Ok((status, ManeuverResource::of(record)?))
 }
 
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+struct ListQuery {
+    /// `next_cursor` of the page before; absent: the first page.
+    cursor: Option<String>,
+    /// Maneuvers of the page, 1 to 200; 50 if absent.
+    #[param(minimum = 1, maximum = 200)]
+    limit: Option<usize>,
+    /// Only those that have this tag.
+    tag: Option<String>,
+    /// Only those of this aircraft.
+    aircraft: Option<String>,
+    /// Only those of this registration.
+    registration: Option<String>,
+    /// Only those of this flight.
+    flight: Option<String>,
+    /// Only those of this test point.
+    test_point: Option<String>,
+}
+
 /// List maneuvers, newest first.
 #[utoipa::path(get, path = "/v1/maneuvers", tag = "Maneuvers", operation_id = "listManeuvers",
-    params(PageQuery),
+    params(ListQuery),
     responses((status = 200, description = "A page.", body = ManeuverPage)))]
 async fn list_maneuvers(
     service: Service,
-    Parameters(query): Parameters<PageQuery>,
+    Parameters(query): Parameters<ListQuery>,
 ) -> Result<Json<ManeuverPage>, Problem> {
     let limit = page_limit(query.limit)?;
+    let filter = ManeuverFilter {
+        tag: query.tag,
+        aircraft: query.aircraft,
+        registration: query.registration,
+        flight: query.flight,
+        test_point: query.test_point,
+    };
     let page = service
         .store
-        .maneuvers(query.cursor.as_deref(), limit)
+        .maneuvers(&filter, query.cursor.as_deref(), limit)
         .await?;
     let page = page.map_err(bad_cursor)?;
     let maneuvers = page.entries.into_iter().map(ManeuverResource::of);
@@ -266,117 +294,4 @@ async fn get_maneuver(
         .ok_or_else(|| unknown_maneuver(&id))?;
     let json = serde_json::to_vec(&ManeuverResource::of(record)?)?;
     Ok(cacheable(&headers, Format::Json, json))
-}
-
-#[derive(Deserialize, IntoParams)]
-#[into_params(parameter_in = Query)]
-#[serde(deny_unknown_fields)]
-struct DataQuery {
-    /// Names of channels, separated by commas; absent: all.
-    #[param(example = "alpha,q")]
-    channels: Option<String>,
-    /// Seconds of the recording: only samples from here on.
-    #[param(example = 2.0)]
-    from: Option<f64>,
-    /// Seconds of the recording: only samples up to here.
-    #[param(example = 6.5)]
-    to: Option<f64>,
-    /// About how many samples to answer with; absent: all. The first, the last, and the least and
-    /// greatest of each channel in equal stretches of time are kept, so that a plot looks the same.
-    #[param(example = 500)]
-    max_points: Option<usize>,
-    /// `json` or `csv`; absent: as `Accept` says.
-    #[param(inline)]
-    format: Option<Format>,
-}
-
-/// The samples, SI, in the form of an upload.
-#[utoipa::path(get, path = "/v1/maneuvers/{id}/data", tag = "Maneuvers", operation_id = "getManeuverData",
-    params(("id" = String, Path), DataQuery),
-    responses(
-        (status = 200, description = "The samples.", content(
-            (ingest::Recording = "application/json"), (String = "text/csv")),
-            headers(("x-trimtab-samples" = usize, description = "Samples of the recording, before `from`, `to` and `max_points`."))),
-        (status = 304, description = "As the `ETag` in `If-None-Match`."),
-        (status = 404, description = "`unknown_maneuver`", body = ProblemDocument, content_type = "application/problem+json"),
-    ))]
-async fn get_maneuver_data(
-    service: Service,
-    Id(id): Id,
-    Parameters(query): Parameters<DataQuery>,
-    headers: HeaderMap,
-) -> Result<Response, Problem> {
-    let format = choose(query.format, &headers, &[Format::Json, Format::Csv])?;
-    let maneuver = service
-        .store
-        .maneuver_data(&id)
-        .await?
-        .ok_or_else(|| unknown_maneuver(&id))?;
-    let samples = maneuver.len();
-    let wanted = Wanted {
-        from: query.from,
-        to: query.to,
-        most: query.max_points,
-    };
-    let write = move || {
-        let part = part(&maneuver, query.channels.as_deref(), wanted)?;
-        let text = match format {
-            Format::Csv => ingest::to_csv(&part, |_| true),
-            _ => ingest::to_json(&part)?,
-        };
-        Ok::<_, Problem>(cacheable(&headers, format, text))
-    };
-    let mut response = service.compute.run(write).await??;
-    let name = HeaderName::from_static("x-trimtab-samples");
-    response
-        .headers_mut()
-        .insert(name, HeaderValue::from(samples));
-    Ok(response)
-}
-
-/// Some channels and samples of a maneuver.
-fn part(maneuver: &Maneuver, channels: Option<&str>, wanted: Wanted) -> Result<Maneuver, Problem> {
-    let mut chosen: Vec<(&String, &Channel)> = maneuver.channels().iter().collect();
-    if let Some(names) = channels {
-        let names: Vec<&str> = names.split(',').map(str::trim).collect();
-        let known = |name: &&str| maneuver.channels().contains_key(*name);
-        let unknown = names.iter().filter(|name| !known(name));
-        let faults: Vec<Fault> = unknown
-            .map(|name| {
-                let all: Vec<&str> = maneuver.channels().keys().map(String::as_str).collect();
-                let message = format!("there is no channel '{name}'; there are {}", all.join(", "));
-                Fault::new("", "unknown_channel", message)
-            })
-            .collect();
-        if !faults.is_empty() {
-            return Err(Problem::of_faults(Code::InvalidQuery, faults));
-        }
-        chosen.retain(|(name, _)| names.contains(&name.as_str()));
-    }
-    let columns: Vec<&[f64]> = chosen.iter().map(|(_, channel)| &*channel.values).collect();
-    let rows = wanted.rows(maneuver.time(), &columns);
-    let channels = chosen.iter().map(|(name, channel)| {
-        let values = pick(&channel.values, &rows);
-        let Channel {
-            recorded_unit,
-            unit,
-            ..
-        } = channel;
-        let channel = Channel {
-            recorded_unit: recorded_unit.clone(),
-            unit: *unit,
-            values,
-        };
-        ((*name).clone(), channel)
-    });
-    let time = pick(maneuver.time(), &rows);
-    Maneuver::new(time, channels.collect()).map_err(|error| {
-        let all = maneuver.time();
-        let detail = format!(
-            "between from and to: {error}; the recording goes from {} s to {} s",
-            all[0],
-            all[all.len() - 1]
-        );
-        Problem::new(Code::InvalidQuery, detail)
-    })
 }

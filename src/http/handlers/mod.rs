@@ -6,10 +6,13 @@ pub(super) mod maneuvers;
 pub(super) mod mappings;
 pub(super) mod models;
 
+mod flown;
 mod health;
+mod maneuver_data;
 mod metrics;
 mod problems;
 mod retention;
+mod segments;
 mod webhooks;
 
 use utoipa_axum::router::OpenApiRouter;
@@ -20,6 +23,9 @@ use super::service::Server;
 pub(super) fn api() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .merge(maneuvers::router())
+        .merge(flown::router())
+        .merge(maneuver_data::router())
+        .merge(segments::router())
         .merge(mappings::router())
         .merge(models::router())
         .merge(jobs::submit::router())

@@ -23,6 +23,7 @@ async fn get_maneuver_page(service: Service, Id(id): Id) -> Result<Html<String>,
             id: record.id,
             name: record.name,
             created: record.created,
+            flown: record.flown,
         }))
     };
     Ok(Html(service.compute.run(render).await??))

@@ -10,7 +10,7 @@ use crate::http::handlers::mappings;
 use crate::http::problem::Problem;
 use crate::http::request::query::{Parameters, bad_cursor};
 use crate::http::service::{Server, Service};
-use crate::store::ManeuverRecord;
+use crate::store::{ManeuverFilter, ManeuverRecord};
 
 pub(super) fn router() -> Router<Server> {
     Router::new().route("/maneuvers", get(get_maneuvers_page))
@@ -30,7 +30,8 @@ async fn get_maneuvers_page(
     Parameters(query): Parameters<Query>,
 ) -> Result<Html<String>, Problem> {
     let cursor = query.cursor.as_deref();
-    let page = service.store.maneuvers(cursor, MANEUVERS).await?;
+    let all = ManeuverFilter::default();
+    let page = service.store.maneuvers(&all, cursor, MANEUVERS).await?;
     let page = page.map_err(bad_cursor)?;
     let older = page.next_cursor.map(|cursor| {
         let mut query = form_urlencoded::Serializer::new(String::new());

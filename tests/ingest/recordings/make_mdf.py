@@ -29,6 +29,20 @@ file.append(
 file.append([Signal(np.array([100.0, 99.5]), np.array([0.02, 0.12]), unit="kg", name="mass")], acq_name="Fuel")
 file.save(here / "groups.mf4", overwrite=True)
 
+# numbers, one of which stands for a text: asammdf gives the text there, and numbers elsewhere
+file = MDF(version="4.10")
+raw = np.array([100, 200, 255, 255, 300], "uint16")
+file.append(
+    [
+        Signal(raw, time, unit="deg", name="alpha",
+               conversion=from_dict({"val_0": 255, "text_0": "SNA", "default_addr": {"a": 0.01, "b": -5.0}})),
+        Signal(raw, time, unit="deg", name="beta",
+               conversion=from_dict({"lower_0": 250, "upper_0": 299, "text_0": "SNA", "default_addr": {"a": 0.02, "b": 1.0}})),
+    ],
+    acq_name="ADC",
+)
+file.save(here / "texts.mf4", overwrite=True)
+
 long = np.arange(3000) * 0.01
 for compression, name in [(1, "deflated"), (2, "transposed")]:
     file = MDF(version="4.11")

@@ -126,6 +126,86 @@ fn held_inputs_that_are_taken_as_straight_lines_are_told() {
     }
 }
 
+/// The same numbers, whether a maneuver says them or the recording does.
+#[test]
+fn constants_stand_in_what_was_flown() {
+    let model = json!({
+        "name": "heavy-and-light", "inputs": {"u": {}},
+        "constants": {"m": {"value": 1.0, "unit": "kg"}},
+        "parameters": {"a": {"start": 0.0, "unit": "1/kg"}},
+        "outputs": {"y": {"equation": "m*a*u"}},
+    });
+    let u = |k: usize| (0.1 * k as f64).sin();
+    let flown = |m: f64, seed: f64| {
+        let time = (0..200).map(|k| k as f64 * 0.1).collect();
+        let z = |k: usize| m * 0.7 * u(k) + 0.1 * scatter(k, seed);
+        let channels = [
+            ("u", (0..200).map(u).collect()),
+            ("y", (0..200).map(z).collect()),
+        ];
+        recording(time, &channels)
+    };
+    let maneuvers = [flown(1250.0, 1.0), flown(1080.0, 2.0)];
+    let mass = |value: f64, unit: &str| json!({"mass": {"value": value, "unit": unit}});
+    let by_number = json!({"maneuvers": [
+        {"id": "heavy", "constants": {"m": 1250.0}}, {"id": "light", "constants": {"m": 1080.0}},
+    ]});
+    let by_recording = json!({"constants": {"m": "recording.mass"}, "maneuvers": [
+        {"id": "heavy", "flown": mass(1250.0 / 0.453_592_37, "lb")}, {"id": "light", "flown": mass(1080.0, "kg")},
+    ]});
+    let estimate = |changes: &serde_json::Value| {
+        let result = solve(model.clone(), changes.clone(), &maneuvers);
+        parameter(&result, "a").estimate
+    };
+    let (number, recorded) = (estimate(&by_number), estimate(&by_recording));
+    assert!(
+        (recorded / number - 1.0).abs() < 1e-12,
+        "{recorded} {number}"
+    );
+    // what a maneuver says of itself holds
+    let mut own = by_recording.clone();
+    own["maneuvers"][0]["constants"] = json!({"m": 1250.0});
+    own["maneuvers"][0]["flown"] = mass(1.0, "kg");
+    assert_eq!(estimate(&by_number), estimate(&own));
+    let refused = |changes: serde_json::Value| {
+        let faults = try_plan(model.clone(), changes, &maneuvers)
+            .err()
+            .expect("a fault");
+        let fault = &faults[0];
+        (fault.code.to_string(), fault.pointer.clone())
+    };
+    let mut wrong = by_recording.clone();
+    wrong["maneuvers"][1]["flown"] = mass(1080.0, "m");
+    assert_eq!(
+        refused(wrong),
+        (
+            "bad_flown".to_string(),
+            "/maneuvers/1/flown/mass".to_string()
+        )
+    );
+    let mut wrong = by_recording.clone();
+    wrong["maneuvers"][1]["flown"] = json!({});
+    assert_eq!(
+        refused(wrong),
+        ("unknown_quantity".to_string(), "/constants/m".to_string())
+    );
+    let mut wrong = by_recording.clone();
+    wrong["maneuvers"][1]["constants"] = json!({"m": "mass"});
+    assert_eq!(
+        refused(wrong),
+        (
+            "unknown_quantity".to_string(),
+            "/maneuvers/1/constants/m".to_string()
+        )
+    );
+    let mut diagnosis = by_recording;
+    diagnosis["kind"] = json!("diagnose");
+    assert_eq!(
+        refused(diagnosis),
+        ("bad_option".to_string(), "/constants/m".to_string())
+    );
+}
+
 #[test]
 fn constants_of_another_aircraft_are_told() {
     let document = trimtab_core::model::catalog::find("longitudinal-nonlinear").unwrap();

@@ -31,7 +31,12 @@ pub(super) fn constant(name: &str, values: &[f64]) -> Option<Finding> {
     if present.any(|value| value != first) {
         return None;
     }
-    let message = format!("the value is {first} (SI) throughout");
+    let size = first.abs();
+    let shown = match size == 0.0 || (1e-9..1e15).contains(&size) {
+        true => first.to_string(),
+        false => format!("{first:e}"),
+    };
+    let message = format!("the value is {shown} (SI) throughout");
     let remedy = "leave the channel out of the outputs: a constant tells nothing, and may be a sensor out of range";
     let constant = Finding::new(FindingCode::Constant, message, remedy);
     Some(constant.of_channel(name).at_rows(&[0]))

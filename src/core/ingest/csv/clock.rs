@@ -3,8 +3,12 @@
 use super::super::{
     cell::{Decimal, Marks, is_missing, number, unquote},
     stamp::{Stamp, Stopwatch},
+    text::quoted,
 };
-use super::time::Time;
+use super::{
+    parts::{InParts, Parts},
+    time::Time,
+};
 use crate::flight::Unit;
 
 /// Reads the times of rows, one behind the other.
@@ -43,11 +47,11 @@ impl Clock {
         }
     }
 
-    /// The seconds of a row.
+    /// The seconds of a row; `beside` are the cells of the columns of [`Time::beside`].
     ///
     /// # Errors
     /// Why its time cannot be read; nothing where there is none.
-    pub(super) fn read(&mut self, cell: &str, day: &str) -> Result<f64, Option<String>> {
+    pub(super) fn read(&mut self, cell: &str, beside: &[&str]) -> Result<f64, Option<String>> {
         if let Time::Even { .. } = self.time {
             // told when all rows are known
             return Ok(0.0);
@@ -55,6 +59,7 @@ impl Clock {
         if is_missing(unquote(cell)) {
             return Err(None);
         }
+        let day = beside.first().copied().unwrap_or_default();
         match self.time {
             Time::Even { .. } => Ok(0.0),
             Time::Numbers { unit, .. } => self.number(cell).map(|value| unit.to_si(value)),
@@ -64,9 +69,34 @@ impl Clock {
                 let first = *self.first.get_or_insert(week as i128);
                 Ok((week - first as f64) * WEEK + unit.to_si(self.number(cell)?))
             }
+            Time::Parts(InParts { parts, unit, .. }) => {
+                let parts = self.parts(parts, beside)?;
+                let finest = (unit.to_si(self.number(cell)?) * 1e9).round();
+                let stamp = Stamp::of_parts(parts, finest as i64);
+                self.seconds(Some(stamp.map_err(Some)?))
+            }
             Time::Stamps { .. } => self.seconds(Stamp::parse(cell)),
             Time::Dated { .. } => self.seconds(Stamp::parse_with_date(day, cell)),
         }
+    }
+
+    /// The whole numbers of the parts that there are.
+    fn parts(&self, parts: Parts, beside: &[&str]) -> Result<[Option<i64>; 6], Option<String>> {
+        let mut cells = beside.iter();
+        let mut numbers = [None; 6];
+        let there = numbers.iter_mut().zip(parts.columns);
+        for (number, _) in there.filter(|(_, column)| column.is_some()) {
+            let cell = cells.next().copied().unwrap_or_default();
+            let value = self.number(cell)?;
+            if value.fract() != 0.0 {
+                let cell = quoted(cell.trim());
+                return Err(Some(format!(
+                    "does not fit: {cell} beside it is not whole; only the finest part of a time may have a fraction"
+                )));
+            }
+            *number = Some(value as i64);
+        }
+        Ok(numbers)
     }
 
     fn number(&self, cell: &str) -> Result<f64, Option<String>> {
@@ -122,8 +152,8 @@ mod tests {
             },
             Marks::POINT,
         );
-        assert_eq!(clock.read("1795255200123456789", ""), Ok(0.0));
-        assert_eq!(clock.read("1795255200123456796", ""), Ok(7.0 * 1e-9));
+        assert_eq!(clock.read("1795255200123456789", &[]), Ok(0.0));
+        assert_eq!(clock.read("1795255200123456796", &[]), Ok(7.0 * 1e-9));
         let mut clock = Clock::new(
             Time::Epoch {
                 at: 0,
@@ -131,17 +161,20 @@ mod tests {
             },
             Marks::POINT,
         );
-        assert_eq!(clock.read("1795255200.123456789", ""), Ok(0.0));
-        assert_eq!(clock.read("\"1795255201.123456799\"", ""), Ok(1.000_000_01));
-        assert_eq!(clock.read("", ""), Err(None));
+        assert_eq!(clock.read("1795255200.123456789", &[]), Ok(0.0));
+        assert_eq!(
+            clock.read("\"1795255201.123456799\"", &[]),
+            Ok(1.000_000_01)
+        );
+        assert_eq!(clock.read("", &[]), Err(None));
     }
 
     #[test]
     fn an_epoch_has_no_end() {
         let unit = Unit::parse("s").unwrap();
         let mut clock = Clock::new(Time::Epoch { at: 0, unit }, Marks::POINT);
-        assert_eq!(clock.read("-1e300", ""), Ok(0.0));
-        assert!(clock.read("1e300", "").is_ok_and(f64::is_finite));
+        assert_eq!(clock.read("-1e300", &[]), Ok(0.0));
+        assert!(clock.read("1e300", &[]).is_ok_and(f64::is_finite));
     }
 
     #[test]
@@ -155,7 +188,7 @@ mod tests {
             },
             Marks::POINT,
         );
-        assert_eq!(clock.read("604799.5", "2300"), Ok(604_799.5));
-        assert_eq!(clock.read("0.5", "2301"), Ok(604_800.5));
+        assert_eq!(clock.read("604799.5", &["2300"]), Ok(604_799.5));
+        assert_eq!(clock.read("0.5", &["2301"]), Ok(604_800.5));
     }
 }

@@ -18,6 +18,7 @@ mod inspection;
 mod labview;
 mod layout;
 mod own_times;
+mod parts;
 mod plan;
 mod read;
 mod repeated;

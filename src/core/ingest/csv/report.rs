@@ -6,7 +6,7 @@ use super::super::{
     note::{self, absent, listed, note},
     text::quoted,
 };
-use super::{column::Use, described::Described, plan::Plan};
+use super::{column::Use, described::Described, plan::Plan, time::Time};
 
 /// What is odd about the columns.
 pub(super) fn findings(
@@ -19,6 +19,11 @@ pub(super) fn findings(
         let message = format!("the titles are those of the bundled mapping '{name}': it was used");
         let remedy = "give a mapping of your own where it does not fit";
         findings.push(note(FindingCode::Recognised, message, remedy));
+    }
+    if matches!(plan.time, Time::Week { .. }) {
+        let message = "time is that of the satellites: week and seconds of it, which are ahead of UTC by the leap seconds (18 s since 2017); it is left as it is";
+        let remedy = "nothing needs to be done within one recording; what another clock recorded beside it has an offset, which a mapping can say";
+        findings.push(note(FindingCode::Recognised, message.to_string(), remedy));
     }
     let why = |(title, fault): &(String, Fault)| {
         let why = fault.message.split_once(": ");

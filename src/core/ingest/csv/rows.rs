@@ -6,6 +6,7 @@ use super::super::{
     lines::{Line, Lines},
     mapping::NoValue,
     quick::quick_number,
+    stamp::PARTS,
 };
 use super::{
     clock::{Clock, NOT_A_NUMBER},
@@ -23,8 +24,8 @@ use super::{
 enum Cell {
     Skip,
     Time,
-    /// The date or the week beside the time.
-    Day,
+    /// Beside the time: the date, the week, or parts of it. Which of them it is.
+    Beside(usize),
     /// A channel's; which of the plan's columns it is.
     Channel(usize),
 }
@@ -65,8 +66,8 @@ struct Reader<'a> {
 impl<'a> Reader<'a> {
     fn new(written: &'a Written<'a>, plan: &'a Plan, capacity: usize) -> Self {
         let mut cells = vec![Cell::Skip; written.width];
-        for column in plan.time.columns() {
-            cells[column] = Cell::Day;
+        for (which, column) in plan.time.beside().enumerate() {
+            cells[column] = Cell::Beside(which);
         }
         if let Some(column) = plan.time.column() {
             cells[column] = Cell::Time;
@@ -169,7 +170,7 @@ impl<'a> Reader<'a> {
         } else {
             b'.'
         };
-        let (mut time, mut time_cell, mut day_cell) = (None, "", "");
+        let (mut time, mut time_cell, mut beside) = (None, "", [""; PARTS.len()]);
         let (mut from, mut count) = (0, 0);
         loop {
             let cell = self.cells.get(count).copied().unwrap_or(Cell::Skip);
@@ -180,7 +181,7 @@ impl<'a> Reader<'a> {
             let is_number = match cell {
                 Cell::Channel(_) => !marks.has_thousands,
                 Cell::Time => !marks.has_thousands && self.clock.takes_numbers(),
-                Cell::Day | Cell::Skip => false,
+                Cell::Beside(_) | Cell::Skip => false,
             };
             let quick = if is_number {
                 quick_number(rest, end_of_number, point)
@@ -206,7 +207,7 @@ impl<'a> Reader<'a> {
                     match cell {
                         Cell::Channel(at) => self.read_cell(at, said),
                         Cell::Time => time_cell = said,
-                        Cell::Day => day_cell = said,
+                        Cell::Beside(which) => beside[which] = said,
                         Cell::Skip => {}
                     }
                     length
@@ -243,7 +244,7 @@ impl<'a> Reader<'a> {
             Some(time) => Ok(time),
             None => self
                 .clock
-                .read(time_cell, day_cell)
+                .read(time_cell, &beside)
                 .map_err(|why| match why {
                     None if ending::is_empty(text, delimiter) => Trouble::Empty,
                     None => Trouble::NoTime,

@@ -7,7 +7,10 @@ use super::super::{
     stamp::Stamp,
     units::RecordedUnit,
 };
-use super::titles::Titles;
+use super::{
+    parts::{self, InParts, Parts},
+    titles::Titles,
+};
 use crate::flight::{Dimension, Fault, Unit};
 
 /// How the samples of a table get their times.
@@ -37,6 +40,8 @@ pub(super) enum Time {
         at: usize,
         unit: Unit,
     },
+    /// Parts of it, from the year down to the second, and the finest in a unit.
+    Parts(InParts),
     /// There is no column of it; seconds.
     Even {
         start: f64,
@@ -46,15 +51,18 @@ pub(super) enum Time {
 
 impl Time {
     pub(super) fn columns(self) -> impl Iterator<Item = usize> {
-        let (one, other) = match self {
-            Self::Numbers { at, .. } | Self::Epoch { at, .. } | Self::Stamps { at } => {
-                (Some(at), None)
-            }
-            Self::Dated { date, at } => (Some(date), Some(at)),
-            Self::Week { week, at, .. } => (Some(week), Some(at)),
-            Self::Even { .. } => (None, None),
+        self.beside().chain(self.column())
+    }
+
+    /// The columns that are read with [`Self::column`], in this order.
+    pub(super) fn beside(self) -> impl Iterator<Item = usize> {
+        let columns = match self {
+            Self::Dated { date, .. } => [Some(date), None, None, None, None, None],
+            Self::Week { week, .. } => [Some(week), None, None, None, None, None],
+            Self::Parts(InParts { parts, .. }) => parts.columns,
+            _ => [None; 6],
         };
-        one.into_iter().chain(other)
+        columns.into_iter().flatten()
     }
 
     /// The column by which a sample has a time.
@@ -64,7 +72,8 @@ impl Time {
             | Self::Epoch { at, .. }
             | Self::Stamps { at }
             | Self::Dated { at, .. }
-            | Self::Week { at, .. } => Some(at),
+            | Self::Week { at, .. }
+            | Self::Parts(InParts { at, .. }) => Some(at),
             Self::Even { .. } => None,
         }
     }
@@ -101,8 +110,32 @@ pub(super) fn of(titles: &Titles, said: &MappedTime, faults: &mut Vec<Fault>) ->
     let from = column("from", &said.from);
     let date = column("date", &said.date);
     let week = column("week", &said.week);
+    let mut parts = Parts::default();
+    let mut are_known = true;
+    for (column_of, (part, wanted)) in parts.columns.iter_mut().zip(said.parts()) {
+        match column(part, wanted) {
+            Some(at) => *column_of = at,
+            None => are_known = false,
+        }
+    }
     let (from, date, week) = (from?, date?, week?);
-    let Some(at) = from.or_else(|| found(titles)) else {
+    if !are_known {
+        return None;
+    }
+    if let Some(at) = from.filter(|_| said.has_parts()) {
+        return in_parts(titles, parts, at, said)
+            .map_err(|(place, (code, message))| faults.push(Fault::new(place, code, message)))
+            .ok();
+    }
+    let whole = from.or_else(|| found(titles));
+    // seconds may be those of a minute
+    if from.is_none()
+        && let Some(parts) = parts::found(titles)
+        && whole.is_none_or(|at| parts.has(at))
+    {
+        return Some(Time::Parts(parts));
+    }
+    let Some(at) = whole else {
         faults.push(no_time(titles));
         return None;
     };
@@ -130,6 +163,36 @@ pub(super) fn of(titles: &Titles, said: &MappedTime, faults: &mut Vec<Fault>) ->
             None
         }
     }
+}
+
+/// The finest part of a time of which a mapping says the others.
+fn in_parts(
+    titles: &Titles,
+    parts: Parts,
+    at: usize,
+    said: &MappedTime,
+) -> Result<Time, (&'static str, (&'static str, String))> {
+    if titles.stamp(at).is_some() {
+        let message =
+            "this column has time stamps, which need no parts beside them; leave these out"
+                .to_string();
+        return Err(("/time/from", (code::INVALID_MAPPING, message)));
+    }
+    let stated = match said.unit.is_empty() {
+        true => titles.label(at).map_err(|why| ("/time/from", why))?.unit,
+        false => &said.unit,
+    };
+    // beside seconds stands what is finer
+    let usual = if said.second.is_none() { "s" } else { "" };
+    let unit = if stated.is_empty() { usual } else { stated };
+    let unit = RecordedUnit::parse_time(unit).map_err(|why| ("/time/unit", why))?;
+    let unit = unit.unit();
+    Ok(Time::Parts(InParts {
+        parts,
+        at,
+        unit,
+        usual,
+    }))
 }
 
 fn place_of(titles: &Titles, at: usize) -> String {

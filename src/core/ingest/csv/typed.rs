@@ -146,12 +146,7 @@ fn times(plan: &Plan, columns: &Columns, name: &str) -> Times {
     let mut clock = Clock::new(plan.time, Marks::POINT);
     let cells = |at: usize| columns.list.get(at).map(|column| &column.cells);
     let time = plan.time.column().and_then(cells);
-    let day = plan
-        .time
-        .columns()
-        .next()
-        .filter(|&at| Some(at) != plan.time.column());
-    let day = day.and_then(cells);
+    let beside: Vec<_> = plan.time.beside().map(cells).collect();
     let mut times = Times {
         seconds: Vec::with_capacity(columns.rows),
         rows: Vec::with_capacity(columns.rows),
@@ -179,7 +174,12 @@ fn times(plan: &Plan, columns: &Columns, name: &str) -> Times {
                 };
                 known.map(|&value| since(value)).ok_or(None)
             }
-            _ => clock.read(&text_of(time, row), &text_of(day, row)),
+            _ => {
+                let beside: Vec<Cow<str>> =
+                    beside.iter().map(|&cells| text_of(cells, row)).collect();
+                let beside: Vec<&str> = beside.iter().map(Cow::as_ref).collect();
+                clock.read(&text_of(time, row), &beside)
+            }
         };
         match read {
             Ok(time) => {

@@ -14,6 +14,8 @@ pub(in super::super) struct Groups<S> {
 pub(in super::super) struct Group {
     pub(in super::super) name: String,
     pub(in super::super) rows: usize,
+    /// As many as the file says there are: more, where it is cut off.
+    pub(in super::super) said: usize,
     pub(in super::super) time: Time,
     pub(in super::super) channels: Vec<Channel>,
 }

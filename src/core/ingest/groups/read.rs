@@ -5,6 +5,7 @@ use indexmap::IndexMap;
 use super::super::axis::{TimeAxis, code_of};
 use super::super::fault::{CELLS_LISTED, of_file};
 use super::super::mapping::Mapping;
+use super::super::note;
 use super::super::reading::Reading;
 use super::super::text::quoted;
 use super::super::union::Union;
@@ -12,7 +13,7 @@ use super::super::{IngestError, Limits, code};
 use super::archive::{self, Source, even};
 use super::group::{Group, Groups, Samples, Time};
 use super::plan::Plan;
-use crate::flight::{Fault, Maneuver, Unit};
+use crate::flight::{Fault, Finding, FindingCode, Maneuver, Unit};
 
 /// Reads all channels; or those that a mapping names, as it says.
 ///
@@ -24,7 +25,10 @@ pub(in super::super) fn read<S: Samples>(
     limits: &Limits,
 ) -> Result<Reading, IngestError> {
     if let Some(mapping) = mapping {
-        return mapping.apply(&mut Source::of(groups, limits), limits);
+        let cut_off = cut_off(&groups.groups);
+        let mut reading = mapping.apply(&mut Source::of(groups, limits), limits)?;
+        reading.findings.extend(cut_off);
+        return Ok(reading);
     }
     let timed = groups
         .groups
@@ -34,9 +38,27 @@ pub(in super::super) fn read<S: Samples>(
     limits.columns(columns + 1).map_or(Ok(()), Err)?;
     let plan = Plan::of(&groups.groups, limits);
     check(&groups, &plan, limits)?;
-    let findings = plan.findings(&groups.left_out);
+    let mut findings = plan.findings(&groups.left_out);
     let maneuver = maneuver(&mut groups, plan, limits)?;
+    findings.extend(cut_off(&groups.groups));
     Ok(Reading { maneuver, findings })
+}
+
+/// That groups have fewer samples than the file says.
+fn cut_off(groups: &[Group]) -> Option<Finding> {
+    let told = groups.iter().filter(|group| group.rows < group.said);
+    let told: Vec<String> = told
+        .map(|group| {
+            let name = quoted(&group.name);
+            format!("{name} has {} of {} samples", group.rows, group.said)
+        })
+        .collect();
+    let message = format!(
+        "the file is cut off: {}",
+        note::listed(told.iter().cloned())
+    );
+    let remedy = "copy the file again, if it was whole where it was recorded";
+    (!told.is_empty()).then(|| note::note(FindingCode::CutOff, message, remedy))
 }
 
 /// # Errors
@@ -87,7 +109,9 @@ fn maneuver<S: Samples>(
     used.dedup();
     let mut axes = Vec::with_capacity(used.len());
     for &at in &used {
-        axes.push(times(&groups.groups[at], &mut groups.samples)?);
+        let axis = times(&groups.groups[at], &mut groups.samples)?;
+        groups.groups[at].rows = axis.len();
+        axes.push(axis);
     }
     let union = match axes.len() {
         1 => None,

@@ -26,6 +26,7 @@ fn group(name: &str, rows: usize, time: Time, channels: Vec<Channel>) -> Group {
     Group {
         name: name.to_string(),
         rows,
+        said: rows,
         time,
         channels,
     }

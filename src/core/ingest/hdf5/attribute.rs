@@ -6,22 +6,25 @@ use super::header::{Header, kind};
 
 /// The attribute of a name, where it is a text.
 pub(super) fn text(file: &File, header: &Header, name: &str) -> Option<String> {
+    bytes(file, header, name).map(trimmed)
+}
+
+/// The attribute of a name, where it is a text, as its bytes stand there.
+pub(super) fn bytes<'a>(file: &File<'a>, header: &Header<'a>, name: &str) -> Option<&'a [u8]> {
     let mut messages = header.all(kind::ATTRIBUTE);
-    messages.find_map(|message| text_of(file.within(message), name))
+    messages.find_map(|message| {
+        let (mut kind, mut value) = parts(file.within(message), name)?;
+        match Type::read(&mut kind)? {
+            Type::Text(width) => value.take(width),
+            _ => None,
+        }
+    })
 }
 
 /// Whether there is an attribute of a name.
 pub(super) fn is_there(file: &File, header: &Header, name: &str) -> bool {
     let mut messages = header.all(kind::ATTRIBUTE);
     messages.any(|message| parts(file.within(message), name).is_some())
-}
-
-fn text_of(cursor: Cursor, name: &str) -> Option<String> {
-    let (mut kind, mut value) = parts(cursor, name)?;
-    match Type::read(&mut kind)? {
-        Type::Text(width) => value.take(width).map(trimmed),
-        _ => None,
-    }
 }
 
 /// The type and the value of the attribute of a message, if it has the name.

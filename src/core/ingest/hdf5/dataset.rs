@@ -54,7 +54,11 @@ impl<'a> Dataset<'a> {
             largest,
             layout,
             filters,
-            fill: of_message(kind::FILL).and_then(fill),
+            // a file of the library's first versions has the older message alone
+            fill: match of_message(kind::FILL) {
+                Some(message) => fill(message),
+                None => of_message(kind::OLD_FILL).and_then(old_fill),
+            },
         }))
     }
 
@@ -273,6 +277,12 @@ fn fill(mut cursor: Cursor<'_>) -> Option<&[u8]> {
     cursor.take(length as usize)
 }
 
+/// The same in the older message.
+fn old_fill(mut cursor: Cursor<'_>) -> Option<&[u8]> {
+    let length = cursor.u32()?;
+    cursor.take(length as usize)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -350,6 +360,14 @@ mod tests {
         assert_eq!(of_chunks(&[2, 1, 0, 1, 1, 0, 0, 0, 7]), [1, 2, 7, 7]);
         assert_eq!(of_chunks(&[2, 1, 0, 0]), [1, 2, 0, 0]);
         assert_eq!(of_chunks(&[3, 0]), [1, 2, 0, 0]);
+        let old = |message: &[(u16, Vec<u8>)]| {
+            let messages = [std::slice::from_ref(&layout), message].concat();
+            read(&[2, 2], &[2, 2], &messages, &array).unwrap()
+        };
+        let in_old = (kind::OLD_FILL, vec![1, 0, 0, 0, 5]);
+        assert_eq!(old(std::slice::from_ref(&in_old)), [1, 2, 5, 5]);
+        let in_new = (kind::FILL, vec![3, 0x20, 1, 0, 0, 0, 7]);
+        assert_eq!(old(&[in_old, in_new]), [1, 2, 7, 7]);
         let mut layout = vec![3, 1];
         layout.extend(words(&[NOWHERE, 4]));
         let fill = (kind::FILL, vec![1, 1, 0, 1, 1, 0, 0, 0, 9]);

@@ -161,10 +161,11 @@ fn compound(
 
 /// A name, which in older versions ends at a multiple of eight bytes.
 fn padded(cursor: &mut Cursor, version: u8) -> Option<String> {
+    let before = cursor.rest().len();
     let name = cursor.text()?;
     if version < 3 {
-        // as many bytes stood there; what was replaced in them is no matter
-        let used = name.len() + 1;
+        // the bytes of the file: a letter in Latin-1 becomes a longer one
+        let used = before - cursor.rest().len();
         cursor.take(used.next_multiple_of(8) - used)?;
     }
     Some(name)
@@ -221,4 +222,32 @@ fn float(width: usize, order: Order) -> Option<Stored> {
         8 => stored!(f64, order),
         _ => return None,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::file::{File, SIGNATURE};
+    use super::*;
+
+    #[test]
+    fn names_may_be_in_latin_1() {
+        let bytes = [SIGNATURE, &[2, 8, 8, 0], &[0; 36]].concat();
+        let file = File::of(&bytes).unwrap();
+        // of version 1: names end at a multiple of eight bytes
+        let mut kind = vec![0x16, 2, 0, 0, 2, 0, 0, 0];
+        for (at, name) in [&b"[deg]\0\0\0"[..], b"alpha [\xb0]\0\0\0\0\0\0\0"]
+            .into_iter()
+            .enumerate()
+        {
+            kind.extend(name);
+            kind.extend([at as u8, 0, 0, 0]);
+            kind.extend([0; 28]);
+            kind.extend([0x10, 0, 0, 0, 1, 0, 0, 0, 0, 0, 8, 0]);
+        }
+        let Some(Type::Compound(fields, 2)) = Type::read(&mut file.within(&kind)) else {
+            panic!("a type with fields");
+        };
+        let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
+        assert_eq!(names, ["[deg]", "alpha [°]"]);
+    }
 }

@@ -185,7 +185,11 @@ impl<'a> Cursor<'a> {
         let end = memchr::memchr(0, self.rest)?;
         let text = self.take(end)?;
         self.take(1)?;
-        Some(String::from_utf8_lossy(text).into_owned())
+        Some(match str::from_utf8(text) {
+            Ok(text) => text.to_string(),
+            // programs of before write Latin-1
+            Err(_) => text.iter().map(|&byte| char::from(byte)).collect(),
+        })
     }
 }
 

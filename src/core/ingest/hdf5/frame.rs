@@ -8,6 +8,7 @@ use super::dataset::Dataset;
 use super::datatype::Type;
 use super::file::File;
 use super::objects::Object;
+use super::pickle::pickled;
 use super::room;
 use crate::flight::Fault;
 
@@ -170,7 +171,9 @@ impl<'a> Reading<'_, 'a> {
         let described: Vec<(Vec<String>, String)> = fields
             .iter()
             .map(|field| {
-                let titles = pickled(&text(&format!("{}_kind", field.name)));
+                let titles = format!("{}_kind", field.name);
+                let titles = attribute::bytes(self.file, &object.header, &titles);
+                let titles = pickled(titles.unwrap_or_default());
                 let kind = match field.name == "index" {
                     true => text("index_kind"),
                     false => text(&format!("{}_dtype", field.name)),
@@ -329,18 +332,9 @@ fn name_of_index(name: &str) -> String {
     let is_plain = !name.is_empty() && !name.ends_with('.');
     let name = match is_plain {
         true => Some(name.to_string()),
-        false => pickled(name).into_iter().next(),
+        false => pickled(name.as_bytes()).into_iter().next(),
     };
     name.unwrap_or_else(|| "index".to_string())
-}
-
-/// The texts in a list, or the one text, that Python pickled with protocol 0.
-fn pickled(text: &str) -> Vec<String> {
-    let texts = text.lines().filter_map(|line| {
-        let line = line.strip_prefix('a').unwrap_or(line);
-        line.strip_prefix('V').map(str::to_string)
-    });
-    texts.collect()
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ pub(super) mod kind {
     pub(in super::super) const DATASPACE: u16 = 0x01;
     pub(in super::super) const LINK_INFO: u16 = 0x02;
     pub(in super::super) const DATATYPE: u16 = 0x03;
+    pub(in super::super) const OLD_FILL: u16 = 0x04;
     pub(in super::super) const FILL: u16 = 0x05;
     pub(in super::super) const LINK: u16 = 0x06;
     pub(in super::super) const LAYOUT: u16 = 0x08;
@@ -16,10 +17,11 @@ pub(super) mod kind {
     pub(in super::super) const ATTRIBUTE: u16 = 0x0c;
     pub(super) const CONTINUATION: u16 = 0x10;
     pub(in super::super) const SYMBOL_TABLE: u16 = 0x11;
-    pub(super) const ALL: [u16; 9] = [
+    pub(super) const ALL: [u16; 10] = [
         DATASPACE,
         LINK_INFO,
         DATATYPE,
+        OLD_FILL,
         FILL,
         LINK,
         LAYOUT,

@@ -23,6 +23,7 @@ mod header;
 mod index;
 mod layout;
 mod objects;
+mod pickle;
 mod room;
 
 use super::{

@@ -194,9 +194,7 @@ impl Mapping {
             || self.optional
             || self.skip.is_some()
             || self.header.is_some()
-            || time.date.is_some()
-            || time.week.is_some()
-            || time.repeated.is_some();
+            || time.for_tables().is_some();
         !is_for_tables
             && !self.channels.is_empty()
             && time.from.iter().chain(of_channels).all(is_part)

@@ -69,12 +69,7 @@ impl Axes {
 /// The axis of the recording, where the mapping says one.
 fn main(mapping: &Mapping, archive: &mut impl Archive) -> Result<Option<AxisSource>, IngestError> {
     let time = &mapping.time;
-    let of_tables = [
-        ("date", time.date.is_some()),
-        ("week", time.week.is_some()),
-        ("repeated", time.repeated.is_some()),
-    ];
-    if let Some((member, _)) = of_tables.into_iter().find(|(_, is_said)| *is_said) {
+    if let Some(member) = time.for_tables() {
         let message = "this is for tables of text, and this file is none";
         return Err(refused(&pointer(["time", member]), message).into());
     }

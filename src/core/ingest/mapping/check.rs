@@ -1,7 +1,7 @@
 //! What a mapping may not say, whatever file it is for.
 
 use super::super::{code, fault::pointer};
-use super::{MappedChannel, Mapping, Titles};
+use super::{MappedChannel, MappedTime, Mapping, Titles};
 use crate::flight::Fault;
 
 impl Mapping {
@@ -28,17 +28,38 @@ impl Mapping {
         if is_said_twice || time.start.is_some() && time.step.is_none() {
             return Err(refused("/time", EITHER));
         }
-        for (member, titles) in [
+        let others = [
             ("from", &time.from),
             ("date", &time.date),
             ("week", &time.week),
-        ] {
+        ];
+        for (member, titles) in others.into_iter().chain(time.parts()) {
             if titles.as_ref().is_some_and(Titles::is_empty) {
                 return Err(refused(&pointer(["time", member]), "this title is empty"));
             }
         }
-        Ok(())
+        check_parts(time)
     }
+}
+
+/// What parts of a time may stand beside each other.
+fn check_parts(time: &MappedTime) -> Result<(), Fault> {
+    if !time.has_parts() {
+        return Ok(());
+    }
+    if time.from.is_none() || time.date.is_some() || time.week.is_some() {
+        let message = "a time in parts has \"from\" for the finest of them, and neither \"date\" nor \"week\"";
+        return Err(refused("/time", message));
+    }
+    let is_whole = match (&time.year, &time.month, &time.day) {
+        (None, None, _) | (Some(_), None, Some(_)) | (Some(_), Some(_), Some(_)) => true,
+        _ => false,
+    };
+    let message =
+        "a month needs a year and a day, and a year a day; a day alone is that of the year";
+    is_whole
+        .then_some(())
+        .ok_or_else(|| refused("/time", message))
 }
 
 /// How time is said.

@@ -16,6 +16,27 @@ impl Draft {
         };
     }
 
+    /// Time in several columns: from the year down to the second where there are such, and the finest in a unit.
+    pub(in super::super) fn time_in_parts(
+        &mut self,
+        parts: [Option<String>; 6],
+        from: &str,
+        unit: &str,
+    ) {
+        let [year, month, day, hour, minute, second] = parts.map(|part| part.map(Titles::One));
+        self.0.time = MappedTime {
+            unit: unit.to_string(),
+            from: Some(Titles::One(from.to_string())),
+            year,
+            month,
+            day,
+            hour,
+            minute,
+            second,
+            ..MappedTime::default()
+        };
+    }
+
     /// Time that no column has: its step is to be said.
     pub(in super::super) fn even_time(&mut self) {
         self.0.time = MappedTime {

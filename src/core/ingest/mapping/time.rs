@@ -20,6 +20,20 @@ pub(in super::super) struct MappedTime {
     /// The column of a table that has the week of the satellites' clock; `from` has its seconds, or in `unit`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(in super::super) week: Option<Titles>,
+    /// Columns of a table that have the time from the year down to the second; `from` has what is finer, or the seconds, in
+    /// `unit`. A day without a month is that of the year.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(in super::super) year: Option<Titles>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(in super::super) month: Option<Titles>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(in super::super) day: Option<Titles>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(in super::super) hour: Option<Titles>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(in super::super) minute: Option<Titles>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(in super::super) second: Option<Titles>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(in super::super) start: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -32,6 +46,34 @@ pub(in super::super) struct MappedTime {
 impl MappedTime {
     pub(super) fn is_silent(&self) -> bool {
         *self == Self::default()
+    }
+
+    /// What it says of the parts of a time, by their names.
+    pub(in super::super) fn parts(&self) -> [(&'static str, &Option<Titles>); 6] {
+        [
+            ("year", &self.year),
+            ("month", &self.month),
+            ("day", &self.day),
+            ("hour", &self.hour),
+            ("minute", &self.minute),
+            ("second", &self.second),
+        ]
+    }
+
+    pub(in super::super) fn has_parts(&self) -> bool {
+        self.parts().iter().any(|(_, titles)| titles.is_some())
+    }
+
+    /// The first member that is for tables only.
+    pub(super) fn for_tables(&self) -> Option<&'static str> {
+        let parts = self.parts().map(|(part, titles)| (part, titles.is_some()));
+        let others = [
+            ("date", self.date.is_some()),
+            ("week", self.week.is_some()),
+            ("repeated", self.repeated.is_some()),
+        ];
+        let mut all = others.into_iter().chain(parts);
+        all.find_map(|(member, is_said)| is_said.then_some(member))
     }
 
     /// Whether it says where time is.

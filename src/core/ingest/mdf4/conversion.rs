@@ -16,11 +16,21 @@ pub(super) enum Conversion {
     },
     /// From, to, and the value there; and the value elsewhere.
     Ranges(Vec<[f64; 3]>, f64),
+    /// From, to, and the conversion there; and the conversion elsewhere. `None`: a text, which is no value.
+    Conversions(Vec<([f64; 2], Option<Conversion>)>, Option<Box<Conversion>>),
 }
+
+/// Conversions in conversions.
+const DEEPEST: u32 = 4;
 
 impl Conversion {
     /// `None` where it is one that is not read, or has more numbers than the `room`, of which they are taken.
     pub(super) fn read(file: &[u8], block: &Block, room: &mut usize) -> Option<Self> {
+        Self::within(file, block, room, DEEPEST)
+    }
+
+    fn within(file: &[u8], block: &Block, room: &mut usize, depth: u32) -> Option<Self> {
+        let depth = depth.checked_sub(1)?;
         let mut cursor = block.cursor();
         let kind = cursor.u8()?;
         cursor.take(5)?;
@@ -30,7 +40,14 @@ impl Conversion {
         *room = room.checked_sub(values.len())?;
         Some(match (kind, &values[..]) {
             // texts that numbers stand for; but there may be conversions between them
-            (7 | 8, _) if leads_to_another(file, block) => return None,
+            (7, values) if leads_to_another(file, block) => {
+                let keys = values.iter().map(|key| [*key; 2]);
+                Self::conversions(file, block, keys, room, depth)?
+            }
+            (8, values) if leads_to_another(file, block) => {
+                let ranges = values.as_chunks::<2>().0.iter().copied();
+                Self::conversions(file, block, ranges, room, depth)?
+            }
             (0 | 7 | 8, _) => Self::None,
             (1, [offset, factor, ..]) => Self::Linear(*offset, *factor),
             (2, [a, b, c, d, e, f, ..]) => Self::Rational([*a, *b, *c, *d, *e, *f]),
@@ -46,6 +63,28 @@ impl Conversion {
             }
             _ => return None,
         })
+    }
+
+    /// What links of a table of texts lead to, one for each range, and the last for what is in none.
+    fn conversions(
+        file: &[u8],
+        block: &Block,
+        ranges: impl Iterator<Item = [f64; 2]>,
+        room: &mut usize,
+        depth: u32,
+    ) -> Option<Self> {
+        let mut links = block.links().skip(OTHER_LINKS);
+        let mut next = || -> Option<Option<Self>> {
+            *room = room.checked_sub(1)?;
+            match Block::read(file, links.next().unwrap_or(0)) {
+                Ok(block) if block.kind == *b"CC" => {
+                    Self::within(file, &block, room, depth).map(Some)
+                }
+                _ => Some(None),
+            }
+        };
+        let ranges: Option<Vec<_>> = ranges.map(|range| Some((range, next()?))).collect();
+        Some(Self::Conversions(ranges?, next()?.map(Box::new)))
     }
 
     /// NaN, which is no value, remains NaN.
@@ -66,6 +105,15 @@ impl Conversion {
                     .iter()
                     .find(is_in)
                     .map_or(*elsewhere, |[_, _, value]| *value)
+            }
+            Self::Conversions(ranges, elsewhere) => {
+                let mut ranges = ranges.iter();
+                let found = ranges.find(|([from, to], _)| (*from..=*to).contains(&raw));
+                let conversion = match found {
+                    Some((_, conversion)) => conversion.as_ref(),
+                    None => elsewhere.as_deref(),
+                };
+                conversion.map_or(f64::NAN, |conversion| conversion.apply(raw))
             }
         }
     }
@@ -116,23 +164,55 @@ mod tests {
         assert!(Conversion::read(&bytes, &block, &mut room).is_none());
     }
 
+    /// A block of a conversion: its kind, values, and what it leads to besides.
+    fn block(kind: u8, values: &[f64], links: &[u64]) -> Vec<u8> {
+        let count = (values.len() as u16).to_le_bytes();
+        let mut data = vec![kind, 0, 0, 0, links.len() as u8, 0];
+        data.extend(count);
+        data.extend([0; 16]);
+        data.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+        let links = [&[0; OTHER_LINKS], links].concat();
+        let mut bytes = b"##CC\0\0\0\0".to_vec();
+        bytes.extend((HEAD + 8 * links.len() + data.len()).to_le_bytes());
+        bytes.extend(links.len().to_le_bytes());
+        bytes.extend(links.iter().flat_map(|link| link.to_le_bytes()));
+        bytes.extend(data);
+        bytes
+    }
+
+    fn read(bytes: &[u8], room: usize) -> Option<Conversion> {
+        Conversion::read(bytes, &Block::read(bytes, 0).unwrap(), &mut { room })
+    }
+
     #[test]
-    fn texts_between_which_there_is_a_conversion_are_not_read() {
-        let mut bytes = Vec::new();
-        for (kind, link) in [(b"CC", 104u64), (b"CC", 208), (b"TX", 0)] {
-            bytes.extend(b"##");
-            bytes.extend(kind);
-            bytes.extend([0; 4]);
-            let data = [&[7, 0, 0, 0, 1, 0, 0, 0][..], &[0; 32]].concat();
-            let links = [0, 0, 0, 0, link];
-            bytes.extend((HEAD + 8 * links.len() + data.len()).to_le_bytes());
-            bytes.extend(links.len().to_le_bytes());
-            bytes.extend(links.iter().flat_map(|link| link.to_le_bytes()));
-            bytes.extend(data);
+    fn conversions_may_stand_between_texts() {
+        let linear = block(1, &[-5.0, 0.01], &[]);
+        let text = b"##TX\0\0\0\0\x20\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0SNA\0\0\0\0\0";
+        // 255 is a text, all else is converted
+        let of = |kind: u8, values: &[f64], links: &[u64]| {
+            let length = block(kind, values, links).len() as u64;
+            let links: Vec<u64> = links.iter().map(|at| length + at).collect();
+            [&block(kind, values, &links), &linear, &text[..]].concat()
+        };
+        let to_text = linear.len() as u64;
+        for bytes in [
+            of(7, &[255.0], &[to_text, 0]),
+            of(8, &[250.0, 255.0], &[to_text, 0]),
+            // the other way round: only 100 has a value
+            of(7, &[100.0], &[0, to_text]),
+        ] {
+            let conversion = read(&bytes, 100).unwrap();
+            assert_eq!(conversion.apply(100.0), -4.0);
+            assert!(conversion.apply(255.0).is_nan());
+            assert!(read(&bytes, 3).is_none(), "numbers and links count");
         }
-        let read = |at| Conversion::read(&bytes, &Block::read(&bytes, at).unwrap(), &mut 0);
-        assert!(read(0).is_none());
-        assert!(matches!(read(104), Some(Conversion::None)));
+        let texts = of(7, &[1.0], &[to_text, to_text]);
+        assert!(matches!(read(&texts, 1), Some(Conversion::None)));
+        // one that leads to itself
+        let mut circle = vec![0; 8];
+        circle.extend(block(7, &[1.0], &[8, 8]));
+        let start = Block::read(&circle, 8).unwrap();
+        assert!(Conversion::read(&circle, &start, &mut 1000).is_none());
     }
 
     #[test]

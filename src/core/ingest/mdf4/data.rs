@@ -40,10 +40,10 @@ pub(super) fn records<'a>(
 }
 
 /// Bytes of all records behind a link, without unpacking them; what cannot be read has none. So many of the blocks `left` are
-/// taken as are looked at.
-pub(super) fn length(file: &[u8], address: u64, left: &mut usize) -> usize {
-    let Ok(block) = Block::read(file, address) else {
-        return 0;
+/// taken as are looked at. `None`: they are stored in a way that is not read.
+pub(super) fn length(file: &[u8], address: u64, left: &mut usize) -> Option<usize> {
+    let Some(block) = Block::read(file, address).ok().filter(|_| address != 0) else {
+        return Some(0);
     };
     let of_block = |block: &Block| match &block.kind {
         b"DZ" => Packed::read(block).map_or(0, |packed| packed.length),
@@ -53,7 +53,8 @@ pub(super) fn length(file: &[u8], address: u64, left: &mut usize) -> usize {
     let mut list = match &block.kind {
         b"HL" => block.link(0),
         b"DL" => address,
-        _ => return of_block(&block),
+        b"DT" | b"DZ" => return Some(of_block(&block)),
+        _ => return None,
     };
     let mut length = 0usize;
     while let Ok(Some(block)) = Block::find(file, list, b"DL") {
@@ -62,7 +63,7 @@ pub(super) fn length(file: &[u8], address: u64, left: &mut usize) -> usize {
             length = length.saturating_add(of_link);
             *left = left.saturating_sub(1);
             if *left == 0 {
-                return length;
+                return Some(length);
             }
         }
         list = block.link(0);
@@ -71,7 +72,7 @@ pub(super) fn length(file: &[u8], address: u64, left: &mut usize) -> usize {
             break;
         }
     }
-    length
+    Some(length)
 }
 
 struct Gathering<'g, 'a> {
@@ -219,8 +220,8 @@ mod tests {
         bytes.extend(0u64.to_le_bytes());
         bytes.extend([0; 5]);
         let mut left = 100;
-        assert_eq!((length(&bytes, 8, &mut left), left), (20, 95));
+        assert_eq!((length(&bytes, 8, &mut left), left), (Some(20), 95));
         left = 2;
-        assert_eq!((length(&bytes, 8, &mut left), left), (10, 0));
+        assert_eq!((length(&bytes, 8, &mut left), left), (Some(10), 0));
     }
 }

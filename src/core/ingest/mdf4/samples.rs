@@ -70,6 +70,11 @@ impl Samples for Values<'_> {
                 .map_or(number as f64, |field| field.read(record));
             wanted.conversion.apply(raw)
         };
+        if records.length == 0 && records.number_width == 0 {
+            // nothing but the number of each record is there
+            let records = (0..records.count).map(|number| (number, &[][..]));
+            return Ok(records.map(value).collect());
+        }
         if records.number_width == 0 {
             let records = data.chunks_exact(records.length.max(1)).take(records.count);
             return Ok(records.enumerate().map(value).collect());

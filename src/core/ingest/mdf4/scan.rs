@@ -122,22 +122,26 @@ impl<'a> Scan<'a> {
             .collect();
         lengths.sort_unstable();
         let lengths = Rc::new(lengths);
-        let mut of_data = None;
+        let mut found = None;
         for said in said
             .iter()
             .filter(|said| said.flags & IS_OF_ANY_LENGTH == 0)
         {
             let length = said.data.saturating_add(said.invalid);
             let mut count = said.count;
-            // a file that was not finished does not say how many there are
-            if count == 0 && number_width == 0 {
+            // records without bytes are there if the file says so
+            if length > 0 && number_width == 0 {
                 let (file, blocks) = (self.file, &mut self.blocks);
-                let of_data =
-                    *of_data.get_or_insert_with(|| data::length(file, data.link(2), blocks));
+                let found = *found.get_or_insert_with(|| data::length(file, data.link(2), blocks));
                 if self.blocks == 0 {
                     return Err(damaged("its lists of data have no end"));
                 }
-                count = of_data.checked_div(length).unwrap_or(0);
+                let there = found.map_or(count, |bytes| bytes / length);
+                count = match count {
+                    // a file that was not finished does not say how many there are
+                    0 => there,
+                    _ => count.min(there),
+                };
             }
             let records = Records {
                 data: data.link(2),
@@ -160,6 +164,7 @@ impl<'a> Scan<'a> {
         let mut group = Group {
             name,
             rows: records.count,
+            said: said.count.max(records.count),
             time: Time::Unknown,
             channels: Vec::new(),
         };

@@ -5,4 +5,5 @@ mod order;
 mod table;
 
 pub(super) use log::Log;
+pub(super) use order::longest_in_order;
 pub(super) use table::{Field, Fields, Row, Table};

@@ -4,7 +4,7 @@
 ///
 /// A row goes on with the longest run that ends before it; of runs of one length only the one that ends first is of use. So
 /// a wrong time costs its own row, and not those behind it.
-pub(super) fn longest_in_order<R: Copy>(rows: &[R], time: impl Fn(R) -> f64) -> Vec<R> {
+pub(in super::super) fn longest_in_order<R: Copy>(rows: &[R], time: impl Fn(R) -> f64) -> Vec<R> {
     // each row, and the number of the one before it in its run: its own where it is the first
     let mut links: Vec<(R, u32)> = Vec::with_capacity(rows.len());
     // of runs by their length: the number of the row at their end

@@ -120,6 +120,7 @@ impl Making {
                 None => self.groups.push(Group {
                     name: name.to_string(),
                     rows: found.rows,
+                    said: found.rows,
                     time,
                     channels: vec![channel],
                 }),

@@ -23,9 +23,10 @@ pub(super) fn edited(
             )),
         }
     }
-    for (name, &value) in &spec.constants {
+    for (name, value) in &spec.constants {
         if let Some(constant) = document.constants.get_mut(name) {
-            constant.value = value;
+            // what stands in a recording and could not be found there is a fault already
+            constant.value = value.number().unwrap_or(constant.value);
             continue;
         }
         let known = document.constants.keys().map(String::as_str);

@@ -7,6 +7,7 @@ mod diagnosis;
 mod document;
 mod elsewhere;
 mod filter;
+mod flown;
 mod gaps;
 mod initial;
 mod knowledge;
@@ -48,6 +49,8 @@ pub fn prepare(
     maneuvers: &[Arc<Maneuver>],
 ) -> Result<Plan, Faults> {
     let (mut faults, mut findings) = (Vec::new(), Vec::new());
+    let spec = flown::resolved(spec, declared, &mut faults);
+    let spec = spec.as_ref();
     let document = document::edited(spec, declared, &mut faults);
     checks::check_shape(spec, maneuvers.len(), &mut faults);
     checks::check_kind(spec, &mut faults);

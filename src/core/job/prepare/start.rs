@@ -4,6 +4,7 @@ use super::resolve::Named;
 use super::stretch::Stretch;
 use crate::estimate::Unknowns;
 use crate::flight::{Dimension, Fault, escape};
+use crate::job::constant::ConstantValue;
 use crate::job::spec::JobSpec;
 use crate::model::{ChannelFormula, Model, Start};
 use crate::simulate::Segment;
@@ -18,8 +19,9 @@ pub(super) fn unknowns(
         let info = &model.parameters[parameter];
         let (segment, stretch) = &resolved[segment];
         let usage = &spec.maneuvers[stretch.index];
-        if let Some(value) = usage.constants.get(&info.name) {
-            return Ok(info.unit.to_si(*value));
+        let own = usage.constants.get(&info.name);
+        if let Some(value) = own.and_then(ConstantValue::number) {
+            return Ok(info.unit.to_si(value));
         }
         let own = usage.start.get(&info.name);
         let text = match own.unwrap_or(&info.document.start) {

@@ -14,6 +14,7 @@ use uuid::Uuid;
 use super::job::JobResource;
 use super::submit::{check, new_job, room};
 use crate::http::code::Code;
+use crate::http::handlers::flown::with_flown;
 use crate::http::middleware::once::NewId;
 use crate::http::problem::{Problem, ProblemDocument};
 use crate::http::request::json::{self, JsonBody};
@@ -113,7 +114,8 @@ async fn one(
     let mut job = common.clone();
     job.insert("maneuvers".to_string(), Value::Array(vec![maneuver]));
     let text = Value::Object(job).to_string();
-    let spec: Arc<JobSpec> = Arc::new(json::parse(&text)?);
+    let (spec, text) = with_flown(service, json::parse::<JobSpec>(&text)?, text).await?;
+    let spec = Arc::new(spec);
     let (model, _) = check(service, &spec).await?;
     new_job(&spec, text, &model)
 }

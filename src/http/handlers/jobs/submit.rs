@@ -13,6 +13,7 @@ use utoipa_axum::routes;
 use super::job::JobResource;
 use crate::flight::Maneuver;
 use crate::http::code::Code;
+use crate::http::handlers::flown::with_flown;
 use crate::http::handlers::models;
 use crate::http::middleware::once::NewId;
 use crate::http::problem::{Problem, ProblemDocument};
@@ -69,6 +70,7 @@ async fn submit_job(
     headers: HeaderMap,
     JsonBody { value: spec, text }: JsonBody<JobSpec>,
 ) -> Result<Response, Problem> {
+    let (spec, text) = with_flown(&service, spec, text).await?;
     let spec = Arc::new(spec);
     let (model, prepared) = check(&service, &spec).await?;
     if query.validate_only {

@@ -1,0 +1,160 @@
+//! What was flown: said of a recording at any time, and found by.
+
+use sqlx::{AssertSqlSafe, Row};
+
+use super::maneuvers::{COLUMNS, ManeuverFilter, ManeuverRecord, read_record};
+use super::page::one_more;
+use super::{BadCursor, Page, Project, StoreError};
+use crate::flight::Flown;
+
+impl Project {
+    /// Changes the name of a maneuver, and what is said of it: `change` has both as they are, and answers with both as they
+    /// shall be, or with why they stay. Changes at one time come one after the other. `None`: there is no such maneuver.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub async fn change_maneuver<E>(
+        &self,
+        id: &str,
+        change: impl FnOnce(&str, &Flown) -> Result<(String, Flown), E>,
+    ) -> Result<Option<Result<ManeuverRecord, E>>, StoreError> {
+        let mut writing = self.store.begin().await?;
+        // safe: put together from constants
+        let sql = format!(
+            "SELECT {COLUMNS} FROM maneuvers WHERE project = $1 AND id = $2 {}",
+            self.store.engine.locking()
+        );
+        let row = sqlx::query(AssertSqlSafe(sql))
+            .bind(&*self.name)
+            .bind(id)
+            .fetch_optional(writing.connection())
+            .await?;
+        let Some(row) = row else { return Ok(None) };
+        let mut record = read_record(&row)?;
+        match change(&record.name, &record.flown) {
+            Ok((name, flown)) => (record.name, record.flown) = (name, flown),
+            Err(why) => return Ok(Some(Err(why))),
+        }
+        let text =
+            serde_json::to_string(&record.flown).map_err(|error| StoreError::Unwritable {
+                what: "what was flown".into(),
+                why: error.to_string(),
+            })?;
+        let sql = "UPDATE maneuvers SET name = $3, flown = $4 WHERE project = $1 AND id = $2";
+        sqlx::query(sql)
+            .bind(&*self.name)
+            .bind(id)
+            .bind(&record.name)
+            .bind(text)
+            .execute(writing.connection())
+            .await?;
+        sqlx::query("DELETE FROM maneuver_marks WHERE project = $1 AND maneuver = $2")
+            .bind(&*self.name)
+            .bind(id)
+            .execute(writing.connection())
+            .await?;
+        for (mark, value) in marks(&record.flown) {
+            let sql = "INSERT INTO maneuver_marks (project, mark, value, maneuver) VALUES ($1, $2, $3, $4) ON CONFLICT DO NOTHING";
+            sqlx::query(sql)
+                .bind(&*self.name)
+                .bind(mark)
+                .bind(value)
+                .bind(id)
+                .execute(writing.connection())
+                .await?;
+        }
+        writing.commit().await?;
+        Ok(Some(Ok(record)))
+    }
+
+    /// Maneuvers that pass the filter, newest first.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn maneuvers(
+        &self,
+        filter: &ManeuverFilter,
+        cursor: Option<&str>,
+        limit: usize,
+    ) -> Result<Result<Page<ManeuverRecord>, BadCursor>, StoreError> {
+        const LATEST: &str = "9999-12-31T23:59:59.999Z";
+        let (created, id) = match cursor.map(|cursor| cursor.split_once('~')) {
+            None => (LATEST, ""),
+            Some(Some(position)) => position,
+            Some(None) => return Ok(Err(BadCursor)),
+        };
+        let wanted = [
+            ("tag", &filter.tag),
+            ("aircraft", &filter.aircraft),
+            ("registration", &filter.registration),
+            ("flight", &filter.flight),
+            ("test_point", &filter.test_point),
+        ];
+        let wanted: Vec<(&str, &String)> = (wanted.into_iter())
+            .filter_map(|(mark, value)| Some((mark, value.as_ref()?)))
+            .collect();
+        let mut sql = format!(
+            "SELECT {COLUMNS} FROM maneuvers \
+             WHERE project = $1 AND (created < $2 OR (created = $2 AND id < $3))"
+        );
+        for (number, (mark, _)) in wanted.iter().enumerate() {
+            sql += &format!(
+                " AND id IN (SELECT maneuver FROM maneuver_marks WHERE project = $1 AND mark = '{mark}' AND value = ${})",
+                number + 5
+            );
+        }
+        sql += " ORDER BY created DESC, id DESC LIMIT $4";
+        // safe: put together from constants; what users wrote is bound
+        let mut query = sqlx::query(AssertSqlSafe(sql))
+            .bind(&*self.name)
+            .bind(created)
+            .bind(id)
+            .bind(one_more(limit));
+        for (_, value) in wanted {
+            query = query.bind(value);
+        }
+        let rows = query.fetch_all(&self.store.readers).await?;
+        let records = rows.iter().map(read_record).collect::<Result<_, _>>()?;
+        Ok(Ok(Page::new(records, limit, |record| {
+            format!("{}~{}", record.created, record.id)
+        })))
+    }
+
+    /// What was flown in recordings, in the order of `ids`; nothing of one that is not there.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn flown(&self, ids: &[&str]) -> Result<Vec<Option<Flown>>, StoreError> {
+        let mut all = Vec::with_capacity(ids.len());
+        for id in ids {
+            let row = sqlx::query("SELECT flown FROM maneuvers WHERE project = $1 AND id = $2")
+                .bind(&*self.name)
+                .bind(*id)
+                .fetch_optional(&self.store.readers)
+                .await?;
+            let Some(row) = row else {
+                all.push(None);
+                continue;
+            };
+            let flown = serde_json::from_str(row.try_get("flown")?)
+                .map_err(|error| StoreError::corrupt(format!("maneuver {id}"), error))?;
+            all.push(Some(flown));
+        }
+        Ok(all)
+    }
+}
+
+/// By what a recording is found.
+fn marks(flown: &Flown) -> Vec<(&'static str, &String)> {
+    let one = [
+        ("aircraft", &flown.aircraft),
+        ("registration", &flown.registration),
+        ("flight", &flown.flight),
+        ("test_point", &flown.test_point),
+    ];
+    let one = one
+        .into_iter()
+        .filter_map(|(mark, value)| Some((mark, value.as_ref()?)));
+    one.chain(flown.tags.iter().map(|tag| ("tag", tag)))
+        .collect()
+}
