@@ -14,6 +14,8 @@ mod fit;
 mod health;
 mod inspect;
 mod key;
+mod linear;
+mod linear_tables;
 mod local;
 mod mapping;
 mod model;
@@ -62,6 +64,7 @@ enum Command {
     Fit(fit::Fit),
     Study(study::Study),
     Diagnose(diagnose::Diagnose),
+    Linear(linear::Linear),
     Submit(submit::Submit),
     Watch(watch::Watch),
     Simulate(simulate::Simulate),
@@ -85,6 +88,7 @@ pub fn main() -> ExitCode {
         Command::Fit(fit) => fit.run(),
         Command::Study(study) => study.run(),
         Command::Diagnose(diagnose) => diagnose.run(),
+        Command::Linear(linear) => linear.run(),
         Command::Submit(submit) => block_on(submit.run()),
         Command::Watch(watch) => block_on(watch.run()),
         Command::Simulate(simulate) => simulate.run(),

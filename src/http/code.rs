@@ -80,6 +80,8 @@ codes! {
     NoResult "no_result" NOT_FOUND "The job has no result";
     /// The result has no trajectory: `detail` says why.
     NoTrajectory "no_trajectory" CONFLICT "There is no trajectory";
+    /// The estimated model cannot be linearised: `detail` says why.
+    NoLinearSystem "no_linear_system" CONFLICT "There is no linear system";
     /// The path is right, the method is not. The header `Allow` lists those that are.
     MethodNotAllowed "method_not_allowed" METHOD_NOT_ALLOWED "The method is not allowed here";
     /// None of the media types in `Accept` is offered here.

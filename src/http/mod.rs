@@ -27,6 +27,7 @@ mod routes;
 mod serve;
 mod service;
 
+pub use answer::response_table::responses_as_csv;
 pub use answer::trajectory_table::trajectories_as_csv;
 pub use config::Config;
 pub use handlers::keys::{a_day, days};

@@ -29,6 +29,7 @@ mod corrected;
 mod coverage;
 mod delays;
 mod derivative_techniques;
+mod dynamics;
 mod effects;
 mod estimation;
 mod filter_error;

@@ -30,6 +30,7 @@ mod cli;
 mod coefficients;
 mod derivatives;
 mod diagnosis;
+mod dynamics;
 mod events;
 mod filter_error;
 mod findings;

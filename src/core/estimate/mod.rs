@@ -52,6 +52,8 @@ pub mod study;
 mod trajectory;
 
 pub use crate::flight::five_digits;
+pub(crate) use accuracy::covariance::Estimated;
+pub(crate) use accuracy::state_matrix::is_kinematic;
 pub use answer::Solution;
 pub use coefficients::{Coefficient, coefficients};
 pub use descent::quasi_newton;
@@ -87,7 +89,7 @@ pub use report::identifiability::{
 };
 pub use report::integration::{HalvedSteps, Integration};
 pub use report::iteration::{Iteration, Outcome};
-pub use report::mode::{Measure, Mode};
+pub use report::mode::{Measure, Mode, ModeName};
 pub use report::parameter::{Bound, ParameterEstimate};
 pub use report::prediction::Prediction;
 pub use report::progress::{Observer, Progress, Watcher};

@@ -32,4 +32,4 @@ pub use spec::{
 };
 pub use status::Status;
 pub use strict::Strict;
-pub use trajectories::{NoTrajectory, plan_again, trajectories_of};
+pub use trajectories::{NoTrajectory, check_parameters, plan_again, trajectories_of};

@@ -2,4 +2,5 @@
 
 pub(super) mod decimate;
 pub(super) mod format;
+pub(super) mod response_table;
 pub(super) mod trajectory_table;

@@ -36,6 +36,7 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(jobs::residual_analysis::router())
         .merge(jobs::trajectories::router())
         .merge(jobs::corrected::router())
+        .merge(jobs::dynamics::router())
         .merge(problems::router())
         .merge(keys::router())
         .merge(webhooks::router())

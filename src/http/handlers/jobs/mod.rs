@@ -3,12 +3,13 @@
 pub(super) mod bulk;
 pub(super) mod coefficients;
 pub(super) mod corrected;
+pub(crate) mod dynamics;
 pub(super) mod events;
 pub(super) mod findings;
 pub(super) mod histories;
 pub(super) mod iterations;
 pub(crate) mod job;
-mod kept;
+pub(crate) mod kept;
 pub(super) mod rerun;
 pub(super) mod residual_analysis;
 pub(crate) mod results;

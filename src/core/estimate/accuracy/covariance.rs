@@ -1,0 +1,74 @@
+//! An estimate that was kept, as numbers to go on with: θ and the covariance P of its errors, SI.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::estimate::problem::Problem;
+use crate::estimate::problem::unknowns::Unknowns;
+use crate::estimate::report::estimate::Estimate;
+
+/// θ of an estimate, and what its errors carry over to.
+pub(crate) struct Estimated {
+    /// Free and fixed ones where they were estimated.
+    pub unknowns: Unknowns,
+    /// By place.
+    pub theta: Vec<f64>,
+    /// P; rows of unknowns without a standard error are zero.
+    covariance: DMatrix<f64>,
+    /// By place of θ: whether it has a standard error.
+    is_known: Vec<bool>,
+}
+
+impl Estimated {
+    /// The estimate of a problem, from its report.
+    pub(crate) fn of(problem: &Problem, estimate: &Estimate) -> Self {
+        let unknowns = &problem.unknowns;
+        let unit = |index: usize| problem.model.parameters[unknowns.all[index].parameter].unit;
+        let rows = estimate.parameters.iter().enumerate();
+        let values: Vec<f64> = rows
+            .map(|(index, row)| unit(index).to_si(row.estimate))
+            .collect();
+        let unknowns = unknowns.with_starts(&values);
+        let correlation = &estimate.correlation;
+        let is_whole = correlation.len() == unknowns.len();
+        let errors: Vec<Option<f64>> = (unknowns.free.iter())
+            .map(|&index| Some(estimate.parameters[index].standard_error? * unit(index).scale))
+            .map(|error| error.filter(|error| is_whole && error.is_finite()))
+            .collect();
+        let covariance = |i: usize, j: usize| match (errors[i], errors[j]) {
+            (Some(a), Some(b)) => a * b * correlation[i][j],
+            _ => 0.0,
+        };
+        Self {
+            theta: unknowns.start(),
+            covariance: DMatrix::from_fn(errors.len(), errors.len(), covariance),
+            is_known: errors.iter().map(Option::is_some).collect(),
+            unknowns,
+        }
+    }
+
+    /// P over some places.
+    pub(crate) fn among(&self, places: &[usize]) -> DMatrix<f64> {
+        (self.covariance).select_rows(places).select_columns(places)
+    }
+
+    /// Whether something with these slopes by some places depends on nothing that has no standard error.
+    pub(crate) fn is_known(&self, places: &[usize], slopes: &[f64]) -> bool {
+        let mut slopes = places.iter().zip(slopes);
+        slopes.all(|(&place, slope)| self.is_known[place] || *slope == 0.0)
+    }
+
+    /// √(dᵀ P d) of a quantity with the derivatives d by place of θ; none where it depends on an unknown that has no
+    /// standard error.
+    pub(crate) fn standard_error(&self, derivatives: &[f64]) -> Option<f64> {
+        let places: Vec<usize> = (0..derivatives.len())
+            .filter(|&place| derivatives[place] != 0.0)
+            .collect();
+        let slopes: Vec<f64> = places.iter().map(|&place| derivatives[place]).collect();
+        if !self.is_known(&places, &slopes) {
+            return None;
+        }
+        let slopes = DVector::from_vec(slopes);
+        let variance = slopes.dot(&(self.among(&places) * &slopes));
+        Some(variance.max(0.0).sqrt()).filter(|error| error.is_finite())
+    }
+}
