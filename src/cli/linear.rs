@@ -1,7 +1,7 @@
 //! `trimtab linear`: the linear system of an estimate, its frequency responses and flying qualities, without a server.
 
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -13,10 +13,11 @@ use crate::dashboard::bode_svg;
 use crate::dynamics::{
     AirplaneClass, FlightPhaseCategory, FlyingQualities, FlyingQualityQuestion, FrequencyQuestion,
     FrequencyResponse, FrequencyUnit, LinearSystem, flying_qualities, frequency_responses,
-    linear_system,
+    linear_system, linear_system_as_mat,
 };
 use crate::http::responses_as_csv;
 use crate::job::{self, JobKind};
+use crate::model::SourceLanguage;
 
 /// Fits a model and prints its linear system (A, B, C, D with standard errors, modes, transfer functions) and flying
 /// qualities at the estimate.
@@ -54,6 +55,12 @@ pub(super) struct Linear {
     /// Draw frequency responses with bands of 2 standard errors into this directory, as SVG.
     #[arg(long, value_name = "DIRECTORY")]
     figures: Option<PathBuf>,
+    /// Write A, B, C, D with standard errors, lags and delays to this MAT file.
+    #[arg(long, value_name = "FILE")]
+    mat: Option<PathBuf>,
+    /// Write the estimated model as source code to this file: C (.c) or Python (.py).
+    #[arg(long, value_name = "FILE", value_parser = source_file)]
+    source_code: Option<(PathBuf, SourceLanguage)>,
     /// Category of the flight phase, A, B or C; levels want it and --class.
     #[arg(long, value_parser = word::<FlightPhaseCategory>, requires = "class")]
     category: Option<FlightPhaseCategory>,
@@ -110,6 +117,15 @@ impl Linear {
             println!("{}", linear_tables::system(&system));
             println!("\n{}", linear_tables::qualities(&qualities));
         }
+        if let Some((file, language)) = &self.source_code {
+            let segment = self.segment.as_deref();
+            let text = job::source_code(&plan, estimate, segment, *language)
+                .map_err(|why| Failure::new(why.to_string()))?;
+            written("--source-code", file, text.as_bytes())?;
+        }
+        if let Some(file) = &self.mat {
+            written("--mat", file, &linear_system_as_mat(&system))?;
+        }
         self.write(&responses)
     }
 
@@ -130,12 +146,7 @@ impl Linear {
 
     fn write(&self, responses: &[FrequencyResponse]) -> Result<(), Failure> {
         if let Some(file) = &self.responses {
-            std::fs::write(file, responses_as_csv(responses)).map_err(|why| {
-                Failure::new(format!(
-                    "--responses {}: {why}; name a file that can be written",
-                    file.display()
-                ))
-            })?;
+            written("--responses", file, responses_as_csv(responses).as_bytes())?;
         }
         if let Some(directory) = &self.figures {
             let drawn = responses.iter().map(|response| {
@@ -145,6 +156,25 @@ impl Linear {
             figures::write(directory, drawn)?;
         }
         Ok(())
+    }
+}
+
+fn written(option: &str, file: &Path, content: &[u8]) -> Result<(), Failure> {
+    std::fs::write(file, content).map_err(|why| {
+        let file = file.display();
+        Failure::new(format!(
+            "{option} {file}: {why}; name a file that can be written"
+        ))
+    })
+}
+
+/// A file whose ending says in which language.
+fn source_file(text: &str) -> Result<(PathBuf, SourceLanguage), String> {
+    let file = PathBuf::from(text);
+    match file.extension().and_then(|extension| extension.to_str()) {
+        Some("c") => Ok((file, SourceLanguage::C)),
+        Some("py") => Ok((file, SourceLanguage::Python)),
+        _ => Err("its name ends in .c or .py".to_string()),
     }
 }
 

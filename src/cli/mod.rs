@@ -3,6 +3,8 @@
 //!
 //! Invariant: results go to the standard output and all else to the standard error; a failure is one message and exit code 1.
 
+mod campaign;
+mod changes;
 mod client;
 mod demo;
 mod derivatives;
@@ -20,7 +22,9 @@ mod local;
 mod mapping;
 mod model;
 mod notes;
+mod pairs;
 mod plots;
+mod predict;
 mod process;
 mod progress;
 mod recording;
@@ -29,6 +33,7 @@ mod retain;
 mod serve;
 mod server;
 mod simulate;
+mod start_method;
 mod study;
 mod study_tables;
 mod submit;
@@ -65,6 +70,9 @@ enum Command {
     Study(study::Study),
     Diagnose(diagnose::Diagnose),
     Linear(linear::Linear),
+    Predict(predict::Predict),
+    #[command(name = "campaign")]
+    Campaign(campaign::ShowCampaign),
     Submit(submit::Submit),
     Watch(watch::Watch),
     Simulate(simulate::Simulate),
@@ -89,6 +97,8 @@ pub fn main() -> ExitCode {
         Command::Study(study) => study.run(),
         Command::Diagnose(diagnose) => diagnose.run(),
         Command::Linear(linear) => linear.run(),
+        Command::Predict(predict) => predict.run(),
+        Command::Campaign(campaign) => campaign.run(),
         Command::Submit(submit) => block_on(submit.run()),
         Command::Watch(watch) => block_on(watch.run()),
         Command::Simulate(simulate) => simulate.run(),

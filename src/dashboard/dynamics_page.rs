@@ -50,7 +50,8 @@ pub fn dynamics_page(view: &DynamicsView) -> String {
         (matrices(system))
         h2 { "Downloads" }
         ul.links {
-            li { a href={ (base) "/linear-system" } { "linear system (JSON)" } }
+            li { a href={ (base) "/linear-system" } { "linear system (JSON)" } ", " a href={ (base) "/linear-system?format=mat" } { "as MAT file" } }
+            li { "the model as functions in " a href={ (base) "/source-code?language=c" } { "C" } ", " a href={ (base) "/source-code?language=python" } { "Python" } }
             li { a href={ (base) "/frequency-response?format=csv" } { "frequency responses (CSV)" } }
             li { a href={ (base) "/flying-qualities" } { "flying qualities (JSON)" } }
         }
@@ -135,13 +136,18 @@ fn responses(responses: &[FrequencyResponse], base: &str) -> Markup {
     html! {
         h2 { "Frequency responses" }
         p.soft { "With bands of 2 standard errors; delays and lags of signals included." }
+        @if responses.iter().any(|response| response.magnitude_db_standard_error.is_empty()) {
+            p.note { "Where there is no band a parameter behind the response has no standard error, or the estimate is singular." }
+        }
         div.columns {
             @for response in responses.iter().take(MOST_FIGURES) {
-                figure.paper role="img" aria-label={ "magnitude and phase of " (response.output) " over " (response.input) } {
+                figure.paper {
                     figcaption { (response.output) " over " (response.input) }
-                    @match bode_svg(response) {
-                        Ok(svg) => { (PreEscaped(svg)) }
-                        Err(error) => { p { "The figure could not be drawn: " (error) } }
+                    div role="img" aria-label={ "magnitude and phase of " (response.output) " over " (response.input) } {
+                        @match bode_svg(response) {
+                            Ok(svg) => { (PreEscaped(svg)) }
+                            Err(error) => { p { "The figure could not be drawn: " (error) } }
+                        }
                     }
                 }
             }

@@ -120,6 +120,10 @@ codes! {
     InvalidModel "invalid_model" UNPROCESSABLE_ENTITY "The model has faults";
     /// The job cannot be started. `errors` lists all faults, each with its place in the spec.
     InvalidJob "invalid_job" UNPROCESSABLE_ENTITY "The job has faults";
+    /// The prediction cannot be made. `errors` lists all faults, each with its place.
+    InvalidPrediction "invalid_prediction" UNPROCESSABLE_ENTITY "The prediction has faults";
+    /// The scenario cannot be flown. `detail` says which part of it and why.
+    InvalidScenario "invalid_scenario" UNPROCESSABLE_ENTITY "The scenario has a fault";
     /// The key cannot be made like this. `errors` lists all faults, each with its place.
     InvalidKey "invalid_key" UNPROCESSABLE_ENTITY "The key cannot be made like this";
     /// The webhook cannot be made like this: `errors` tells the place.

@@ -79,6 +79,10 @@ const NEEDED: &[(&str, &[&str])] = &[
             "getLinearSystem",
             "getFrequencyResponse",
             "getFlyingQualities",
+            "predictManeuvers",
+            "simulate",
+            "getSourceCode",
+            "getCampaign",
             "getResidualAnalysis",
             "getProvenance",
         ],
@@ -195,8 +199,9 @@ async fn every_operation_is_open_to_whom_it_should_be_and_to_nobody_else() {
                     json!({"mass": 1.0})
                 };
                 let answer = ask(&server, method.clone(), &path, &stranger, &body).await;
-                let is_hidden =
-                    answer.status == 404 || id == "getCoefficients" && answer.status == 422;
+                // these read their bodies first
+                let reads = ["getCoefficients", "predictManeuvers"].contains(&id);
+                let is_hidden = answer.status == 404 || reads && answer.status == 422;
                 assert!(is_hidden, "{method} {path}: {}", answer.text());
             }
         }

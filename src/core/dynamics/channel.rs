@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector, Schur};
 use num_complex::Complex64;
 
 use super::linearisation::{Linearisation, Numbers};
-use super::root::{FoundRoot, Pencil};
+use super::root::{Entries, FoundRoot, Pencil, entries, form};
 use super::signal::Signal;
 
 /// A Markov parameter below this share of what its factors could make is none.
@@ -48,9 +48,9 @@ impl<'l> Channel<'l> {
         const STEP: f64 = 1e-40;
         let gain_derivatives = (pencil.by_place.iter())
             .map(|by| {
-                let moved = pencil
-                    .matrix
-                    .zip_map(by, |m, d| Complex64::new(m, STEP * d));
+                let mut moved = pencil.matrix.map(Complex64::from);
+                by.iter()
+                    .for_each(|&(i, j, slope)| moved[(i, j)].im = STEP * slope);
                 leading(&moved, degree).im / STEP
             })
             .collect();
@@ -72,8 +72,7 @@ impl<'l> Channel<'l> {
     /// H(jω), delays and lags of both signals included.
     pub(super) fn response(&self, omega: f64) -> Option<Response> {
         let (core, left, right) = self.without_paths(omega)?;
-        let by_matrix = (self.pencil.by_place.iter())
-            .map(|by| left.dot(&(by.map(Complex64::from) * &right)) / core);
+        let by_matrix = (self.pencil.by_place.iter()).map(|by| form(&left, by, &right) / core);
         let sizes = &self.linear.at.paths;
         let (input, output) = (
             self.input.path_response(sizes, omega),
@@ -107,7 +106,7 @@ impl<'l> Channel<'l> {
         }
         let (value, left, right) = self.without_paths(0.0)?;
         let slopes = (self.pencil.by_place.iter())
-            .map(|by| left.dot(&(by.map(Complex64::from) * &right)).re)
+            .map(|by| form(&left, by, &right).re)
             .collect();
         Some((value.re, slopes))
     }
@@ -197,7 +196,9 @@ fn reduced(linear: &Linearisation<'_>, input: usize, output: usize) -> Pencil {
     Pencil {
         matrix: part(&linear.at),
         states: kept.len(),
-        by_place: linear.by_place.iter().map(part).collect(),
+        by_place: (linear.by_place.iter())
+            .map(|numbers| entries(&part(numbers)))
+            .collect(),
     }
 }
 
@@ -210,11 +211,12 @@ fn spread(
     let mut reached: Vec<bool> = (0..states).map(begins).collect();
     let mut pending: Vec<usize> = (0..states).filter(|&i| reached[i]).collect();
     while let Some(from) = pending.pop() {
-        for to in 0..states {
-            if !reached[to] && leads(from, to) {
-                reached[to] = true;
-                pending.push(to);
-            }
+        let beyond: Vec<usize> = (0..states)
+            .filter(|&to| !reached[to] && leads(from, to))
+            .collect();
+        for to in beyond {
+            reached[to] = true;
+            pending.push(to);
         }
     }
     reached
@@ -229,13 +231,17 @@ fn balance(pencil: &mut Pencil) {
     let mut a = pencil.matrix.view((0, 0), (n, n)).into_owned();
     let scale = balance_parlett_reinsch(&mut a);
     let by = |i: usize| if i < n { scale[i] } else { 1.0 };
-    for matrix in std::iter::once(&mut pencil.matrix).chain(&mut pencil.by_place) {
-        for i in 0..=n {
-            for j in 0..=n {
-                matrix[(i, j)] *= by(j) / by(i);
-            }
+    for i in 0..=n {
+        for j in 0..=n {
+            pencil.matrix[(i, j)] *= by(j) / by(i);
         }
     }
+    let scaled = |entries: &mut Entries| {
+        entries
+            .iter_mut()
+            .for_each(|(i, j, value)| *value *= by(*j) / by(*i));
+    };
+    pencil.by_place.iter_mut().for_each(scaled);
 }
 
 /// The index of the first Markov parameter D, C B, C A B, ... that is not zero; none where all are.

@@ -69,7 +69,8 @@ pub struct FrequencyQuestion {
     pub points: Option<usize>,
 }
 
-/// How an output responds to an input that swings, at some frequencies.
+/// How an output responds to an input that swings, at some frequencies. Delays and lags of both signals are in it; play and rate
+/// limits are not, as no linear system has them (see the remarks of the linear system).
 ///
 /// A band of 2 standard errors holds the truth in 95 of 100 flights. They are those that the covariance of the parameters
 /// carries over, and empty where the response depends on a parameter that has none.

@@ -30,6 +30,7 @@ mod frequency_response;
 mod level;
 mod linear_system;
 mod linearisation;
+mod mat;
 mod no_linear_system;
 mod polynomial;
 mod root;
@@ -44,5 +45,6 @@ pub use frequency_response::{
 };
 pub use level::{AirplaneClass, Criterion, FlightPhaseCategory};
 pub use linear_system::{LinearSignal, LinearState, LinearSystem, MatrixEstimate, linear_system};
+pub use mat::linear_system_as_mat;
 pub use no_linear_system::NoLinearSystem;
 pub use transfer_function::{Root, TransferFunction};

@@ -13,7 +13,29 @@ pub(super) struct Pencil {
     /// How many ones E has.
     pub states: usize,
     /// dM/dθ by place of θ.
-    pub by_place: Vec<DMatrix<f64>>,
+    pub by_place: Vec<Entries>,
+}
+
+/// The entries of a matrix that are not zero: most unknowns stand in few places.
+pub(super) type Entries = Vec<(usize, usize, f64)>;
+
+/// Those of a matrix.
+pub(super) fn entries(matrix: &DMatrix<f64>) -> Entries {
+    let places = (0..matrix.ncols()).flat_map(|j| (0..matrix.nrows()).map(move |i| (i, j)));
+    let all = places.map(|(i, j)| (i, j, matrix[(i, j)]));
+    all.filter(|(_, _, value)| *value != 0.0).collect()
+}
+
+/// leftᵀ dM right
+pub(super) fn form(
+    left: &DVector<Complex64>,
+    entries: &Entries,
+    right: &DVector<Complex64>,
+) -> Complex64 {
+    let products = entries
+        .iter()
+        .map(|&(i, j, value)| left[i] * value * right[j]);
+    products.sum()
 }
 
 /// A root of a pencil.
@@ -27,11 +49,14 @@ pub(super) struct FoundRoot {
 impl Pencil {
     /// The part of it over the states alone, whose roots are the poles.
     pub(super) fn of_states(&self) -> Self {
-        let part =
-            |matrix: &DMatrix<f64>| matrix.view((0, 0), (self.states, self.states)).into_owned();
+        let n = self.states;
+        let part = |entries: &Entries| -> Entries {
+            let inside = entries.iter().filter(|(i, j, _)| *i < n && *j < n);
+            inside.copied().collect()
+        };
         Self {
-            matrix: part(&self.matrix),
-            states: self.states,
+            matrix: self.matrix.view((0, 0), (n, n)).into_owned(),
+            states: n,
             by_place: self.by_place.iter().map(part).collect(),
         }
     }
@@ -53,15 +78,16 @@ impl Pencil {
         let rows = self.states;
         let normal = left.rows(0, rows).dotc(&right.rows(0, rows));
         // a real root stays on the axis
-        let quotient = |matrix: &DMatrix<f64>| {
-            let quotient = left.dotc(&(matrix.map(Complex64::from) * &right)) / normal;
-            match near.im == 0.0 {
-                true => Complex64::from(quotient.re),
-                false => quotient,
-            }
+        let on_axis = |root: Complex64| match near.im == 0.0 {
+            true => Complex64::from(root.re),
+            false => root,
         };
-        let value = quotient(&self.matrix);
-        let derivatives: Vec<Complex64> = self.by_place.iter().map(quotient).collect();
+        let left = left.map(|z| z.conj());
+        let whole = (left.transpose() * self.matrix.map(Complex64::from) * &right)[(0, 0)];
+        let value = on_axis(whole / normal);
+        let derivatives: Vec<Complex64> = (self.by_place.iter())
+            .map(|by| on_axis(form(&left, by, &right) / normal))
+            .collect();
         let is_good = |z: &Complex64| z.re.is_finite() && z.im.is_finite();
         // of a double root the quotient is no better than what it began from
         let has_moved = (value - near).norm() > 1e-6 * (near.norm() + self.matrix.norm());
@@ -74,16 +100,18 @@ impl Pencil {
     /// Left and right null vectors of M − s E by inverse iteration.
     fn vectors(&self, s: Complex64) -> Option<(DVector<Complex64>, DVector<Complex64>)> {
         const ITERATIONS: usize = 3;
-        let n = self.matrix.nrows();
+        let (n, states) = (self.matrix.nrows(), self.states);
         // off the root by rounding, so that the equations can be solved
         let shift = s + Complex64::from(f64::EPSILON * self.matrix.norm());
         let mut shifted = self.matrix.map(Complex64::from);
-        (0..self.states).for_each(|i| shifted[(i, i)] -= shift);
+        (0..states).for_each(|i| shifted[(i, i)] -= shift);
         let vector = |of: DMatrix<Complex64>| {
             let equations = of.lu();
             let start = |k: usize, _| Complex64::new(1.0, 0.37 * (k as f64 + 1.0));
             let mut vector = DVector::from_fn(n, start);
             for _ in 0..ITERATIONS {
+                // (M − s E)⁻¹ E
+                vector.rows_mut(states, n - states).fill(Complex64::ZERO);
                 vector = equations.solve(&vector)?;
                 let length = vector.norm();
                 vector.unscale_mut(length);
@@ -118,7 +146,10 @@ mod tests {
         let pencil = Pencil {
             matrix: matrix(z, a, b),
             states: 2,
-            by_place: vec![by(1.0, 0.0, 0.0), by(0.0, 1.0, 0.0), by(0.0, 0.0, 1.0)],
+            by_place: [by(1.0, 0.0, 0.0), by(0.0, 1.0, 0.0), by(0.0, 0.0, 1.0)]
+                .iter()
+                .map(entries)
+                .collect(),
         };
         let zero = &pencil.roots(&[Complex64::new(-0.700_000_1, 0.0)])[0];
         assert!((zero.value + z).norm() < 1e-12, "{}", zero.value);

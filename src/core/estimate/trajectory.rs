@@ -60,7 +60,7 @@ pub struct Trajectory {
 }
 
 /// Outputs of a model that is compiled to see quantities.
-const AT_ONCE: usize = 60;
+pub(super) const AT_ONCE: usize = 60;
 
 /// All quantities of a problem's model along its segments, at an estimate of the problem.
 ///
@@ -68,6 +68,15 @@ const AT_ONCE: usize = 60;
 /// The simulation leaves the range of numbers.
 pub fn trajectories(problem: &Problem, estimate: &Estimate) -> Result<Vec<Trajectory>, Unusable> {
     let at = Estimated::of(problem, estimate);
+    along_all(problem, &at, &quantities(&problem.model.document))
+}
+
+/// Some quantities along all segments of a problem.
+pub(super) fn along_all(
+    problem: &Problem,
+    at: &Estimated,
+    wanted: &[Quantity],
+) -> Result<Vec<Trajectory>, Unusable> {
     let mut trajectories: Vec<Trajectory> = (problem.segments.iter())
         .map(|segment| Trajectory {
             segment: segment.label.clone(),
@@ -75,7 +84,7 @@ pub fn trajectories(problem: &Problem, estimate: &Estimate) -> Result<Vec<Trajec
             quantities: Vec::new(),
         })
         .collect();
-    for some in quantities(&problem.model.document).chunks(AT_ONCE) {
+    for some in wanted.chunks(AT_ONCE) {
         let document = seen(&problem.model.document, some);
         // the document was compiled before: with other outputs it cannot fail, and there is nothing to show if it did
         let Ok(model) = Model::compile(&document) else {
@@ -90,13 +99,13 @@ pub fn trajectories(problem: &Problem, estimate: &Estimate) -> Result<Vec<Trajec
 }
 
 /// A quantity to be seen.
-struct Quantity {
-    name: String,
+pub(super) struct Quantity {
+    pub name: String,
     kind: QuantityKind,
     output: Output,
 }
 
-fn quantities(document: &ModelDocument) -> Vec<Quantity> {
+pub(super) fn quantities(document: &ModelDocument) -> Vec<Quantity> {
     let plain = |name: &String, unit: &String, kind: QuantityKind| Quantity {
         name: name.clone(),
         kind,
@@ -119,7 +128,7 @@ fn quantities(document: &ModelDocument) -> Vec<Quantity> {
 }
 
 /// The document with quantities as its outputs.
-fn seen(document: &ModelDocument, quantities: &[Quantity]) -> ModelDocument {
+pub(super) fn seen(document: &ModelDocument, quantities: &[Quantity]) -> ModelDocument {
     let mut document = document.clone();
     let outputs = quantities.iter().enumerate();
     document.outputs = outputs

@@ -9,18 +9,15 @@ pub fn responses_as_csv(responses: &[FrequencyResponse]) -> String {
         .first()
         .map(|response| response.frequency_unit)
         .unwrap_or_default();
-    let mut csv = CsvWriter::with_header(
-        [
-            "input".to_string(),
-            "output".to_string(),
-            format!("frequency[{}]", unit.symbol()),
-            "magnitude[dB]".to_string(),
-            "magnitude_standard_error[dB]".to_string(),
-            "phase[deg]".to_string(),
-            "phase_standard_error[deg]".to_string(),
-        ]
-        .into_iter(),
-    );
+    let mut csv = CsvWriter::with_header([
+        "input".to_string(),
+        "output".to_string(),
+        format!("frequency[{}]", unit.symbol()),
+        "magnitude[dB]".to_string(),
+        "magnitude_standard_error[dB]".to_string(),
+        "phase[deg]".to_string(),
+        "phase_standard_error[deg]".to_string(),
+    ]);
     for response in responses {
         for (row, frequency) in response.frequency.iter().enumerate() {
             csv.text(&response.input);

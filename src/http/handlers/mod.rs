@@ -6,10 +6,12 @@ pub(super) mod maneuvers;
 pub(super) mod mappings;
 pub(super) mod models;
 
+mod campaigns;
 mod health;
 mod metrics;
 mod problems;
 mod retention;
+mod simulations;
 mod webhooks;
 
 use utoipa_axum::router::OpenApiRouter;
@@ -22,6 +24,7 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(maneuvers::router())
         .merge(mappings::router())
         .merge(models::router())
+        .merge(simulations::router())
         .merge(jobs::submit::router())
         .merge(jobs::bulk::router())
         .merge(jobs::rerun::router())
@@ -36,6 +39,9 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(jobs::residual_analysis::router())
         .merge(jobs::trajectories::router())
         .merge(jobs::corrected::router())
+        .merge(jobs::predictions::router())
+        .merge(jobs::source_code::router())
+        .merge(campaigns::router())
         .merge(jobs::dynamics::router())
         .merge(problems::router())
         .merge(keys::router())

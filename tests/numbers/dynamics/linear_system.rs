@@ -43,7 +43,8 @@ fn poles_zeros_and_gains_are_those_of_python_control() {
         (-0.486_051_177_977, 2.333_887_155_501),
         (-0.008_950_181_37, 0.0),
     ];
-    let zeros: [(&str, &str, f64, Option<f64>, &[(f64, f64)]); 7] = [
+    type Expected<'a> = (&'a str, &'a str, f64, Option<f64>, &'a [(f64, f64)]);
+    let zeros: [Expected<'_>; 7] = [
         (
             "da",
             "beta",

@@ -1,10 +1,11 @@
 //! An estimate that was kept, as numbers to go on with: θ and the covariance P of its errors, SI.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unknowns::Unknowns;
 use crate::estimate::report::estimate::Estimate;
+use crate::estimate::report::parameter::ParameterEstimate;
 
 /// θ of an estimate, and what its errors carry over to.
 pub(crate) struct Estimated {
@@ -44,6 +45,55 @@ impl Estimated {
             is_known: errors.iter().map(Option::is_some).collect(),
             unknowns,
         }
+    }
+
+    /// The same estimate over the segments of another problem, whose shared parameters are where it has them and whose other
+    /// parameters are held: what is free is shared.
+    pub(crate) fn carried(problem: &Problem, estimate: &Estimate) -> Self {
+        let unknowns = problem.unknowns.clone();
+        let free: Vec<&ParameterEstimate> = estimate
+            .parameters
+            .iter()
+            .filter(|row| !row.fixed)
+            .collect();
+        let is_whole = estimate.correlation.len() == free.len();
+        // by place here: the place there, and the standard error, SI
+        let there: Vec<Option<(usize, f64)>> = (0..unknowns.len())
+            .map(|place| {
+                let parameter = problem.parameter(place);
+                let of =
+                    |row: &&ParameterEstimate| row.segment.is_none() && row.name == parameter.name;
+                let there = free.iter().position(of)?;
+                let error = free[there].standard_error? * parameter.unit.scale;
+                (is_whole && error.is_finite()).then_some((there, error))
+            })
+            .collect();
+        let covariance = |i: usize, j: usize| match (there[i], there[j]) {
+            (Some((i, a)), Some((j, b))) => a * b * estimate.correlation[i][j],
+            _ => 0.0,
+        };
+        Self {
+            theta: unknowns.start(),
+            covariance: DMatrix::from_fn(there.len(), there.len(), covariance),
+            is_known: there.iter().map(Option::is_some).collect(),
+            unknowns,
+        }
+    }
+
+    /// A root of P: R Rᵀ = P, by the eigenvectors of the correlations, so that units of any size do no harm.
+    pub(crate) fn covariance_root(&self) -> DMatrix<f64> {
+        let n = self.theta.len();
+        let errors: Vec<f64> = (0..n)
+            .map(|i| self.covariance[(i, i)].max(0.0).sqrt())
+            .collect();
+        let correlation = DMatrix::from_fn(n, n, |i, j| match errors[i] * errors[j] {
+            0.0 => f64::from(u8::from(i == j)),
+            product => self.covariance[(i, j)] / product,
+        });
+        let spectrum = SymmetricEigen::new(correlation);
+        DMatrix::from_fn(n, n, |i, k| {
+            errors[i] * spectrum.eigenvectors[(i, k)] * spectrum.eigenvalues[k].max(0.0).sqrt()
+        })
     }
 
     /// P over some places.

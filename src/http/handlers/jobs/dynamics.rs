@@ -12,7 +12,7 @@ use super::kept::Kept;
 use crate::dynamics::{
     AirplaneClass, FlightPhaseCategory, FlyingQualities, FlyingQualityQuestion, FrequencyQuestion,
     FrequencyResponse, FrequencyUnit, LinearSystem, NoLinearSystem, flying_qualities,
-    frequency_responses, linear_system,
+    frequency_responses, linear_system, linear_system_as_mat,
 };
 use crate::http::answer::format::{Format, cacheable, choose};
 use crate::http::answer::response_table::responses_as_csv;
@@ -35,6 +35,9 @@ struct SegmentQuery {
     /// The label of the segment at whose start the model is linearised; absent: the first.
     #[param(example = "elevator")]
     segment: Option<String>,
+    /// `json` or `mat`, a MAT file of version 4; absent: as `Accept` says.
+    #[param(inline)]
+    format: Option<Format>,
 }
 
 #[derive(Deserialize, IntoParams)]
@@ -103,7 +106,7 @@ struct FrequencyResponses {
 #[utoipa::path(get, path = "/v1/jobs/{id}/linear-system", tag = "Results", operation_id = "getLinearSystem",
     params(("id" = Uuid, Path), SegmentQuery),
     responses(
-        (status = 200, description = "The linear system.", body = LinearSystem),
+        (status = 200, description = "The linear system.", content((LinearSystem = "application/json"), (Vec<u8> = "application/x-matlab-data"))),
         (status = 400, description = "`invalid_query`: there is no such segment.", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 404, description = "`unknown_job`, `no_result`", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 409, description = "`not_finished`, `no_linear_system`, `no_trajectory`: a maneuver was deleted, or another program made the result.", body = ProblemDocument, content_type = "application/problem+json"),
@@ -112,13 +115,21 @@ async fn get_linear_system(
     service: Service,
     JobId(id): JobId,
     Parameters(query): Parameters<SegmentQuery>,
-) -> Result<Json<LinearSystem>, Problem> {
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let format = choose(query.format, &headers, &[Format::Json, Format::Mat])?;
     let kept = Kept::of(&service, id).await?;
     let answer = move || {
         let plan = kept.plan_of_estimate()?;
-        linear_system(&plan.problem, &kept.estimate, query.segment.as_deref()).map_err(none)
+        let segment = query.segment.as_deref();
+        let system = linear_system(&plan.problem, &kept.estimate, segment).map_err(none)?;
+        let body = match format {
+            Format::Mat => linear_system_as_mat(&system),
+            _ => serde_json::to_vec(&system)?,
+        };
+        Ok(cacheable(&headers, format, body))
     };
-    service.compute.run(answer).await?.map(Json)
+    service.compute.run(answer).await?
 }
 
 /// How outputs respond to inputs that swing: magnitude and phase with standard errors, delays exact.

@@ -18,9 +18,9 @@ use crate::store::Part;
 
 /// All that was kept of a finished job.
 pub(crate) struct Kept {
-    spec: JobSpec,
+    pub(crate) spec: JobSpec,
     declared: ModelDocument,
-    estimated: ModelDocument,
+    pub(crate) estimated: ModelDocument,
     pub(crate) estimate: Estimate,
     pub(crate) maneuvers: Vec<Arc<Maneuver>>,
 }
