@@ -3,6 +3,8 @@
 //!
 //! Invariant: results go to the standard output and all else to the standard error; a failure is one message and exit code 1.
 
+mod campaign;
+mod changes;
 mod client;
 mod demo;
 mod derivatives;
@@ -14,12 +16,16 @@ mod fit;
 mod health;
 mod inspect;
 mod key;
+mod linear;
+mod linear_tables;
 mod local;
 mod maneuver;
 mod mapping;
 mod model;
 mod notes;
+mod pairs;
 mod plots;
+mod predict;
 mod process;
 mod progress;
 mod recording;
@@ -29,6 +35,7 @@ mod segments;
 mod serve;
 mod server;
 mod simulate;
+mod start_method;
 mod study;
 mod study_tables;
 mod submit;
@@ -64,6 +71,10 @@ enum Command {
     Fit(fit::Fit),
     Study(study::Study),
     Diagnose(diagnose::Diagnose),
+    Linear(linear::Linear),
+    Predict(predict::Predict),
+    #[command(name = "campaign")]
+    Campaign(campaign::ShowCampaign),
     Submit(submit::Submit),
     Watch(watch::Watch),
     Simulate(simulate::Simulate),
@@ -90,6 +101,9 @@ pub fn main() -> ExitCode {
         Command::Fit(fit) => fit.run(),
         Command::Study(study) => study.run(),
         Command::Diagnose(diagnose) => diagnose.run(),
+        Command::Linear(linear) => linear.run(),
+        Command::Predict(predict) => predict.run(),
+        Command::Campaign(campaign) => campaign.run(),
         Command::Submit(submit) => block_on(submit.run()),
         Command::Watch(watch) => block_on(watch.run()),
         Command::Simulate(simulate) => simulate.run(),

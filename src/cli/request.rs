@@ -6,16 +6,20 @@ use std::sync::Arc;
 use indexmap::{IndexMap, IndexSet};
 
 use super::Failure;
+use super::changes::Changes;
 use super::file_rows::FileRows;
 use super::mapping::MappingOption;
+use super::pairs::{once, pair};
 use super::recording::{read_recording, read_text};
-use crate::estimate::{Derivatives, Estimator, Method, Options, Role};
+use super::start_method::start_method;
+use crate::estimate::{
+    Derivatives, Estimator, Method, Noise, NoiseStructure, Options, Role, StartMethod,
+};
 use crate::flight::Maneuver;
 use crate::job::{
-    self, ConstantValue, Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride, Plan,
-    Strict,
+    self, ConstantValue, Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, Plan, Strict,
 };
-use crate::model::{ModelDocument, Start, catalog};
+use crate::model::{ModelDocument, catalog};
 use crate::simulate::{InputInterpolation, Integrator};
 
 #[derive(clap::Args, Debug)]
@@ -40,18 +44,11 @@ pub(super) struct Request {
     /// How a model input or output is made from recorded channels: "da=(da_right - da_left)/2".
     #[arg(long = "channel", short, value_name = "NAME=FORMULA")]
     channels: Vec<String>,
-    /// Another start value: "Ma=-3.5", or "alpha_0=first(alpha)".
-    #[arg(long = "start", short, value_name = "NAME=VALUE")]
-    starts: Vec<String>,
+    #[command(flatten)]
+    changes: Changes,
     /// Another value of one of the model's constants: "m=17600", or "m=recording.mass" where the server was told what was flown.
     #[arg(long = "constant", value_name = "NAME=VALUE")]
     constants: Vec<String>,
-    /// Hold a parameter at its start value.
-    #[arg(long, value_name = "NAME")]
-    fix: Vec<String>,
-    /// Estimate a parameter that the model holds.
-    #[arg(long, value_name = "NAME")]
-    free: Vec<String>,
     /// What to do where recordings have gaps: auto (through where a gap is short against the motion, else split), through
     /// (integrate on), split (parts of their own), or join (close them up).
     #[arg(long, value_name = "HOW", default_value = Gaps::default().name(), value_parser = gaps)]
@@ -71,6 +68,13 @@ pub(super) struct Request {
     /// Gauss-Newton steps in place of Levenberg-Marquardt.
     #[arg(long)]
     gauss_newton: bool,
+    /// Where output error starts from: automatic, document, equation_error, nelder_mead[:SIMULATIONS], multi_start[:STARTS]
+    /// or multiple_shooting[:SECONDS].
+    #[arg(long, value_name = "METHOD", default_value = "automatic", value_parser = start_method)]
+    start_method: StartMethod,
+    /// Noises of outputs are correlated: estimate all of R, and not its diagonal alone.
+    #[arg(long)]
+    full_noise: bool,
     /// For flight in turbulence: estimate process noise too, with a Kalman filter.
     #[arg(long)]
     filter_error: bool,
@@ -163,29 +167,6 @@ impl Request {
 
     /// The job, for recordings that are known by `ids`.
     pub(super) fn spec(&self, ids: &[String]) -> Result<JobSpec, Failure> {
-        let mut parameters: IndexMap<String, ParameterOverride> = IndexMap::new();
-        for text in &self.starts {
-            let (name, value) = pair(text, "--start")?;
-            let start = value
-                .parse()
-                .map_or_else(|_| Start::FromData(value.to_string()), Start::Value);
-            let before = parameters
-                .entry(name.to_string())
-                .or_default()
-                .start
-                .replace(start);
-            once("--start", name, before.is_some())?;
-        }
-        for (names, fixed) in [(&self.fix, true), (&self.free, false)] {
-            for name in names {
-                let before = parameters
-                    .entry(name.clone())
-                    .or_default()
-                    .fixed
-                    .replace(fixed);
-                once("--fix or --free", name, before.is_some())?;
-            }
-        }
         let (mut channels, mut constants) = (IndexMap::new(), IndexMap::new());
         for text in &self.channels {
             let (name, formula) = pair(text, "--channel")?;
@@ -224,14 +205,14 @@ impl Request {
             tags: Vec::new(),
             priority: 0,
             model: self.model()?,
-            edits: Vec::new(),
+            edits: self.changes.edits.clone(),
             maneuvers: ids
                 .iter()
                 .zip(fitted.chain(predicted).chain(last))
                 .map(usage)
                 .collect(),
             channels,
-            parameters,
+            parameters: self.changes.parameters()?,
             candidates: Vec::new(),
             knowledge: Default::default(),
             constants,
@@ -245,6 +226,13 @@ impl Request {
                     Estimator::FilterError
                 } else {
                     Estimator::OutputError
+                },
+                start: self.start_method.clone(),
+                noise: Noise::Estimated {
+                    structure: match self.full_noise {
+                        true => NoiseStructure::Full,
+                        false => NoiseStructure::Diagonal,
+                    },
                 },
                 tolerance: self.tolerance,
                 max_iterations: self.max_iterations,
@@ -270,14 +258,6 @@ impl Request {
     }
 }
 
-/// What is said of one name twice would count once, and which is not plain to see.
-fn once(option: &str, name: &str, again: bool) -> Result<(), Failure> {
-    match again {
-        true => Err(Failure::new(format!("{option} names '{name}' twice"))),
-        false => Ok(()),
-    }
-}
-
 fn gaps(name: &str) -> Result<Gaps, String> {
     let names = || Gaps::ALL.map(Gaps::name).join(", ");
     let found = Gaps::ALL.into_iter().find(|gaps| gaps.name() == name);
@@ -290,14 +270,5 @@ fn integrator(name: &str) -> Result<Integrator, String> {
         "rk2" => Ok(Integrator::Rk2),
         "rk4" => Ok(Integrator::Rk4),
         _ => Err("choose one of euler, rk2, rk4".to_string()),
-    }
-}
-
-fn pair<'a>(text: &'a str, option: &str) -> Result<(&'a str, &'a str), Failure> {
-    match text.split_once('=') {
-        Some((name, value)) if !name.trim().is_empty() => Ok((name.trim(), value.trim())),
-        _ => Err(Failure::new(format!(
-            "{option} '{text}' should read NAME=VALUE"
-        ))),
     }
 }

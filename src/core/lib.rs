@@ -11,10 +11,11 @@
 //! | f, g, x0, θ | a model document and what it compiles to | [`model`] |
 //! | x, y, ∂y/∂θ | trajectories and sensitivities | [`simulate`] |
 //! | J, R, F, the estimate | cost, steps, error bounds | [`estimate`] |
+//! | A, B, C, D, H(jω) | linear system, flying qualities | [`dynamics`] |
 //! | S⊥, ψ, the effect that is missing | screening, trials, verdict | [`diagnose`] |
 //!
 //! [`job`] is what may be asked of all this in one document, and the events by which its progress is told. Arrows go
-//! one way: `job → diagnose → estimate → simulate → model → flight`, `ingest → flight`. Everything here is synchronous
+//! one way: `job → diagnose → estimate → simulate → model → flight`, `job → dynamics → estimate`, `ingest → flight`. Everything here is synchronous
 //! and deterministic: no server, no database, no clock, no environment, no hidden randomness. The service around it
 //! is the crate `trimtab`.
 //!
@@ -75,6 +76,7 @@
 #![warn(missing_docs)]
 
 pub mod diagnose;
+pub mod dynamics;
 pub mod estimate;
 pub mod flight;
 pub mod ingest;

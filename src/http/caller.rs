@@ -57,7 +57,11 @@ pub(super) fn needed(method: &Method, path: &str) -> Option<Scope> {
         return Some(Scope::Admin);
     }
     // works out numbers from a result and keeps nothing
-    let only_asks = under("/v1/jobs") && path.ends_with("/coefficients");
+    let only_asks = under("/v1/simulations")
+        || under("/v1/jobs")
+            && ["/coefficients", "/predictions"]
+                .iter()
+                .any(|end| path.ends_with(end));
     if method.is_safe() || only_asks {
         Some(Scope::Read)
     } else {

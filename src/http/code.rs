@@ -80,6 +80,8 @@ codes! {
     NoResult "no_result" NOT_FOUND "The job has no result";
     /// The result has no trajectory: `detail` says why.
     NoTrajectory "no_trajectory" CONFLICT "There is no trajectory";
+    /// The estimated model cannot be linearised: `detail` says why.
+    NoLinearSystem "no_linear_system" CONFLICT "There is no linear system";
     /// The path is right, the method is not. The header `Allow` lists those that are.
     MethodNotAllowed "method_not_allowed" METHOD_NOT_ALLOWED "The method is not allowed here";
     /// None of the media types in `Accept` is offered here.
@@ -120,6 +122,10 @@ codes! {
     InvalidModel "invalid_model" UNPROCESSABLE_ENTITY "The model has faults";
     /// The job cannot be started. `errors` lists all faults, each with its place in the spec.
     InvalidJob "invalid_job" UNPROCESSABLE_ENTITY "The job has faults";
+    /// The prediction cannot be made. `errors` lists all faults, each with its place.
+    InvalidPrediction "invalid_prediction" UNPROCESSABLE_ENTITY "The prediction has faults";
+    /// The scenario cannot be flown. `detail` says which part of it and why.
+    InvalidScenario "invalid_scenario" UNPROCESSABLE_ENTITY "The scenario has a fault";
     /// The key cannot be made like this. `errors` lists all faults, each with its place.
     InvalidKey "invalid_key" UNPROCESSABLE_ENTITY "The key cannot be made like this";
     /// The webhook cannot be made like this: `errors` tells the place.

@@ -77,6 +77,13 @@ const NEEDED: &[(&str, &[&str])] = &[
             "getResiduals",
             "getTimeHistories",
             "getTrajectories",
+            "getLinearSystem",
+            "getFrequencyResponse",
+            "getFlyingQualities",
+            "predictManeuvers",
+            "simulate",
+            "getSourceCode",
+            "getCampaign",
             "getResidualAnalysis",
             "getProvenance",
         ],
@@ -194,8 +201,9 @@ async fn every_operation_is_open_to_whom_it_should_be_and_to_nobody_else() {
                     _ => json!({"mass": 1.0}),
                 };
                 let answer = ask(&server, method.clone(), &path, &stranger, &body).await;
-                let is_hidden =
-                    answer.status == 404 || id == "getCoefficients" && answer.status == 422;
+                // these read their bodies first
+                let reads = ["getCoefficients", "predictManeuvers"].contains(&id);
+                let is_hidden = answer.status == 404 || reads && answer.status == 422;
                 assert!(is_hidden, "{method} {path}: {}", answer.text());
             }
         }

@@ -27,6 +27,7 @@ mod paths;
 mod program;
 mod quantities;
 mod scalar;
+mod source;
 mod trigonometry;
 mod unique;
 
@@ -45,6 +46,7 @@ pub use program::{Program, Workspace};
 pub use quantities::{Quantities, Source, Taken};
 pub use scalar::Scalar;
 pub(crate) use scalar::{BLOCK, LANES, Lanes};
+pub use source::SourceLanguage;
 pub(crate) use unique::unique;
 
 use std::sync::Arc;

@@ -6,6 +6,7 @@ pub(super) mod maneuvers;
 pub(super) mod mappings;
 pub(super) mod models;
 
+mod campaigns;
 mod flown;
 mod health;
 mod maneuver_data;
@@ -13,6 +14,7 @@ mod metrics;
 mod problems;
 mod retention;
 mod segments;
+mod simulations;
 mod webhooks;
 
 use utoipa_axum::router::OpenApiRouter;
@@ -28,6 +30,7 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(segments::router())
         .merge(mappings::router())
         .merge(models::router())
+        .merge(simulations::router())
         .merge(jobs::submit::router())
         .merge(jobs::bulk::router())
         .merge(jobs::rerun::router())
@@ -42,6 +45,10 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(jobs::residual_analysis::router())
         .merge(jobs::trajectories::router())
         .merge(jobs::corrected::router())
+        .merge(jobs::predictions::router())
+        .merge(jobs::source_code::router())
+        .merge(campaigns::router())
+        .merge(jobs::dynamics::router())
         .merge(problems::router())
         .merge(keys::router())
         .merge(webhooks::router())

@@ -18,10 +18,12 @@ mod resolve;
 mod start;
 mod stretch;
 mod study;
+mod to_predict;
 mod twice;
 mod unknown_name;
 
 pub use checks::MOST_MANEUVERS;
+pub(super) use to_predict::prepare_prediction;
 
 use std::sync::Arc;
 
