@@ -44,10 +44,12 @@ pub(super) fn beside_noise(
     Some(Accepted::of(best, group, threshold))
 }
 
-/// Turbulence and a gust of one flight explain the same.
+/// Whether flights that were not fitted spoke for it: a filter predicts a sample ahead, and with it on one flight alone much
+/// seems to be better. Turbulence and a gust of one flight explain the same.
 fn is_other(passed: &Passed) -> bool {
     let effect = &passed.trial.effect;
-    !effect.is_noise() && effect.kind != EffectKind::Edit(EditKind::Gust)
+    let gain: f64 = passed.gains.iter().map(|gain| gain.gain).sum();
+    !effect.is_noise() && effect.kind != EffectKind::Edit(EditKind::Gust) && gain > 0.0
 }
 
 /// A candidate fitted with the process noise of `base`; `None` where it is not clearly there beside it, or the filter
