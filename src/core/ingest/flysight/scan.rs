@@ -178,7 +178,7 @@ fn groups(kinds: Vec<Kind>) -> (Groups<Columns>, Vec<Finding>) {
     };
     let (mut spread, mut back) = (Vec::new(), Vec::new());
     for kind in kinds {
-        let is_time = |title: &&str| title.eq_ignore_ascii_case("time");
+        let is_time = |title: &str| title.eq_ignore_ascii_case("time");
         let of_time = kind.titles.iter().position(|title| is_time(title));
         let of_time = of_time.filter(|&at| !kind.texts[at] && kind.units[at] == "s");
         let stamps = of_time
@@ -205,7 +205,7 @@ fn groups(kinds: Vec<Kind>) -> (Groups<Columns>, Vec<Finding>) {
         columns.push(times.seconds);
         for (at, cells) in kind.cells.into_iter().enumerate() {
             let title = kind.titles[at];
-            if Some(at) == of_time || is_time(&title) {
+            if Some(at) == of_time || is_time(title) {
                 continue;
             }
             if kind.texts[at] {

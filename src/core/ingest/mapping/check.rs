@@ -51,10 +51,10 @@ fn check_parts(time: &MappedTime) -> Result<(), Fault> {
         let message = "a time in parts has \"from\" for the finest of them, and neither \"date\" nor \"week\"";
         return Err(refused("/time", message));
     }
-    let is_whole = match (&time.year, &time.month, &time.day) {
-        (None, None, _) | (Some(_), None, Some(_)) | (Some(_), Some(_), Some(_)) => true,
-        _ => false,
-    };
+    let is_whole = matches!(
+        (&time.year, &time.month, &time.day),
+        (None, None, _) | (Some(_), _, Some(_))
+    );
     let message =
         "a month needs a year and a day, and a year a day; a day alone is that of the year";
     is_whole
