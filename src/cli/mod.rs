@@ -27,6 +27,7 @@ mod retain;
 mod serve;
 mod server;
 mod simulate;
+mod structure;
 mod study;
 mod study_tables;
 mod submit;
@@ -61,6 +62,7 @@ enum Command {
     Demo(demo::Demo),
     Fit(fit::Fit),
     Study(study::Study),
+    Structure(Box<structure::StructureCommand>),
     Diagnose(diagnose::Diagnose),
     Submit(submit::Submit),
     Watch(watch::Watch),
@@ -84,6 +86,7 @@ pub fn main() -> ExitCode {
         Command::Demo(demo) => block_on(demo.run()),
         Command::Fit(fit) => fit.run(),
         Command::Study(study) => study.run(),
+        Command::Structure(structure) => structure.run(),
         Command::Diagnose(diagnose) => diagnose.run(),
         Command::Submit(submit) => block_on(submit.run()),
         Command::Watch(watch) => block_on(watch.run()),

@@ -72,6 +72,7 @@ const NEEDED: &[(&str, &[&str])] = &[
             "getEstimatedModel",
             "getDerivativeStudy",
             "getDiagnosis",
+            "getStructure",
             "getCoefficients",
             "getResiduals",
             "getTimeHistories",

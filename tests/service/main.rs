@@ -44,4 +44,5 @@ mod once;
 mod pages;
 mod published_cases;
 mod real_flights;
+mod structure;
 mod webhooks;

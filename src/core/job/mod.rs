@@ -15,6 +15,7 @@ mod run;
 mod spec;
 mod status;
 mod strict;
+mod term_search;
 mod trajectories;
 
 pub use crate::flight::{Fault, Faults};
@@ -25,11 +26,12 @@ pub use plan::Plan;
 pub use prepare::{MOST_MANEUVERS, prepare};
 pub use provenance::Maker;
 pub use result::JobResult;
-pub use run::{StudyProgress, run, run_diagnosis, run_study};
+pub use run::{StudyProgress, run, run_diagnosis, run_structure, run_study};
 pub use spec::{
     Candidate, Gaps, HIGHEST_PRIORITY, JobKind, JobSpec, ManeuverUse, ModelSource,
     ParameterOverride,
 };
 pub use status::Status;
 pub use strict::Strict;
+pub use term_search::TermSearch;
 pub use trajectories::{NoTrajectory, plan_again, trajectories_of};

@@ -18,16 +18,25 @@ const CRATES: [(&str, &str); 2] = [
 ];
 
 /// Each room and those it may use. An arrow that is not here is a change of design: make it on purpose.
-const ROOMS: [(&str, &[&str]); 13] = [
+const ROOMS: [(&str, &[&str]); 15] = [
     ("flight", &[]),
+    ("spectral", &[]),
+    ("structure", &[]),
     ("ingest", &["flight"]),
     ("model", &["flight"]),
     ("simulate", &["model", "flight"]),
-    ("estimate", &["simulate", "model", "flight"]),
+    ("estimate", &["simulate", "spectral", "model", "flight"]),
     ("diagnose", &["estimate", "simulate", "model", "flight"]),
     (
         "job",
-        &["diagnose", "estimate", "simulate", "model", "flight"],
+        &[
+            "diagnose",
+            "structure",
+            "estimate",
+            "simulate",
+            "model",
+            "flight",
+        ],
     ),
     ("store", &["job", "estimate", "model", "flight", "ingest"]),
     ("work", &["store", "job", "estimate", "model", "flight"]),
@@ -44,6 +53,7 @@ const ROOMS: [(&str, &[&str]); 13] = [
             "job",
             "ingest",
             "diagnose",
+            "structure",
             "estimate",
             "model",
             "flight",
@@ -61,6 +71,7 @@ const ROOMS: [(&str, &[&str]); 13] = [
             "ingest",
             "simulate",
             "diagnose",
+            "structure",
             "estimate",
             "model",
             "flight",

@@ -7,6 +7,7 @@ mod diagnosis;
 mod document;
 mod elsewhere;
 mod filter;
+mod frequency;
 mod gaps;
 mod initial;
 mod knowledge;
@@ -16,6 +17,7 @@ mod recorded;
 mod resolve;
 mod start;
 mod stretch;
+mod structure;
 mod study;
 mod twice;
 mod unknown_name;
@@ -71,12 +73,16 @@ pub fn prepare(
     let fitted = fitted.map(|(segment, stretch)| (segment, stretch.index));
     let (segments, from): (Vec<Segment>, Vec<usize>) = fitted.unzip();
     check_samples(&model, &segments, &unknowns, &spec.options, &mut findings)?;
-    bounds::check_unknowns(&model, &segments, &unknowns, &spec.options)?;
+    // a structure determination brings parameters of its own
+    if spec.kind != JobKind::Structure || !unknowns.is_empty() {
+        bounds::check_unknowns(&model, &segments, &unknowns, &spec.options)?;
+    }
     let validation = resolved.predicted.into_iter();
     let validation: Vec<Validation> = validation
         .map(|held_out| to_predict(spec, &model, &initial, held_out))
         .collect::<Result<_, _>>()?;
     filter::check_data(&model, &segments, &unknowns, &spec.options)?;
+    frequency::check_data(&model, &segments, &unknowns, &spec.options, &mut findings)?;
     findings.extend(plausible::findings(&model, &segments));
     refuse_if_any(spec.strict.faults(&findings))?;
 
@@ -91,7 +97,11 @@ pub fn prepare(
             let flights = resolved.flights;
             Some(diagnosis::case(spec, &document, &problem, flights)?)
         }
-        JobKind::Estimate | JobKind::DerivativeStudy => None,
+        JobKind::Estimate | JobKind::DerivativeStudy | JobKind::Structure => None,
+    };
+    let terms = match &spec.structure {
+        Some(options) => Some(structure::terms(options, &problem, &mut findings)?),
+        None => None,
     };
     Ok(Plan {
         prepared: prepared(&problem, &validation, findings),
@@ -100,6 +110,7 @@ pub fn prepare(
         from,
         validation,
         case,
+        terms,
         strict: spec.strict.clone(),
     })
 }
@@ -155,6 +166,7 @@ fn refuse_if_any(faults: Vec<Fault>) -> Result<(), Vec<Fault>> {
 fn check_settings(spec: &JobSpec, model: &Model, faults: &mut Vec<Fault>) {
     checks::check_options(&spec.options, model, faults);
     filter::check_options(&spec.options, model, faults);
+    frequency::check_options(spec, model, faults);
     checks::check_names(spec, model, faults);
     faults.extend(spec.strict.unknown());
 }
