@@ -23,6 +23,7 @@ mod process;
 mod progress;
 mod recording;
 mod request;
+mod response;
 mod retain;
 mod serve;
 mod server;
@@ -68,6 +69,7 @@ enum Command {
     Watch(watch::Watch),
     Simulate(simulate::Simulate),
     Inspect(inspect::Inspect),
+    Response(response::Response),
     Model(model::ShowModel),
     Derivatives(derivatives::Derivatives),
     Health(health::Health),
@@ -92,6 +94,7 @@ pub fn main() -> ExitCode {
         Command::Watch(watch) => block_on(watch.run()),
         Command::Simulate(simulate) => simulate.run(),
         Command::Inspect(inspect) => inspect.run(),
+        Command::Response(response) => response.run(),
         Command::Model(model) => model.run(),
         Command::Derivatives(derivatives) => derivatives.run(),
         Command::Health(health) => block_on(health.run()),

@@ -295,7 +295,7 @@ fn estimator(text: &str) -> Result<Estimator, String> {
     })
 }
 
-fn band(text: &str) -> Result<[f64; 2], String> {
+pub(super) fn band(text: &str) -> Result<[f64; 2], String> {
     let wrong = || "two frequencies in Hz, as 0.1-1.5".to_string();
     let (from, to) = text.split_once('-').ok_or_else(wrong)?;
     let number = |text: &str| text.trim().parse::<f64>().map_err(|_| wrong());

@@ -12,11 +12,12 @@
 //! | x, y, ∂y/∂θ | trajectories and sensitivities | [`simulate`] |
 //! | X(f), U(f), Z(f) | finite Fourier transforms of signals | [`spectral`] |
 //! | J, R, F, the estimate | cost, steps, error bounds | [`estimate`] |
+//! | H, γ², ε | frequency responses of recorded signals | [`response`] |
 //! | X, F, PSE, PRESS | which terms an equation needs | [`structure`] |
 //! | S⊥, ψ, the effect that is missing | screening, trials, verdict | [`diagnose`] |
 //!
 //! [`job`] is what may be asked of all this in one document, and the events by which its progress is told. Arrows go
-//! one way: `job → diagnose → estimate → simulate → model → flight`, `estimate → spectral`,
+//! one way: `job → diagnose → estimate → simulate → model → flight`, `estimate, response → spectral`,
 //! `job → structure`, `ingest → flight`. Everything here is synchronous
 //! and deterministic: no server, no database, no clock, no environment, no hidden randomness. The service around it
 //! is the crate `trimtab`.
@@ -83,6 +84,7 @@ pub mod flight;
 pub mod ingest;
 pub mod job;
 pub mod model;
+pub mod response;
 pub mod simulate;
 pub mod spectral;
 pub mod structure;

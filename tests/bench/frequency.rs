@@ -31,7 +31,8 @@ fn plan(model: &str, recording: &Arc<Maneuver>, changes: &Value, options: Value)
         spec[key] = value.clone();
     }
     let spec: JobSpec = serde_json::from_value(spec).expect("a spec");
-    job::prepare(&spec, &document, &[recording.clone()]).unwrap_or_else(|f| panic!("{f:#?}"))
+    job::prepare(&spec, &document, std::slice::from_ref(recording))
+        .unwrap_or_else(|f| panic!("{f:#?}"))
 }
 
 /// Least and median of repeated runs of a plan.

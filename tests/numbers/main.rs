@@ -47,6 +47,7 @@ mod options;
 mod paths;
 mod play_and_limits;
 mod priors;
+mod response;
 mod sensitivities;
 mod starts;
 mod steps;

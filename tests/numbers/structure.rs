@@ -229,7 +229,7 @@ fn own_terms_and_a_held_out_maneuver() {
 fn what_cannot_be_searched_is_refused_by_name() {
     let maneuver = coefficient(1);
     let refused = |changes: Value| -> Vec<(String, String)> {
-        let tried = try_plan(model(), changes, &[maneuver.clone()]);
+        let tried = try_plan(model(), changes, std::slice::from_ref(&maneuver));
         let faults = tried.err().expect("a refusal");
         faults
             .iter()

@@ -156,8 +156,8 @@ impl Rule {
             let share = inner * turn(offset);
             weight += share;
             // the sum runs over all samples: those that no inner interval has in this place are taken off
-            for n in 0..place {
-                first[n] -= share * turn(-(n as f64));
+            for (n, first) in first.iter_mut().enumerate().take(place) {
+                *first -= share * turn(-(n as f64));
             }
             for (n, last) in last.iter_mut().enumerate().take(3 - place) {
                 *last -= share * turn(n as f64);

@@ -14,10 +14,12 @@ mod chirp_z;
 mod fast_transform;
 mod frequencies;
 mod integral;
+mod inverse;
 mod moments;
 
 pub use chirp_z::ChirpZ;
 pub use fast_transform::FastTransform;
 pub use frequencies::Frequencies;
 pub use integral::{Between, FourierIntegral};
+pub use inverse::invert;
 pub use moments::line_integral;

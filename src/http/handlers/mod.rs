@@ -6,6 +6,7 @@ pub(super) mod maneuvers;
 pub(super) mod mappings;
 pub(super) mod models;
 
+mod frequency_responses;
 mod health;
 mod metrics;
 mod problems;
@@ -20,6 +21,7 @@ use super::service::Server;
 pub(super) fn api() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .merge(maneuvers::router())
+        .merge(frequency_responses::router())
         .merge(mappings::router())
         .merge(models::router())
         .merge(jobs::submit::router())

@@ -18,10 +18,11 @@ const CRATES: [(&str, &str); 2] = [
 ];
 
 /// Each room and those it may use. An arrow that is not here is a change of design: make it on purpose.
-const ROOMS: [(&str, &[&str]); 15] = [
+const ROOMS: [(&str, &[&str]); 16] = [
     ("flight", &[]),
     ("spectral", &[]),
     ("structure", &[]),
+    ("response", &["spectral", "flight"]),
     ("ingest", &["flight"]),
     ("model", &["flight"]),
     ("simulate", &["model", "flight"]),
@@ -54,6 +55,7 @@ const ROOMS: [(&str, &[&str]); 15] = [
             "ingest",
             "diagnose",
             "structure",
+            "response",
             "estimate",
             "model",
             "flight",
@@ -72,6 +74,7 @@ const ROOMS: [(&str, &[&str]); 15] = [
             "simulate",
             "diagnose",
             "structure",
+            "response",
             "estimate",
             "model",
             "flight",

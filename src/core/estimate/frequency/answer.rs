@@ -3,6 +3,7 @@
 use super::evaluator::FrequencyEvaluator;
 use super::reduced::{Known, known};
 use crate::estimate::accuracy::coloured_residuals::Colour;
+use crate::estimate::accuracy::fit::histories_of;
 use crate::estimate::accuracy::identifiability::data_information;
 use crate::estimate::answer::table::{Accuracy, table};
 use crate::estimate::answer::{Ending, Solution};
@@ -72,6 +73,13 @@ pub(super) fn answer(
     let accuracy = Accuracy::new(&seen.unknowns, &information, held, &bounds);
     let solved = |place: usize| (shown.place)(place).and_then(|of| transformed.place(of));
     let accuracy = accuracy.seen_from(shown.theta.len(), solved);
+    // what no simulation follows, as an unstable aircraft, has no time histories
+    let is_shown = (shown.histories.iter().flat_map(|history| &history.outputs))
+        .all(|output| output.model.iter().all(|y| y.is_finite()));
+    let fitted = match is_shown {
+        true => shown.histories.clone(),
+        false => histories_of(base, |_, segment| segment.measured.clone()),
+    };
     let ending = Ending {
         problem: &seen,
         theta: &at.theta[..parameters],
@@ -82,10 +90,10 @@ pub(super) fn answer(
         weighting: &at.weighting,
         held,
         bounds: &bounds,
-        histories: &shown.histories,
-        colour: &Colour::of(&shown.histories),
+        histories: &fitted,
+        colour: &Colour::of(&fitted),
     };
-    let estimate = Estimate {
+    let mut estimate = Estimate {
         parameters: table(shown.asked, &shown.theta, &accuracy),
         correlation: correlation(&shown, &bounds.correlation, solved),
         identifiability: before.map(|before| Identifiability {
@@ -95,10 +103,14 @@ pub(super) fn answer(
         frequency: Some(frequency),
         ..ending.estimate(|place| seen.name_and_scale(place))
     };
+    if !is_shown {
+        estimate.outputs.clear();
+        estimate.reason += "; with these parameters a simulation leaves the range of numbers, so that there are no time histories";
+    }
     Solution {
         covariance: at.weighting.covariance.clone(),
         theta: shown.theta,
-        histories: shown.histories,
+        histories: if is_shown { fitted } else { Vec::new() },
         estimate,
     }
 }

@@ -16,7 +16,6 @@
 mod answer;
 mod columns;
 mod evaluator;
-mod inverse;
 mod left_out;
 mod linear;
 mod path;

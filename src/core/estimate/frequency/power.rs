@@ -9,7 +9,7 @@ use num_complex::Complex64;
 
 /// Frequencies at either side that count, at least and as a share of all.
 const LEAST_SIDE: usize = 4;
-const SIDE: f64 = 0.25;
+const SIDE: f64 = 0.4;
 
 /// Rounds of the weighted least squares.
 const ROUNDS: usize = 8;

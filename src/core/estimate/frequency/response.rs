@@ -6,12 +6,12 @@
 use num_complex::Complex64;
 
 use super::columns::Columns;
-use super::inverse::invert;
 use super::linear::Linear;
 use super::path::{Passed, passed};
 use super::spectra::{Spectra, Target};
 use crate::estimate::problem::Problem;
 use crate::model::{Element, PathElement};
+use crate::spectral::invert;
 
 /// The sizes of the elements of all paths, and their derivatives.
 pub(super) struct Sizes {

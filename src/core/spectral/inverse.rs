@@ -4,8 +4,8 @@ use num_complex::Complex64;
 
 /// Puts the inverse of a square matrix, row by row, in its place: Gauss-Jordan elimination with pivots of rows.
 ///
-/// `None` where it is singular.
-pub(super) fn invert(matrix: &mut [Complex64], size: usize) -> Option<()> {
+/// `None` where it is singular. At most 64 by 64.
+pub fn invert(matrix: &mut [Complex64], size: usize) -> Option<()> {
     let mut exchanged = [0_usize; 64];
     let exchanged = &mut exchanged[..size];
     for column in 0..size {
@@ -47,7 +47,10 @@ mod tests {
     #[test]
     fn a_matrix_times_its_inverse_is_one() {
         for size in [1, 2, 5, 9] {
-            let entry = |k: usize| Complex64::new((k as f64 * 1.3).sin(), (k as f64 * 2.9).cos());
+            let entry = |k: usize| {
+                let square = (k * k) as f64;
+                Complex64::new((square * 0.37).sin(), (square * 1.13).cos())
+            };
             let mut matrix: Vec<Complex64> = (0..size * size).map(entry).collect();
             matrix[0] = Complex64::ZERO;
             if size == 1 {
