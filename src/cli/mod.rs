@@ -30,12 +30,14 @@ mod process;
 mod progress;
 mod recording;
 mod request;
+mod response;
 mod retain;
 mod segments;
 mod serve;
 mod server;
 mod simulate;
 mod start_method;
+mod structure;
 mod study;
 mod study_tables;
 mod submit;
@@ -70,6 +72,7 @@ enum Command {
     Demo(demo::Demo),
     Fit(fit::Fit),
     Study(study::Study),
+    Structure(Box<structure::StructureCommand>),
     Diagnose(diagnose::Diagnose),
     Linear(linear::Linear),
     Predict(predict::Predict),
@@ -82,6 +85,7 @@ enum Command {
     Segments(segments::Segments),
     #[command(name = "maneuver")]
     Maneuvers(maneuver::Maneuvers),
+    Response(response::Response),
     Model(model::ShowModel),
     Derivatives(derivatives::Derivatives),
     Health(health::Health),
@@ -100,6 +104,7 @@ pub fn main() -> ExitCode {
         Command::Demo(demo) => block_on(demo.run()),
         Command::Fit(fit) => fit.run(),
         Command::Study(study) => study.run(),
+        Command::Structure(structure) => structure.run(),
         Command::Diagnose(diagnose) => diagnose.run(),
         Command::Linear(linear) => linear.run(),
         Command::Predict(predict) => predict.run(),
@@ -110,6 +115,7 @@ pub fn main() -> ExitCode {
         Command::Inspect(inspect) => inspect.run(),
         Command::Segments(segments) => segments.run(),
         Command::Maneuvers(maneuvers) => block_on(maneuvers.run()),
+        Command::Response(response) => response.run(),
         Command::Model(model) => model.run(),
         Command::Derivatives(derivatives) => derivatives.run(),
         Command::Health(health) => block_on(health.run()),

@@ -13,7 +13,8 @@ use super::pairs::{once, pair};
 use super::recording::{read_recording, read_text};
 use super::start_method::start_method;
 use crate::estimate::{
-    Derivatives, Estimator, Method, Noise, NoiseStructure, Options, Role, StartMethod,
+    Derivatives, Estimator, FrequencyOptions, Method, Noise, NoiseStructure, Options, Role,
+    StartMethod,
 };
 use crate::flight::Maneuver;
 use crate::job::{
@@ -78,6 +79,13 @@ pub(super) struct Request {
     /// For flight in turbulence: estimate process noise too, with a Kalman filter.
     #[arg(long)]
     filter_error: bool,
+    /// The estimator by name: output_error, filter_error, equation_error, output_error_frequency or equation_error_frequency.
+    /// The last two need --band.
+    #[arg(long, value_name = "NAME", value_parser = estimator, conflicts_with = "filter_error")]
+    estimator: Option<Estimator>,
+    /// The band of frequencies of an estimator of the frequency domain, Hz: 0.1-1.5. Alone it asks for output_error_frequency.
+    #[arg(long, value_name = "FROM-TO", value_parser = band, conflicts_with = "filter_error")]
+    band: Option<[f64; 2]>,
     /// Stop when a step is shorter than this many standard errors.
     #[arg(long, default_value_t = Options::default().tolerance)]
     pub tolerance: f64,
@@ -100,7 +108,7 @@ impl Request {
     }
 
     /// The recording of each.
-    fn recordings(&self) -> Result<Vec<Arc<Maneuver>>, Failure> {
+    pub(super) fn recordings(&self) -> Result<Vec<Arc<Maneuver>>, Failure> {
         let mapping = self.mapping.read()?;
         let read = |file: &Path| read_recording(file, mapping.as_ref()).map(Arc::new);
         let files = self.files().into_iter().map(|file| Ok((file, read(file)?)));
@@ -124,7 +132,7 @@ impl Request {
     }
 
     /// The document that `model` stands for here, without a server.
-    fn document(&self) -> Result<ModelDocument, Failure> {
+    pub(super) fn document(&self) -> Result<ModelDocument, Failure> {
         match self.model()? {
             ModelSource::Document(document) => Ok(*document),
             ModelSource::Reference(name) => catalog::find(&name).ok_or_else(|| {
@@ -214,6 +222,7 @@ impl Request {
             channels,
             parameters: self.changes.parameters()?,
             candidates: Vec::new(),
+            structure: None,
             knowledge: Default::default(),
             constants,
             options: Options {
@@ -222,10 +231,11 @@ impl Request {
                 } else {
                     Method::LevenbergMarquardt
                 },
-                estimator: if self.filter_error {
-                    Estimator::FilterError
-                } else {
-                    Estimator::OutputError
+                estimator: match (self.filter_error, self.estimator, self.band) {
+                    (true, ..) => Estimator::FilterError,
+                    (false, Some(estimator), _) => estimator,
+                    (false, None, Some(_)) => Estimator::OutputErrorFrequency,
+                    (false, None, None) => Estimator::OutputError,
                 },
                 start: self.start_method.clone(),
                 noise: Noise::Estimated {
@@ -234,6 +244,7 @@ impl Request {
                         false => NoiseStructure::Diagonal,
                     },
                 },
+                frequency: self.band.map(FrequencyOptions::of_band),
                 tolerance: self.tolerance,
                 max_iterations: self.max_iterations,
                 derivatives: self.derivatives()?,
@@ -262,6 +273,22 @@ fn gaps(name: &str) -> Result<Gaps, String> {
     let names = || Gaps::ALL.map(Gaps::name).join(", ");
     let found = Gaps::ALL.into_iter().find(|gaps| gaps.name() == name);
     found.ok_or_else(|| format!("choose one of {}", names()))
+}
+
+fn estimator(text: &str) -> Result<Estimator, String> {
+    let all = Estimator::ALL;
+    let found = all.iter().copied().find(|known| known.name() == text);
+    found.ok_or_else(|| {
+        let names: Vec<&str> = all.iter().map(|known| known.name()).collect();
+        format!("one of {}", names.join(", "))
+    })
+}
+
+pub(super) fn band(text: &str) -> Result<[f64; 2], String> {
+    let wrong = || "two frequencies in Hz, as 0.1-1.5".to_string();
+    let (from, to) = text.split_once('-').ok_or_else(wrong)?;
+    let number = |text: &str| text.trim().parse::<f64>().map_err(|_| wrong());
+    Ok([number(from)?, number(to)?])
 }
 
 fn integrator(name: &str) -> Result<Integrator, String> {

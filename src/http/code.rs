@@ -134,6 +134,8 @@ codes! {
     InvalidMapping "invalid_mapping" UNPROCESSABLE_ENTITY "The mapping has faults";
     /// The aircraft's constants have faults. `errors` lists all of them.
     InvalidAircraft "invalid_aircraft" UNPROCESSABLE_ENTITY "The aircraft's constants have faults";
+    /// The frequency responses cannot be worked out. Each entry of `errors` says why and points into the request.
+    InvalidResponse "invalid_response" UNPROCESSABLE_ENTITY "The frequency responses cannot be worked out";
     /// The service failed: a defect of ours. Report it with the `request_id`.
     Internal "internal" INTERNAL_SERVER_ERROR "The service failed";
     /// The service holds as much of what is being sent to it as it may. Send it again after `Retry-After` seconds.

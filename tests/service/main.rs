@@ -49,4 +49,5 @@ mod predictions;
 mod published_cases;
 mod real_flights;
 mod segments;
+mod structure;
 mod webhooks;

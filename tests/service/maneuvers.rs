@@ -304,3 +304,33 @@ async fn a_body_that_breaks_off_keeps_nothing() {
         json!([])
     );
 }
+
+/// Of the elevator maneuver: a short-period response where the motion is, and faults by their place.
+#[tokio::test]
+async fn a_recording_has_frequency_responses() {
+    let server = Server::start().await;
+    let id = server.upload(&elevator()).await;
+    let path = format!("/v1/maneuvers/{id}/frequency-responses");
+    let asked = json!({"inputs": ["de"], "outputs": ["q", "alpha"], "band_hz": [0.1, 1.0], "points": 10, "windows": [20.0]});
+    let answer = server.post_json(&path, &asked).await;
+    assert_eq!(answer.status, 200, "{}", answer.text());
+    let found = answer.json();
+    assert_eq!(found["frequency_hz"].as_array().unwrap().len(), 10);
+    assert_eq!(found["responses"][1]["output"], "alpha");
+    assert!(
+        found["responses"][0]["coherence"][3].as_f64().unwrap() > 0.9,
+        "{found}"
+    );
+    let refused = server
+        .post_json(
+            &path,
+            &json!({"inputs": ["dr"], "outputs": ["q"], "band_hz": [0.1, 1.0]}),
+        )
+        .await;
+    assert_eq!(refused.status, 422);
+    assert_eq!(refused.json()["errors"][0]["pointer"], "/inputs");
+    let nowhere = server
+        .post_json("/v1/maneuvers/none/frequency-responses", &asked)
+        .await;
+    assert_eq!(nowhere.status, 404);
+}

@@ -20,6 +20,7 @@ mod source_code;
 mod spec;
 mod status;
 mod strict;
+mod term_search;
 mod tolerance;
 mod trajectories;
 
@@ -37,7 +38,7 @@ pub use predicted::{PredictedOutput, PredictedSegment, PredictionSpec, predicted
 pub use prepare::{MOST_MANEUVERS, prepare};
 pub use provenance::Maker;
 pub use result::JobResult;
-pub use run::{StudyProgress, run, run_diagnosis, run_study};
+pub use run::{StudyProgress, run, run_diagnosis, run_structure, run_study};
 pub use simulation::{NoSimulatedManeuver, SimulationSpec};
 pub use source_code::{NoSourceCode, source_code};
 pub use spec::{
@@ -46,5 +47,6 @@ pub use spec::{
 };
 pub use status::Status;
 pub use strict::Strict;
+pub use term_search::TermSearch;
 pub use tolerance::{Tolerance, ToleranceHeld};
 pub use trajectories::{NoTrajectory, check_parameters, plan_again, trajectories_of};

@@ -83,9 +83,10 @@ pub fn plan_again(
     let plan = match spec.kind {
         JobKind::Estimate | JobKind::DerivativeStudy => prepare(spec, declared, maneuvers),
         // the model of a diagnosis has its effects in it, and the job's own edits
-        JobKind::Diagnose => {
+        JobKind::Diagnose | JobKind::Structure => {
             let mut spec = spec.clone();
             spec.kind = JobKind::Estimate;
+            spec.structure = None;
             spec.edits.clear();
             spec.parameters.clear();
             prepare(&spec, estimated, maneuvers)

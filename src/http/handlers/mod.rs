@@ -8,6 +8,7 @@ pub(super) mod models;
 
 mod campaigns;
 mod flown;
+mod frequency_responses;
 mod health;
 mod maneuver_data;
 mod metrics;
@@ -28,6 +29,7 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(flown::router())
         .merge(maneuver_data::router())
         .merge(segments::router())
+        .merge(frequency_responses::router())
         .merge(mappings::router())
         .merge(models::router())
         .merge(simulations::router())

@@ -18,18 +18,27 @@ const CRATES: [(&str, &str); 2] = [
 ];
 
 /// Each room and those it may use. An arrow that is not here is a change of design: make it on purpose.
-const ROOMS: [(&str, &[&str]); 14] = [
+const ROOMS: [(&str, &[&str]); 17] = [
     ("flight", &[]),
+    ("spectral", &[]),
+    ("structure", &[]),
+    ("response", &["spectral", "flight"]),
     ("ingest", &["flight"]),
     ("model", &["flight"]),
     ("simulate", &["model", "flight"]),
-    ("estimate", &["simulate", "model", "flight"]),
+    ("estimate", &["simulate", "spectral", "model", "flight"]),
     ("diagnose", &["estimate", "simulate", "model", "flight"]),
     ("dynamics", &["estimate", "simulate", "model", "flight"]),
     (
         "job",
         &[
-            "diagnose", "dynamics", "estimate", "simulate", "model", "flight",
+            "diagnose",
+            "dynamics",
+            "structure",
+            "estimate",
+            "simulate",
+            "model",
+            "flight",
         ],
     ),
     ("store", &["job", "estimate", "model", "flight", "ingest"]),
@@ -50,6 +59,8 @@ const ROOMS: [(&str, &[&str]); 14] = [
             "ingest",
             "diagnose",
             "dynamics",
+            "structure",
+            "response",
             "estimate",
             "model",
             "flight",
@@ -68,6 +79,8 @@ const ROOMS: [(&str, &[&str]); 14] = [
             "simulate",
             "diagnose",
             "dynamics",
+            "structure",
+            "response",
             "estimate",
             "model",
             "flight",
