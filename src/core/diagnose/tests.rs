@@ -7,9 +7,9 @@ use super::declared::Declared;
 use super::elsewhere::Elsewhere;
 use super::fitted::Fitted;
 use super::truth::{Chance, Noise, Truth, steps};
-use super::{Case, Diagnosis, Effect, Verdict, diagnose};
+use super::{Case, Diagnosis, Verdict, candidates, diagnose};
 use crate::estimate::Role;
-use crate::model::{EditKind, catalog};
+use crate::model::catalog;
 
 const STEP: f64 = 0.04;
 const SECONDS: f64 = 24.0;
@@ -175,7 +175,10 @@ fn a_flight_shows_an_effect_by_itself_or_it_does_not() {
             panic!("the declared model is not fitted");
         };
         let base = declared.fitted;
-        let effect = Effect::edit(EditKind::MissingTerm, "q", Some("alpha^3"));
+        let catalogue = candidates::candidates(&case, &base.problem.model);
+        let effect = (catalogue.iter())
+            .find(|effect| effect.name() == "missing_term alpha^3 in q")
+            .expect("a term about the trimmed flight");
         let edited = effect.apply(&base.document).unwrap();
         let settled = Fitted::settled(&case, edited.document, &base.values()).unwrap();
         let elsewhere = Elsewhere::of(&case, &base).expect("a flight that was not fitted");
