@@ -58,6 +58,26 @@ async fn the_same_content_is_the_same_maneuver() {
     assert_eq!(unknown.problem(404, "unknown_maneuver"), []);
 }
 
+/// It was dropped on the way, and the encoding found out by what the bytes look like.
+#[tokio::test]
+async fn the_charset_of_an_upload_holds() {
+    let server = Server::start().await;
+    let refused = server
+        .post("/v1/maneuvers", "text/csv; charset=klingon", SMALL)
+        .await;
+    let faults = refused.problem(422, "invalid_maneuver");
+    assert!(faults[0].1.contains("not_utf8"), "{faults:?}");
+    let titled = |title: &str| format!("time [s],{title} [deg]\n0,1\n0.1,2\n0.2,3\n0.3,5\n");
+    let utf16: Vec<u8> = (titled("alpha").encode_utf16())
+        .flat_map(u16::to_be_bytes)
+        .collect();
+    let read = server
+        .post("/v1/maneuvers", "Text/CSV; Charset=\"UTF-16BE\"", utf16)
+        .await;
+    assert!(read.status.is_success(), "{}", read.text());
+    assert!(read.text().contains("alpha"), "{}", read.text());
+}
+
 #[tokio::test]
 async fn a_file_is_what_its_first_bytes_tell() {
     let config = Config {

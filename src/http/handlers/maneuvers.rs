@@ -175,8 +175,10 @@ async fn upload_maneuver(
         max_bytes: limit,
         ..service.config.recording
     };
+    // with its parameters, of which the charset is one
+    let content_type = body::content_type(&headers).to_owned();
     let read = move || {
-        let charset = ingest::Format::charset(&media_type);
+        let charset = ingest::Format::charset(&content_type);
         let read = ingest::read_recording(&bytes, format, charset, mapping.as_ref(), &limits)?;
         let mut summary = ingest::summary(&read.maneuver);
         summary.findings.splice(0..0, read.findings);
