@@ -76,7 +76,8 @@ pub fn output_error_frequency(
 }
 
 /// Estimates θ by equation error in the frequency domain. Outputs of the answer are the derivatives of the measured states,
-/// and those recorded outputs that measure no state.
+/// and those recorded outputs that measure no state. Process noise biases it, as it does every regression on measured
+/// states: what disturbs a state is in the regressor too.
 ///
 /// # Errors
 /// The options have no band. No output measures a state. The regression has no finite residuals at the start values.
