@@ -3,7 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::force_figure::{MOST_FLIGHTS, force_over_quantity, force_over_time};
-use crate::diagnose::{ForceDependence, ForceIn, Unmodelled};
+use crate::diagnose::{ForceDependence, ForceIn, LeftBy, Unmodelled};
 use crate::estimate::{Role, five_digits as number};
 use crate::flight::{Shown, shown_in};
 
@@ -14,7 +14,7 @@ pub(super) fn section(found: &Unmodelled) -> Markup {
     let more = found.flights.len().saturating_sub(MOST_FLIGHTS);
     html! {
         section.whole aria-labelledby="unmodelled" {
-            h3 id="unmodelled" { "What is left, as " (words(found.force_in)) " " (found.equation) }
+            h3 id="unmodelled" { (left(found.left_by)) ", as " (words(found.force_in)) " " (found.equation) }
             figure.paper {
                 div role="img" aria-label={ "unmodelled force in " (found.equation) " over time" } { (drawn(force_svg(found))) }
                 figcaption.soft {
@@ -53,6 +53,13 @@ pub(super) fn section(found: &Unmodelled) -> Markup {
                 }
             }
         }
+    }
+}
+
+fn left(by: LeftBy) -> &'static str {
+    match by {
+        LeftBy::WithEffects => "What is left",
+        LeftBy::Declared => "What the declared model leaves",
     }
 }
 

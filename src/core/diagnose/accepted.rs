@@ -1,7 +1,8 @@
 //! An effect that a round accepted.
 
-use super::effect::Effect;
+use super::effect::{Effect, Treatment};
 use super::fitted::Fitted;
+use super::group::alone;
 use super::passed::Passed;
 use super::report::{Evidence, Member};
 use super::threshold::Threshold;
@@ -19,6 +20,16 @@ pub(super) struct Accepted {
 }
 
 impl Accepted {
+    /// The same process noise on a rate, which is likelier by a gain of 2 ln L.
+    #[must_use]
+    pub(super) fn of_rate(mut self, rate: &str, fitted: &Fitted, gain: f64) -> Self {
+        self.effect = Effect::treatment(Treatment::ProcessNoise, rate);
+        self.group = alone(&self.effect);
+        self.evidence.likelihood_ratio += gain;
+        self.fitted = fitted.clone();
+        self
+    }
+
     pub(super) fn of(passed: Passed, group: Vec<Member>, threshold: Threshold) -> Self {
         let Passed {
             trial,

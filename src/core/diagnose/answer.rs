@@ -124,6 +124,7 @@ pub(super) fn answer(
     let mut remarks = remarks.clone();
     remarks.extend(remarks_on(case, &fits));
     remarks.extend(lines(&after.solution.histories).iter().map(swings));
+    remarks.extend(held_noise(&estimated));
     let effects: Vec<NamedEffect> = found
         .accepted
         .iter()
@@ -245,6 +246,20 @@ fn remarks_on(case: &Case, fits: &[FitChange]) -> Vec<String> {
         ));
     }
     remarks
+}
+
+/// Process noise that was told from coloured errors of measuring, which no estimator does.
+fn held_noise(estimate: &Estimate) -> Option<String> {
+    let noises = estimate.filter.iter().flat_map(|f| &f.process_noise);
+    let held: Vec<&str> = (noises.filter(|noise| noise.fixed && noise.estimate > 0.0))
+        .map(|noise| noise.state.as_str())
+        .collect();
+    (!held.is_empty()).then(|| {
+        format!(
+            "errors of measuring are coloured, which the filter-error method does not know: the process noise of {} is held where innovations are likeliest with their colour, and has no error bound",
+            held.join(", ")
+        )
+    })
 }
 
 fn swings(line: &Line) -> String {

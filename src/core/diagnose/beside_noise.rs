@@ -24,7 +24,7 @@ pub(super) fn beside_noise(
     candidates: &[Passed],
     threshold: Threshold,
 ) -> Option<Accepted> {
-    let mut candidates: Vec<&Passed> = candidates.iter().filter(|one| is_other(one)).collect();
+    let mut candidates: Vec<&Passed> = candidates.iter().filter(|one| is_spoken_for(one)).collect();
     candidates.sort_by(|a, b| {
         let of = |passed: &Passed| passed.trial.likelihood_ratio;
         of(b).total_cmp(&of(a))
@@ -46,7 +46,7 @@ pub(super) fn beside_noise(
 
 /// Whether flights that were not fitted spoke for it: a filter predicts a sample ahead, and with it on one flight alone much
 /// seems to be better. Turbulence and a gust of one flight explain the same.
-fn is_other(passed: &Passed) -> bool {
+fn is_spoken_for(passed: &Passed) -> bool {
     let effect = &passed.trial.effect;
     let gain: f64 = passed.gains.iter().map(|gain| gain.gain).sum();
     !effect.is_noise() && effect.kind != EffectKind::Edit(EditKind::Gust) && gain > 0.0

@@ -42,10 +42,7 @@ fn told_from_colour(free: Fitted, state: &str) -> Fitted {
             fixed: true,
         };
         let mut problem = best.1.problem.clone();
-        for (place, &value) in best.1.theta.iter().enumerate() {
-            let index = problem.unknowns.free[place];
-            problem.unknowns.all[index].start = value;
-        }
+        problem.unknowns.begin_at(&best.1.theta);
         problem.options.process_noise.insert(state.into(), held);
         let Ok(fitted) = fit(best.1.document.clone(), problem) else {
             break;
@@ -71,12 +68,16 @@ fn intensity(fitted: &Fitted, state: &str) -> Option<f64> {
     (of_state.estimate > 0.0).then_some(of_state.estimate)
 }
 
-/// A rate whose equation a disturbance fits clearly better than that of the flow, `one`: what moves it is no turbulence.
-pub(super) fn disturbed_elsewhere(
-    case: &Case,
-    calm: &Fitted,
-    one: &Fitted,
-) -> Option<(String, Fitted)> {
+/// A rate that is disturbed, and not the flow.
+pub(super) struct Pushed {
+    pub rate: String,
+    pub fitted: Fitted,
+    /// By how much 2 ln L is greater than with a disturbed flow.
+    pub gain: f64,
+}
+
+/// The rate whose equation a disturbance fits clearly better than that of the flow, `one`: what moves it is no turbulence.
+pub(super) fn disturbed_elsewhere(case: &Case, calm: &Fitted, one: &Fitted) -> Option<Pushed> {
     let quantities = Quantities::of(&calm.document);
     let is_rate = |name: &&String| {
         let quantity = quantities.get(name);
@@ -84,9 +85,10 @@ pub(super) fn disturbed_elsewhere(
     };
     let rates = calm.document.states.keys().filter(is_rate);
     let fits = rates.filter_map(|rate| Some((rate.clone(), disturbed(case, calm, rate).ok()?)));
-    let (rate, best) = fits.max_by(|(_, a), (_, b)| a.ln_evidence().total_cmp(&b.ln_evidence()))?;
-    let gain = 2.0 * (best.ln_evidence() - one.ln_evidence());
-    (gain > CLEARLY).then_some((rate, best))
+    let (rate, fitted) =
+        fits.max_by(|(_, a), (_, b)| a.ln_evidence().total_cmp(&b.ln_evidence()))?;
+    let gain = 2.0 * (fitted.ln_evidence() - one.ln_evidence());
+    (gain > CLEARLY).then_some(Pushed { rate, fitted, gain })
 }
 
 /// Another document, fitted by the estimator of a fit and with its process noise.
@@ -106,8 +108,8 @@ pub(super) fn disturbed_throughout(case: &Case, calm: &Fitted, one: Fitted) -> F
     let Ok(all) = filtered(case, calm, &|_| false) else {
         return one;
     };
-    // both are filters, whose innovations should be white: their costs are their likelihoods
-    let gain = 2.0 * (one.estimate.cost - all.estimate.cost);
+    // with the noise that suits them: white innovations are the better the more a filter follows coloured errors
+    let gain = 2.0 * (all.ln_evidence() - one.ln_evidence());
     let others = one.problem.model.states.len() - 1;
     if gain > critical(ERROR, 1.0, others) {
         all

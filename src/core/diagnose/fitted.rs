@@ -142,8 +142,11 @@ impl Fitted {
         self.orders().iter().any(|&order| order > 0)
     }
 
-    /// Moved to where the likelihood with the noise that suits it is greatest.
+    /// Moved to where the likelihood with the noise that suits it is greatest. A filter has its own: it stays.
     pub(super) fn likeliest(self) -> Self {
+        if self.estimate.filter.is_some() {
+            return self;
+        }
         let orders = self.orders();
         self.polished(&orders)
     }

@@ -1,9 +1,10 @@
 //! Effects that the rounds found, and those that they refused.
 
 use super::accepted::Accepted;
-use super::effect::{Effect, Treatment};
-use super::group::alone;
-use super::report::{Refusal, RefusedEffect};
+use super::effect::Effect;
+use super::report::{Refusal, RefusedEffect, Step};
+use super::sentence;
+use super::watch::{Stopped, Watcher, tell};
 use crate::model::Added;
 
 /// A likelihood ratio that no chance makes, however many candidates there are.
@@ -19,13 +20,24 @@ pub(super) struct Found {
 }
 
 impl Found {
-    /// The process noise that was accepted last is that of a rate.
-    pub(super) fn is_no_turbulence(&mut self, rate: String) {
-        if let Some(last) = self.accepted.last_mut() {
-            last.effect = Effect::treatment(Treatment::ProcessNoise, rate.as_str());
-            last.group = alone(&last.effect);
-        }
-        self.pushed = Some(rate);
+    /// Takes an effect in, and tells of it.
+    ///
+    /// # Errors
+    /// The watcher stopped it.
+    pub(super) fn accept(
+        &mut self,
+        accepted: Accepted,
+        round: usize,
+        watcher: &mut Watcher<'_>,
+    ) -> Result<(), Stopped> {
+        let step = Step::Accepted {
+            round,
+            name: accepted.effect.name(),
+            likelihood_ratio: accepted.evidence.likelihood_ratio,
+            sentence: sentence::of(&accepted.effect, &accepted.fitted.sizes(&accepted.added)),
+        };
+        self.accepted.push(accepted);
+        tell(watcher, &step)
     }
 
     /// The parameters that the accepted effects added.

@@ -22,7 +22,8 @@ use crate::model::{Added, AddedRole, EditKind};
 /// A size within so many standard errors of nothing is nothing that one can tell an engineer of.
 const LEAST_ERRORS: f64 = 2.0;
 
-/// A flow about an aircraft, and the downwash on its way to the tail, form within this time, s.
+/// A flow about an aircraft, and the downwash on its way to the tail, form while it flies some ten chords or the length of
+/// its tail (Wagner's function; l/V): with margin within this time, s, of aircraft from gliders to transports.
 const SLOWEST_FLOW: f64 = 0.6;
 
 /// A frequency that is told is at least so many of its standard errors.

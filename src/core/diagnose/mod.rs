@@ -54,6 +54,7 @@ mod threshold;
 mod trial;
 #[cfg(test)]
 mod truth;
+mod turbulence;
 mod unmodelled;
 mod verdict;
 mod watch;
@@ -74,24 +75,19 @@ pub use report::{
 pub use residual::{ResidualAnalysis, SpectralLine, analyse};
 pub use unmodelled::{
     ForceCurve, ForceDependence, ForceElsewhere, ForceHistory, ForceIn, ForceInterval,
-    ForceSpectrum, Unmodelled,
+    ForceSpectrum, LeftBy, Unmodelled,
 };
 pub use watch::Watcher;
 
-use accepted::Accepted;
 use answer::answer;
-use beside_noise::beside_noise;
 use declared::Declared;
-use disturbed::{disturbed_elsewhere, disturbed_throughout};
 use fitted::Fitted;
 use found::Found;
 use review::review;
 use rival::Rival;
-use round::{Round, round};
-use watch::{Stopped, ask, tell};
-
-/// Rounds, and so effects, at most: who lacks more than these has another model.
-const MOST_ROUNDS: usize = 6;
+use round::{MOST_ROUNDS, Round, round};
+use turbulence::Disturbed;
+use watch::{Stopped, ask};
 
 /// How often the declared model's fit may turn out to have ended in a false minimum.
 const MOST_RENEWALS: usize = 2;
@@ -121,7 +117,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
         let Round {
             accepted,
             refused,
-            mut others,
+            others,
             threshold,
         } = round;
         let Some(accepted) = accepted else {
@@ -156,28 +152,20 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
             continue;
         }
         found.refuse(refused);
-        let calm = std::mem::replace(&mut base, accepted.fitted.clone());
-        let last = accepted.effect.is_noise();
-        accept(accepted, number, &mut found, watcher)?;
-        if last {
-            base = match disturbed_elsewhere(case, &calm, &base) {
-                Some((rate, fitted)) => {
-                    found.is_no_turbulence(rate);
-                    fitted
-                }
-                None => disturbed_throughout(case, &calm, base),
+        if accepted.effect.is_noise() {
+            let disturbed = Disturbed {
+                case,
+                calm: &base,
+                accepted,
+                others,
+                threshold,
+                number,
             };
-            while number < MOST_ROUNDS
-                && let Some(further) = beside_noise(case, &base, &others, threshold)
-            {
-                ask(watcher)?;
-                number += 1;
-                others.retain(|other| !further.effect.rules_out(&other.trial.effect));
-                base = further.fitted.clone();
-                accept(further, number, &mut found, watcher)?;
-            }
+            base = turbulence::settle(disturbed, &mut found, watcher)?;
             break;
         }
+        base = accepted.fitted.clone();
+        found.accept(accepted, number, watcher)?;
         number += 1;
     }
     let standing = found.accepted.len();
@@ -207,23 +195,7 @@ fn clean(
     };
     for outlying in outliers {
         *base = outlying.fitted.clone();
-        accept(outlying, 0, found, watcher)?;
+        found.accept(outlying, 0, watcher)?;
     }
     Ok(Some(without))
-}
-
-fn accept(
-    accepted: Accepted,
-    round: usize,
-    found: &mut Found,
-    watcher: &mut Watcher<'_>,
-) -> Result<(), Stopped> {
-    let step = Step::Accepted {
-        round,
-        name: accepted.effect.name(),
-        likelihood_ratio: accepted.evidence.likelihood_ratio,
-        sentence: sentence::of(&accepted.effect, &accepted.fitted.sizes(&accepted.added)),
-    };
-    found.accepted.push(accepted);
-    tell(watcher, &step)
 }

@@ -67,8 +67,8 @@ pub struct Diagnosis {
     pub diff: Vec<DocumentChange>,
     /// Of the residuals that are left.
     pub residuals: Vec<ResidualAnalysis>,
-    /// Of the verdict `unexplained`: what is left as a force that the model does not have; absent where noise alone could leave
-    /// as much.
+    /// Of the verdict `unexplained`: what is left, or where names are in doubt what the declared model leaves, as a force that
+    /// the model does not have; absent where noise alone could leave as much.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unmodelled: Option<Unmodelled>,
     /// What the reader should know of how it was decided.

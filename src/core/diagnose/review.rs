@@ -1,7 +1,7 @@
 //! Review: what no longer holds with later effects in the model, or what these made needless, is taken out again.
 
 use super::accepted::Accepted;
-use super::case::{Case, Unfit};
+use super::case::Case;
 use super::disturbed::again;
 use super::fitted::Fitted;
 use super::found::Found;
@@ -24,10 +24,9 @@ pub(super) fn review(case: &Case, declared: &Fitted, base: &mut Fitted, found: &
         let leaving = untenable(declared, base, found);
         let leaving = leaving.or_else(|| needless(case, declared, base, found));
         let Some(leaving) = leaving else { break };
-        let fitted = if is_filtered(found) {
-            again(case, base, leaving.without)
-        } else {
-            Fitted::settled(case, leaving.without, &base.values())
+        let fitted = match base.estimate.filter {
+            Some(_) => again(case, base, leaving.without),
+            None => Fitted::settled(case, leaving.without, &base.values()),
         };
         let Ok(fitted) = fitted else { break };
         *base = fitted;
@@ -35,11 +34,6 @@ pub(super) fn review(case: &Case, declared: &Fitted, base: &mut Fitted, found: &
         found.removed(removed, leaving.why, leaving.worth);
         name_again(&declared.document, &mut found.accepted);
     }
-}
-
-/// With process noise in the model the fit is that of the filter-error method.
-fn is_filtered(found: &Found) -> bool {
-    (found.accepted.iter()).any(|accepted| accepted.effect.is_noise())
 }
 
 /// The last effect whose size has come to a bound of its range, or to nothing.
@@ -66,17 +60,11 @@ fn untenable(declared: &Fitted, base: &Fitted, found: &Found) -> Option<Leaving>
 
 /// The effect whose removal costs least, if that is less than what it had to pass.
 fn needless(case: &Case, declared: &Fitted, base: &Fitted, found: &Found) -> Option<Leaving> {
-    let filtered = is_filtered(found);
-    let evidence = |fitted: Fitted| match filtered {
-        true => fitted.ln_evidence(),
-        false => fitted.likeliest().ln_evidence(),
-    };
+    let evidence = |fitted: Fitted| fitted.likeliest().ln_evidence();
     let with = evidence(base.clone());
-    let fit = |document: ModelDocument| -> Result<Fitted, Unfit> {
-        match filtered {
-            true => again(case, base, document),
-            false => Fitted::trial(case, document, &base.values()),
-        }
+    let fit = |document: ModelDocument| match base.estimate.filter {
+        Some(_) => again(case, base, document),
+        None => Fitted::trial(case, document, &base.values()),
     };
     let of = |at: usize| {
         let without = without(declared, found, at)?;

@@ -30,12 +30,12 @@ impl Rival {
     /// or there are none.
     pub(super) fn of(case: &Case, start: &Fitted, last: &Fitted, found: &Found) -> Option<Self> {
         let outliers = EffectKind::Treatment(Treatment::SensorOutliers);
-        let is_form = |kind: EffectKind| kind != outliers;
-        let names = found.accepted.iter().filter(|a| is_form(a.effect.kind));
+        let names = found.accepted.iter().filter(|a| a.effect.kind != outliers);
         let names = names.count();
         if names == 0 {
             return None;
         }
+        let evidence = |fitted: &Fitted| fitted.clone().likeliest().ln_evidence();
         let named = 2.0 * (evidence(last) - evidence(start));
         let is_noise = found.accepted.iter().any(|a| a.effect.is_noise());
         let exceeds = |force: f64| match is_noise {
@@ -43,15 +43,7 @@ impl Rival {
             false if names > 1 => named < OF_SEVERAL * force,
             false => named < force + BETTER,
         };
-        let picture = unmodelled::found_beyond(case, start, exceeds)?;
+        let picture = unmodelled::rival(case, start, exceeds)?;
         Some(Self { picture, named })
-    }
-}
-
-/// ln L where it is greatest; that of innovations is there already.
-fn evidence(fitted: &Fitted) -> f64 {
-    match fitted.estimate.filter {
-        Some(_) => fitted.ln_evidence(),
-        None => fitted.clone().likeliest().ln_evidence(),
     }
 }

@@ -19,6 +19,9 @@ use super::trial::Trial;
 use super::watch::{Stopped, Watcher, ask, tell};
 use crate::model::{Added, EditKind};
 
+/// Rounds, and so effects, at most: who lacks more than these has another model.
+pub(super) const MOST_ROUNDS: usize = 6;
+
 /// Below this share the declared parameters imitate an effect but for their own curvature: it counts as visible only
 /// where even so a step promises much.
 const INVISIBLE: f64 = 0.01;

@@ -50,7 +50,7 @@ fn words(effect: &Effect, first: Option<&Size>) -> String {
     let kind = match effect.kind {
         EffectKind::Treatment(Treatment::ProcessNoise) => {
             return format!(
-                "{target} is disturbed by turbulence or another force that nothing recorded tells of (process noise)"
+                "{target} is disturbed by a force that nothing recorded tells of, such as turbulence (process noise)"
             );
         }
         EffectKind::Treatment(Treatment::SensorOutliers) => {

@@ -58,7 +58,7 @@ impl Trial {
         let tried = screened.as_ref().map_or(starts.len(), |seen| seen.starts);
         let fitted_from = |starts: &[Values]| {
             let fits = fits(case, base, &effect, &edited.document, starts)?;
-            Ok::<_, String>(likeliest(fits, &effect))
+            Ok::<_, String>(likeliest(fits))
         };
         let mut best = fitted_from(&starts)?;
         // a model that holds the one without the effect explains no less: the step had led astray
@@ -119,11 +119,8 @@ fn fits(
 }
 
 /// The likeliest of some fits once each has moved to where the likelihood with coloured noise is greatest.
-fn likeliest(fits: Vec<(f64, Fitted)>, effect: &Effect) -> (f64, Fitted) {
+fn likeliest(fits: Vec<(f64, Fitted)>) -> (f64, Fitted) {
     let moved = fits.into_iter().take(BEST).map(|(evidence, fitted)| {
-        if effect.is_noise() {
-            return (evidence, fitted);
-        }
         let fitted = fitted.likeliest();
         (fitted.ln_evidence().max(evidence), fitted)
     });

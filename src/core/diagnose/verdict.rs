@@ -189,7 +189,7 @@ fn what_is_left(left: &Left<'_>) -> String {
         ));
     }
     parts.extend(left.doubt.map(|Doubt { named, force }| {
-        format!("a force of no form in one equation of the declared model explains as much (2 ln L {force:.0}, that {named:.0}), and so the name is in doubt")
+        format!("its name is in doubt: a force of no form in one equation of the declared model explains about as much (2 ln L {force:.0}, the effects named {named:.0})")
     }));
     if left.terms >= PATCHWORK {
         parts.push(format!(

@@ -30,7 +30,7 @@ mod tests;
 
 pub use report::{
     ForceCurve, ForceDependence, ForceElsewhere, ForceHistory, ForceIn, ForceInterval,
-    ForceSpectrum, Unmodelled,
+    ForceSpectrum, LeftBy, Unmodelled,
 };
 
-pub(super) use picture::{Picture, found, found_beyond};
+pub(super) use picture::{Picture, found, rival};

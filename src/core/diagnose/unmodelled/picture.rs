@@ -10,7 +10,7 @@ use super::left_over::{LeftOver, left_over};
 use super::parts::{self, Parted};
 use super::proposals::{Proposal, proposals};
 use super::quantities;
-use super::report::{ForceDependence, ForceHistory, Unmodelled};
+use super::report::{ForceDependence, ForceHistory, LeftBy, Unmodelled};
 use super::responses::{Response, Responses};
 use super::sentence;
 use super::shapes::{Knots, Shapes};
@@ -64,26 +64,29 @@ impl Picture {
 /// The picture of what a fit by output error leaves. `None` where noise alone would leave as much, and where the
 /// simulation leaves the range of numbers.
 pub(in crate::diagnose) fn found(case: &Case, fitted: &Fitted) -> Option<Picture> {
-    found_beyond(case, fitted, |_| true)
+    let left = significant(case, fitted)?;
+    picture(case, fitted, &left, LeftBy::WithEffects)
 }
 
-/// As [`found`], where the force's likelihood ratio is also one that is `asked_for`.
-pub(in crate::diagnose) fn found_beyond(
+/// The picture of what the declared model leaves, if the likelihood ratio of that force is one that `rivals` the effects that
+/// were named.
+pub(in crate::diagnose) fn rival(
     case: &Case,
-    fitted: &Fitted,
-    asked_for: impl Fn(f64) -> bool,
+    declared: &Fitted,
+    rivals: impl Fn(f64) -> bool,
 ) -> Option<Picture> {
+    let left = significant(case, declared).filter(|left| rivals(left.likelihood_ratio))?;
+    picture(case, declared, &left, LeftBy::Declared)
+}
+
+fn significant(case: &Case, fitted: &Fitted) -> Option<LeftOver> {
     if fitted.estimate.filter.is_some() {
         return None;
     }
-    let left = left_over(case, fitted).filter(LeftOver::is_significant)?;
-    if !asked_for(left.likelihood_ratio) {
-        return None;
-    }
-    picture(case, fitted, &left)
+    left_over(case, fitted).filter(LeftOver::is_significant)
 }
 
-fn picture(case: &Case, fitted: &Fitted, left: &LeftOver) -> Option<Picture> {
+fn picture(case: &Case, fitted: &Fitted, left: &LeftOver, left_by: LeftBy) -> Option<Picture> {
     let ingredients = Ingredients::new(case, &fitted.document);
     let equation = (equations::of(&ingredients, &fitted.document).into_iter())
         .find(|equation| equation.name == left.equation && equation.force_in == left.force_in)?;
@@ -125,6 +128,7 @@ fn picture(case: &Case, fitted: &Fitted, left: &LeftOver) -> Option<Picture> {
     let flights = histories(&flown, &shapes, posterior, &parts);
     let forces = forces(&flown, &shapes, posterior);
     let mut unmodelled = Unmodelled {
+        left_by,
         equation: equation.name.clone(),
         force_in: equation.force_in,
         unit: equation.unit.clone(),

@@ -17,10 +17,24 @@ pub enum ForceIn {
     Output,
 }
 
+/// Which model leaves a residual.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum LeftBy {
+    /// The model with all effects that were named in it.
+    #[default]
+    WithEffects,
+    /// The declared model: the force explains as much as the effects that were named, whose names are in doubt.
+    Declared,
+}
+
 /// What is left of the residual as a force in one equation: an acceleration, the increment of a coefficient or an error
 /// of an output. All numbers are SI.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Unmodelled {
+    /// Which model leaves it.
+    #[serde(default)]
+    pub left_by: LeftBy,
     /// The state, definition or output in whose equation the force explains the residual best.
     #[schema(example = "q")]
     pub equation: String,

@@ -1,7 +1,7 @@
 //! An unmodelled force in words: where, how large, on what it depends, when, and what would decide.
 
 use super::equations::Equation;
-use super::report::{ForceDependence, Unmodelled};
+use super::report::{ForceDependence, LeftBy, Unmodelled};
 use crate::estimate::five_digits;
 use crate::flight::{Shown, shown_in};
 
@@ -44,8 +44,12 @@ pub(super) fn of(equation: &Equation, found: &Unmodelled) -> String {
                 .to_string(),
         ),
     };
+    let what = match found.left_by {
+        LeftBy::WithEffects => "what is left",
+        LeftBy::Declared => "what the declared model leaves",
+    };
     format!(
-        "what is left looks like a force in {place} of up to {size}; {depends}; {when}. To decide, {decide}"
+        "{what} looks like a force in {place} of up to {size}; {depends}; {when}. To decide, {decide}"
     )
 }
 

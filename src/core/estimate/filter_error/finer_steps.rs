@@ -47,10 +47,7 @@ pub(in crate::estimate) fn filter_error_in_steps(
 
 /// Puts start values where a solution is.
 fn begin_at(problem: &mut Problem, found: &Solution) {
-    for (place, &value) in found.theta.iter().enumerate() {
-        let index = problem.unknowns.free[place];
-        problem.unknowns.all[index].start = value;
-    }
+    problem.unknowns.begin_at(&found.theta);
     let noises = found.estimate.filter.iter();
     for noise in noises.flat_map(|filter| &filter.process_noise) {
         if !noise.fixed && noise.estimate > 0.0 {

@@ -163,6 +163,13 @@ impl Unknowns {
         Self::of(all, places)
     }
 
+    /// Free ones start at θ.
+    pub(crate) fn begin_at(&mut self, theta: &[f64]) {
+        for (&index, &value) in self.free.iter().zip(theta) {
+            self.all[index].start = value;
+        }
+    }
+
     /// Unknowns that `is_meant` picks are no less than `least`, and start no lower.
     pub fn raise_lower(&mut self, least: f64, is_meant: impl Fn(&Unknown) -> bool) {
         for unknown in self.all.iter_mut().filter(|unknown| is_meant(unknown)) {
