@@ -24,12 +24,16 @@ fn edits(document: &ModelDocument, kind: EditKind) -> Vec<Edit> {
     let definitions = document.definitions.keys().map(String::as_str);
     let mut targets: Vec<&str> = inputs.iter().chain(&states).copied().collect();
     targets.extend(outputs.chain(definitions));
+    targets.extend(["p+r", "alpha+beta", "ax+az", "phi+theta"]);
     targets.extend(["all", "CL+Cm", "CL+CD+Cm", "Wx", "Wy", "Wz"]);
     targets.extend(document.parameters.keys().map(String::as_str));
     targets.dedup();
     let signals = || states.iter().chain(&inputs);
     let terms: Vec<String> = match kind {
         EditKind::SensorPosition => ["x", "y", "z"].map(String::from).to_vec(),
+        EditKind::SensorCrossAxis => (document.outputs.keys().cloned())
+            .chain(signals().map(|name| (*name).to_string()))
+            .collect(),
         EditKind::UnrecordedInput => vec!["dt[rad]".to_string()],
         EditKind::MissingTerm => signals()
             .flat_map(|name| [format!("{name}^2"), format!("{name}*abs({name})")])

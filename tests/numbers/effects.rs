@@ -4,7 +4,7 @@
 use indexmap::IndexMap;
 use trimtab_core::flight::Maneuver;
 use trimtab_core::flight::Unit;
-use trimtab_core::model::{Edit, EditKind, Model, ModelDocument, Start, catalog};
+use trimtab_core::model::{Edit, EditKind, Input, Model, ModelDocument, Start, catalog};
 use trimtab_core::simulate::{
     InputInterpolation, Integrator, Scenario, ScenarioEffect, Segment, Steps, Substeps, simulate,
 };
@@ -130,6 +130,18 @@ struct Case {
     inputs: &'static [&'static str],
 }
 
+impl Case {
+    /// With a recorded channel that the model does not use.
+    fn beside(mut self, channel: &str, unit: &str) -> Self {
+        let input = Input {
+            unit: unit.into(),
+            ..Input::default()
+        };
+        self.edit.channels.insert(channel.into(), input);
+        self
+    }
+}
+
 #[rustfmt::skip]
 fn cases() -> Vec<Case> {
     use EditKind::*;
@@ -152,6 +164,11 @@ fn cases() -> Vec<Case> {
         case("six-degrees-of-freedom", SensorPosition, "az", "x", &[], 1e-12, &[("az_x", 2.0)], "az"),
         case("flight-path-reconstruction", SensorBias, "az", "", &[], 1e-9, &[("az_bias_2", 0.1)], "z"),
         with(&["qdot"], case("flight-path-reconstruction", SensorPosition, "az", "x", &[], 1e-9, &[("az_x", 1.0)], "z")),
+        case("lateral-directional-4", SensorCrossAxis, "r", "p", &[], 1e-12, &[("r_sees_p", 0.1)], "r"),
+        with(&["p"], case(sp, SensorCrossAxis, "q", "p", &[], 0.0, &[("q_sees_p", 0.1)], "q")).beside("p", "rad/s"),
+        case("flight-path-reconstruction", SensorCrossAxis, "ay", "az", &[], 1e-9, &[("ay_sees_az", 0.05)], "beta"),
+        case("lateral-directional-4", SwappedChannels, "p+r", "", &[], 1e-12, &[("p_r_swapped", 1.0)], "r"),
+        case(sp, SwappedChannels, "alpha+q", "", &[], 1e-12, &[("alpha_q_swapped", 1.0)], "q"),
         case(sp, InputBias, "de", "", &[], 0.0, &[("de_bias", 0.01)], "q"),
         case(sp, InputScale, "de", "", &[], 1e-12, &[("de_scale", 0.2)], "q"),
         case(sp, InputDelay, "de", "", &[], 1e-9, &[("de_delay", 0.1)], "q"),
@@ -267,6 +284,29 @@ fn effects_go_the_right_way() {
     for (k, y) in vane["alpha"].iter().enumerate() {
         let wanted = declared["alpha"][k] - 10.0 * declared["q"][k] / input("V", k);
         assert!((y - wanted).abs() < 1e-12, "sample {k}");
+    }
+    // axes that are not the aircraft's, and channels exchanged
+    let lateral = catalog::find("lateral-directional-4").expect("a model");
+    let own = outputs(&lateral, &[]);
+    let run_lateral = |edit: &Edit, values: &[(&str, f64)]| {
+        outputs(&edit.apply(&lateral).expect("edited").document, values)
+    };
+    let turned = run_lateral(
+        &edit(EditKind::SensorCrossAxis, "r", "p"),
+        &[("r_sees_p", 0.1)],
+    );
+    let exchanged = run_lateral(
+        &edit(EditKind::SwappedChannels, "p+r", ""),
+        &[("p_r_swapped", 1.0)],
+    );
+    for k in 0..COUNT {
+        assert!((turned["r"][k] - own["r"][k] - 0.1 * own["p"][k]).abs() < 1e-12);
+        assert!((exchanged["r"][k] - own["p"][k]).abs() < 1e-12);
+        assert!((exchanged["p"][k] - own["r"][k]).abs() < 1e-12);
+    }
+    let unfit = |target: &str| edit(EditKind::SwappedChannels, target, "").apply(&lateral);
+    for target in ["p", "p+p", "p+ay", "p+q", "p+r+phi"] {
+        assert!(unfit(target).is_err(), "{target}");
     }
     // dead band: half of the deflection gets through
     let loose = run(

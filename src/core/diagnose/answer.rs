@@ -11,7 +11,7 @@ use super::declared::Declared;
 use super::difference::difference;
 use super::fitted::Fitted;
 use super::found::Found;
-use super::lines::{Line, lines};
+use super::remarks;
 use super::report::{Diagnosis, EffectParameter, FitChange, NamedEffect, ParameterChange, Verdict};
 use super::residual::analyse;
 use super::rival::Rival;
@@ -21,10 +21,9 @@ use super::size::sizes;
 use super::unmodelled::Picture;
 use super::verdict::{self, Doubt, Left};
 use crate::estimate::{
-    Estimate, OutputFit, ParameterEstimate, Problem, Role, Solution, TimeHistory, estimate,
-    five_digits, predict,
+    Estimate, OutputFit, ParameterEstimate, Problem, Role, Solution, TimeHistory, estimate, predict,
 };
-use crate::flight::{PhysicalQuantity, Shown, Unit, shown_in};
+use crate::flight::{PhysicalQuantity, Unit};
 use crate::model::{ModelDocument, Quantities, Start};
 
 /// Noise alone makes a residual look coherent with an input once in so many diagnoses.
@@ -113,7 +112,7 @@ pub(super) fn answer(
     let unmodelled = picture.map(|picture| picture.unmodelled);
     let left = Left {
         coherent: &following,
-        differs: found.differs_between_maneuvers(),
+        refused: found.clear_but_refused(),
         terms: verdict::terms(&found),
         pushed: found.pushed.as_deref(),
         doubt,
@@ -122,9 +121,7 @@ pub(super) fn answer(
     let verdict = verdict::of(case, declared, &found, &left);
     let is_shown = verdict == Verdict::Unexplained;
     let mut remarks = remarks.clone();
-    remarks.extend(remarks_on(case, &fits));
-    remarks.extend(lines(&after.solution.histories).iter().map(swings));
-    remarks.extend(held_noise(&estimated));
+    remarks.extend(remarks::of(case, &fits, &after.solution));
     let effects: Vec<NamedEffect> = found
         .accepted
         .iter()
@@ -222,54 +219,6 @@ fn coherent(case: &Case, last: &Fitted) -> Vec<(String, String)> {
         }
     }
     found
-}
-
-fn remarks_on(case: &Case, fits: &[FitChange]) -> Vec<String> {
-    let mut remarks = Vec::new();
-    if case.of_role(Role::Validation).next().is_none() {
-        remarks.push(
-            "no flight was left out of the fit: give one the role \"validation\" to see whether the effects predict it"
-                .to_string(),
-        );
-    }
-    for fit in fits
-        .iter()
-        .filter(|fit| fit.role != Role::Estimation && fit.after.rms > 1.02 * fit.before.rms)
-    {
-        let segment = fit.segment.as_deref().unwrap_or_default();
-        let Shown { scale, unit } = shown_in(&fit.after.unit);
-        remarks.push(format!(
-            "{} of {segment} is predicted worse than before: RMS error {} instead of {} {unit}",
-            fit.after.name,
-            five_digits(fit.after.rms * scale),
-            five_digits(fit.before.rms * scale)
-        ));
-    }
-    remarks
-}
-
-/// Process noise that was told from coloured errors of measuring, which no estimator does.
-fn held_noise(estimate: &Estimate) -> Option<String> {
-    let noises = estimate.filter.iter().flat_map(|f| &f.process_noise);
-    let held: Vec<&str> = (noises.filter(|noise| noise.fixed && noise.estimate > 0.0))
-        .map(|noise| noise.state.as_str())
-        .collect();
-    (!held.is_empty()).then(|| {
-        format!(
-            "errors of measuring are coloured, which the filter-error method does not know: the process noise of {} is held where innovations are likeliest with their colour, and has no error bound",
-            held.join(", ")
-        )
-    })
-}
-
-fn swings(line: &Line) -> String {
-    let Shown { scale, unit } = shown_in(&line.unit);
-    format!(
-        "what is left of {} swings at {:.1} Hz by {} {unit}, and no input does: a vibration of the structure or of the sensor's mount, which is in no catalogue; filter all channels alike below that frequency",
-        line.output,
-        line.frequency,
-        five_digits(line.amplitude * scale)
-    )
 }
 
 fn named(accepted: &Accepted, after: &Full) -> NamedEffect {

@@ -46,13 +46,13 @@ impl Found {
         accepted.flat_map(|a| a.added.iter().cloned()).collect()
     }
 
-    /// Whether something was clearly there on the flights that were fitted, and was not so on others.
-    pub(super) fn differs_between_maneuvers(&self) -> Option<&RefusedEffect> {
-        let differs = |refused: &&RefusedEffect| {
-            matches!(
-                refused.reason,
-                Refusal::NotPredictive | Refusal::NotRepeatable
-            )
+    /// What explains clearly more than chance, and is not that effect all the same: other flights deny it, its size is none
+    /// that such an effect has, or its fit does not converge.
+    pub(super) fn clear_but_refused(&self) -> Option<&RefusedEffect> {
+        use Refusal::{NotFitted, NotPredictive, NotRepeatable, OutOfRange};
+        let is_open = |refused: &&RefusedEffect| {
+            let reasons = [NotFitted, NotPredictive, NotRepeatable, OutOfRange];
+            reasons.contains(&refused.reason)
         };
         let clearly = |refused: &&RefusedEffect| {
             refused
@@ -61,7 +61,7 @@ impl Found {
         };
         let most = |refused: &&RefusedEffect| refused.likelihood_ratio.unwrap_or(0.0);
         (self.refused.iter())
-            .filter(differs)
+            .filter(is_open)
             .filter(clearly)
             .max_by(|a, b| most(a).total_cmp(&most(b)))
     }

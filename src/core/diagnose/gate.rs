@@ -14,6 +14,7 @@ use super::repeats::disagreement;
 use super::report::{OutputGain, Refusal};
 use super::size::Size;
 use super::stack::Layout;
+use super::swapped;
 use super::threshold::Threshold;
 use super::trial::Trial;
 use crate::estimate::Role;
@@ -160,6 +161,16 @@ fn is_of_its_kind(effect: &Effect, fitted: &Fitted, added: &[Added]) -> Result<(
             Some(mode) if is_not_told(&mode) => Err((
                 Refusal::OutOfRange,
                 "the data do not tell its frequency: what swings so is no mode".into(),
+            )),
+            _ => Ok(()),
+        },
+        EffectKind::Edit(EditKind::SwappedChannels) => match of(AddedRole::Size) {
+            Some(share) if !swapped::is_whole(share.value) => Err((
+                Refusal::OutOfRange,
+                format!(
+                    "exchanged channels are exchanged in whole, not by {:.2}",
+                    share.value
+                ),
             )),
             _ => Ok(()),
         },

@@ -1,28 +1,32 @@
 //! Lines in the spectrum of what is left: an output that swings at one frequency though no input does.
 //!
 //! The periodogram of noise is smooth but for chance: averaged over M windows it is χ² with 2M degrees of freedom about the
-//! spectrum of the noise, which the median of the lines around tells.
+//! spectrum of the noise, which the mean of the lines around tells. Of both the ratio has Fisher's distribution.
 
 use num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::estimate::TimeHistory;
 
 /// Noise alone makes a line once in so many diagnoses.
 const FALSE_ALARM: f64 = 1e-3;
 
-/// Samples of a window, at most.
+/// Samples of a window of a part of a flight, and of one of a whole flight, at most.
 const WINDOW: usize = 512;
+const LONGEST: usize = 8192;
 
 /// Lines to either side that tell the spectrum of the noise, but for the nearest, over which a line spreads.
-const AROUND: usize = 12;
+const AROUND: usize = 24;
 const NEAREST: usize = 3;
+
+/// Lines beside each other share samples: so many of those around are worth one of their own.
+const WORTH_ONE: f64 = 2.0;
 
 /// Independent series are as coherent as one that drives the other once in so many inputs.
 const BY_CHANCE: f64 = 0.01;
 
-/// Windows overlap by half: so many of their degrees of freedom are their own (Welch, 1967).
+/// Where windows overlap by half, so many of their degrees of freedom are their own (Welch, 1967).
 const OWN: f64 = 0.75;
 
 /// A swing that no input drives.
@@ -37,41 +41,87 @@ pub(super) struct Line {
     pub amplitude: f64,
 }
 
-/// The clearest line of each output, over flights of one sampling rate.
+/// The clearest line of each output, over flights of one sampling rate. A swing of one frequency stands out most in windows as
+/// long as a flight, one that comes and goes in shorter ones.
 pub(super) fn lines(histories: &[TimeHistory]) -> Vec<Line> {
     let Some(first) = histories.first() else {
         return Vec::new();
     };
     let shortest = histories.iter().map(|h| h.time.len()).min().unwrap_or(0);
-    let size = WINDOW.min(shortest);
-    if size / 2 <= 2 * AROUND {
-        return Vec::new();
-    }
-    let step = (first.time[first.time.len() - 1] - first.time[0]) / (first.time.len() - 1) as f64;
-    let windows = Windows::new(size);
-    let inputs: Vec<Vec<Spectrum>> = (0..first.inputs.len())
-        .map(|input| windows.spectra(histories.iter().map(|h| h.inputs[input].values.as_slice())))
+    let mut sizes = vec![shortest.min(LONGEST)];
+    sizes.extend((WINDOW < shortest).then_some(WINDOW));
+    sizes.retain(|size| size / 2 > 2 * AROUND);
+    let looks: Vec<Look<'_>> = (sizes.iter())
+        .map(|size| Look::new(histories, *size, sizes.len()))
         .collect();
-    let questions = (first.outputs.len() * size / 2) as f64;
-    let of_output = |output: usize| {
-        let residuals = (histories.iter()).map(|h| h.outputs[output].residual.as_slice());
-        let spectra = windows.spectra(residuals);
+    let clearest = |output: usize| {
+        let found = looks.iter().filter_map(|look| look.clearest(output));
+        found
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, line)| line)
+    };
+    (0..first.outputs.len()).filter_map(clearest).collect()
+}
+
+/// Residuals in windows of one size.
+struct Look<'h> {
+    histories: &'h [TimeHistory],
+    windows: Windows,
+    /// By input.
+    inputs: Vec<Vec<Spectrum>>,
+    /// Hz
+    resolution: f64,
+    /// Share of the windows' degrees of freedom that is their own.
+    own: f64,
+    /// Lines of all outputs that are asked, in all looks.
+    questions: f64,
+}
+
+impl<'h> Look<'h> {
+    fn new(histories: &'h [TimeHistory], size: usize, looks: usize) -> Self {
+        let first = &histories[0];
+        let samples = first.time.len();
+        let step = (first.time[samples - 1] - first.time[0]) / (samples - 1) as f64;
+        let windows = Windows::new(size);
+        let of_input =
+            |input: usize| windows.spectra(histories.iter().map(|h| &*h.inputs[input].values));
+        Self {
+            inputs: (0..first.inputs.len()).map(of_input).collect(),
+            own: if histories.iter().all(|h| 2 * h.time.len() < 3 * size) {
+                1.0
+            } else {
+                OWN
+            },
+            resolution: 1.0 / (size as f64 * step),
+            questions: (looks * first.outputs.len() * size / 2) as f64,
+            histories,
+            windows,
+        }
+    }
+
+    /// The clearest line of an output, by how much it stands out beyond chance.
+    fn clearest(&self, output: usize) -> Option<(f64, Line)> {
+        let residuals = self.histories.iter().map(|h| &*h.outputs[output].residual);
+        let spectra = self.windows.spectra(residuals);
         let power = power(&spectra);
-        let count = spectra.iter().flatten().count() as f64;
+        let count = self.own * spectra.iter().flatten().count() as f64;
         let is_driven = |line: usize| {
-            (inputs.iter()).any(|input| coherence(&spectra, input, line) > by_chance(count))
+            (self.inputs.iter()).any(|input| coherence(&spectra, input, line) > by_chance(count))
         };
         let line = (AROUND..power.len().saturating_sub(AROUND))
             .max_by(|&a, &b| ratio(&power, a).total_cmp(&ratio(&power, b)))?;
-        let is_clear = ratio(&power, line) > critical(count, questions);
-        (is_clear && !is_driven(line)).then(|| Line {
-            output: first.outputs[output].name.clone(),
-            unit: first.outputs[output].unit.clone(),
-            frequency: line as f64 / (size as f64 * step),
-            amplitude: windows.amplitude(power[line]),
+        let beyond = ratio(&power, line) / critical(count, self.questions);
+        let series = &self.histories[0].outputs[output];
+        (beyond > 1.0 && !is_driven(line)).then(|| {
+            let line = Line {
+                output: series.name.clone(),
+                unit: series.unit.clone(),
+                frequency: line as f64 * self.resolution,
+                amplitude: self.windows.amplitude(power[line]),
+            };
+            (beyond, line)
         })
-    };
-    (0..first.outputs.len()).filter_map(of_output).collect()
+    }
 }
 
 /// Of one window; `None` where it has a gap.
@@ -87,9 +137,9 @@ fn power(spectra: &[Spectrum]) -> Vec<f64> {
         .collect()
 }
 
-/// The squared coherence that independent series have by chance over `windows`: P(γ² > x) = (1 - x)^(M - 1).
+/// The squared coherence that independent series have by chance over so many windows of their own: P(γ² > x) = (1 - x)^(M - 1).
 fn by_chance(windows: f64) -> f64 {
-    1.0 - BY_CHANCE.powf(1.0 / (OWN * windows - 1.0).max(0.0))
+    1.0 - BY_CHANCE.powf(1.0 / (windows - 1.0).max(0.0))
 }
 
 /// Squared coherence of two series at a line.
@@ -108,52 +158,50 @@ fn coherence(output: &[Spectrum], input: &[Spectrum], line: usize) -> f64 {
     }
 }
 
-/// The power of a line over the median of those around it.
+/// The power of a line over the mean of those around it.
 fn ratio(power: &[f64], line: usize) -> f64 {
     let near = line.saturating_sub(AROUND)..power.len().min(line + AROUND + 1);
-    let mut around: Vec<f64> = near
+    let around: Vec<f64> = near
         .filter(|other| other.abs_diff(line) > NEAREST)
         .map(|other| power[other])
         .collect();
-    around.sort_by(f64::total_cmp);
-    match around.get(around.len() / 2) {
-        Some(&median) if median > 0.0 => power[line] / median,
+    match around.iter().sum::<f64>() / around.len().max(1) as f64 {
+        mean if mean > 0.0 => power[line] / mean,
         _ => 0.0,
     }
 }
 
-/// The ratio that noise alone exceeds in one of `questions` once in so many diagnoses, of periodograms over `windows`.
+/// The ratio that noise alone exceeds in one of `questions` once in so many diagnoses, of periodograms over so many windows of
+/// their own.
 fn critical(windows: f64, questions: f64) -> f64 {
-    let freedom = (2.0 * OWN * windows).max(2.0);
-    ChiSquared::new(freedom).map_or(f64::INFINITY, |law| {
-        law.inverse_cdf(1.0 - FALSE_ALARM / questions) / law.inverse_cdf(0.5)
+    let freedom = (2.0 * windows).max(2.0);
+    let around = freedom * 2.0 * (AROUND - NEAREST) as f64 / WORTH_ONE;
+    FisherSnedecor::new(freedom, around).map_or(f64::INFINITY, |law| {
+        law.inverse_cdf(1.0 - FALSE_ALARM / questions)
     })
 }
 
+/// Sine tapers: what is slow leaks little into other lines, and a line keeps four fifths of its height.
 struct Windows {
-    hann: Vec<f64>,
+    taper: Vec<f64>,
     plan: std::sync::Arc<dyn Fft<f64>>,
 }
 
 impl Windows {
     fn new(size: usize) -> Self {
-        let weight = |k: usize| {
-            (std::f64::consts::PI * (k as f64 + 0.5) / size as f64)
-                .sin()
-                .powi(2)
-        };
+        let weight = |k: usize| (std::f64::consts::PI * (k as f64 + 0.5) / size as f64).sin();
         Self {
-            hann: (0..size).map(weight).collect(),
+            taper: (0..size).map(weight).collect(),
             plan: FftPlanner::new().plan_fft_forward(size),
         }
     }
 
     /// Of the windows of some series, one after the other.
     fn spectra<'s>(&self, series: impl Iterator<Item = &'s [f64]>) -> Vec<Spectrum> {
-        let size = self.hann.len();
+        let size = self.taper.len();
         let of_window = |window: &[f64]| {
             let mean = window.iter().sum::<f64>() / size as f64;
-            let weighted = window.iter().zip(&self.hann);
+            let weighted = window.iter().zip(&self.taper);
             let mut buffer: Vec<Complex64> = weighted
                 .map(|(value, w)| Complex64::new((value - mean) * w, 0.0))
                 .collect();
@@ -169,7 +217,7 @@ impl Windows {
 
     /// Of a swing with this power in its line.
     fn amplitude(&self, power: f64) -> f64 {
-        2.0 * power.sqrt() / self.hann.iter().sum::<f64>()
+        2.0 * power.sqrt() / self.taper.iter().sum::<f64>()
     }
 }
 

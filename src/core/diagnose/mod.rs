@@ -36,6 +36,7 @@ mod polish;
 mod predicted;
 mod projection;
 mod refused;
+mod remarks;
 mod repeats;
 mod report;
 mod residual;
@@ -48,6 +49,7 @@ mod size;
 mod spikes;
 mod stack;
 mod starts;
+mod swapped;
 #[cfg(test)]
 mod tests;
 mod threshold;

@@ -8,9 +8,18 @@ use super::trial::Trial;
 
 /// One that could not be fitted at all.
 pub(super) fn not_fitted(effect: Effect, why: String) -> RefusedEffect {
+    untried(effect, Refusal::NotFitted, why)
+}
+
+/// One that the declared fit speaks against, so that it was not tried.
+pub(super) fn not_significant(effect: Effect, why: String) -> RefusedEffect {
+    untried(effect, Refusal::NotSignificant, why)
+}
+
+fn untried(effect: Effect, reason: Refusal, why: String) -> RefusedEffect {
     RefusedEffect {
         effect,
-        reason: Refusal::NotFitted,
+        reason,
         sentence: why,
         likelihood_ratio: None,
         visible_fraction: None,

@@ -9,8 +9,11 @@ use super::fitted::Fitted;
 use super::found::Found;
 use super::unmodelled::{self, Picture};
 
-/// By so much of 2 ln L a name must be better than no name.
+/// By so much of 2 ln L a name must be better than no name,
 const BETTER: f64 = 6.0;
+
+/// and for each independent number that the force is worth by so much: a force pays for every one, the true form for one.
+const OF_EACH: f64 = 1.0;
 
 /// Several names together must be better by this factor: one force hardly has two forms.
 const OF_SEVERAL: f64 = 1.5;
@@ -38,12 +41,12 @@ impl Rival {
         let evidence = |fitted: &Fitted| fitted.clone().likeliest().ln_evidence();
         let named = 2.0 * (evidence(last) - evidence(start));
         let is_noise = found.accepted.iter().any(|a| a.effect.is_noise());
-        let exceeds = |force: f64| match is_noise {
+        let rivals = |force: f64, freedom: f64| match is_noise {
             true => named < AS_TURBULENCE * force,
             false if names > 1 => named < OF_SEVERAL * force,
-            false => named < force + BETTER,
+            false => named < force + BETTER.max(OF_EACH * freedom),
         };
-        let picture = unmodelled::rival(case, start, exceeds)?;
+        let picture = unmodelled::rival(case, start, rivals)?;
         Some(Self { picture, named })
     }
 }

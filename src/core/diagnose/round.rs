@@ -10,10 +10,11 @@ use super::gate::pass;
 use super::group::group;
 use super::null_model::NullModel;
 use super::passed::{Noise, Passed};
-use super::refused::{after_screen, after_trial, differs, not_fitted};
+use super::refused::{after_screen, after_trial, differs, not_fitted, not_significant};
 use super::report::{Refusal, RefusedEffect, Step};
 use super::screen::{Screen, Screened, independent_questions};
 use super::starts::{is_tried_outright, starts};
+use super::swapped;
 use super::threshold::Threshold;
 use super::trial::Trial;
 use super::watch::{Stopped, Watcher, ask, tell};
@@ -135,6 +136,9 @@ fn screen_all(
         ask(watcher)?;
         let seen = some.par_iter().map(|effect| {
             let effect = effect.clone();
+            if let Some(why) = swapped::is_refuted(&effect, screen.base) {
+                return Err(Box::new(not_significant(effect, why)));
+            }
             if is_tried_outright(effect.kind)
                 || effect.kind == EffectKind::Treatment(Treatment::ProcessNoise)
             {

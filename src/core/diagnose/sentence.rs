@@ -76,6 +76,11 @@ fn words(effect: &Effect, first: Option<&Size>) -> String {
         EditKind::InputDelay => format!("{target} is recorded early: the aircraft follows later"),
         EditKind::MissingTerm => format!("the equation of {target} lacks a term in {term}"),
         EditKind::SensorLag => format!("{target} is recorded with a lag"),
+        EditKind::SensorCrossAxis => format!("the sensor of {target} sees {term} too (cross-axis)"),
+        EditKind::SwappedChannels => match target.split_once('+') {
+            Some((one, other)) => format!("{one} and {other} are recorded under each other's name"),
+            None => format!("{target} are recorded under each other's name"),
+        },
         EditKind::SensorPosition => {
             format!("the sensor of {target} is not where the model has it along {term}")
         }

@@ -3,6 +3,7 @@
 use super::case::{Case, Values};
 use super::effect::{Effect, EffectKind};
 use super::flight::Flight;
+use super::swapped;
 use crate::estimate::Role;
 use crate::flight::Unit;
 use crate::model::{Added, AddedRole, EditKind, Edited, Start};
@@ -14,11 +15,18 @@ const MOST_STARTS: usize = 200;
 pub(super) fn is_tried_outright(kind: EffectKind) -> bool {
     use EditKind::{
         ActuatorLag, ActuatorRateLimit, Backlash, InputDelay, SensorLag, StallHysteresis,
+        SwappedChannels,
     };
     matches!(
         kind,
         EffectKind::Edit(
-            SensorLag | ActuatorLag | ActuatorRateLimit | Backlash | InputDelay | StallHysteresis
+            SensorLag
+                | ActuatorLag
+                | ActuatorRateLimit
+                | Backlash
+                | InputDelay
+                | StallHysteresis
+                | SwappedChannels
         )
     )
 }
@@ -39,6 +47,7 @@ pub(super) fn starts(case: &Case, effect: &Effect, edited: &Edited) -> Vec<Value
         }
         EditKind::UnsteadyAero | EditKind::StallHysteresis => &[0.4, 1.0, 2.5],
         EditKind::StructuralMode => &[0.6, 0.8, 1.0, 1.3, 1.7, 2.2, 2.9],
+        EditKind::SwappedChannels => return vec![swapped::start(edited)],
         EditKind::Gust => return gust_starts(case, effect, &edited.added),
         _ => return vec![Values::new()],
     };

@@ -24,8 +24,8 @@ const PATCHWORK: usize = 3;
 pub(super) struct Left<'l> {
     /// Outputs, and inputs that their residuals still follow.
     pub coherent: &'l [(String, String)],
-    /// Something that is clearly there, but not in all flights.
-    pub differs: Option<&'l RefusedEffect>,
+    /// A candidate that explains clearly more than chance, and was refused all the same.
+    pub refused: Option<&'l RefusedEffect>,
     /// How many terms the equations of motion were given, see [`terms`].
     pub terms: usize,
     /// A rate that something pushes which nothing recorded tells of.
@@ -55,7 +55,7 @@ pub(super) fn of(case: &Case, declared: &Fitted, found: &Found, left: &Left<'_>)
     let patched = left.terms >= PATCHWORK;
     let doubtful = patched || left.doubt.is_some() || left.pushed.is_some();
     let follows = !left.coherent.is_empty() || forced || doubtful;
-    if follows || (found.accepted.is_empty() && left.differs.is_some()) {
+    if follows || (found.accepted.is_empty() && left.refused.is_some()) {
         return Verdict::Unexplained;
     }
     let members = |accepted: &Accepted| likely(&accepted.group).count();
@@ -173,6 +173,19 @@ fn errors(roles: &[Role], fits: &[FitChange]) -> Option<String> {
     Some(format!("RMS error {on}: {}", of.join(", ")))
 }
 
+fn clear_but_refused(refused: &RefusedEffect) -> String {
+    let RefusedEffect {
+        effect, sentence, ..
+    } = refused;
+    let name = effect.name();
+    match refused.reason {
+        Refusal::NotPredictive | Refusal::NotRepeatable => format!(
+            "{name} is clearly there in the flights that were fitted, but not as such in all: {sentence}"
+        ),
+        _ => format!("{name} would explain much of it, but {sentence}"),
+    }
+}
+
 fn what_is_left(left: &Left<'_>) -> String {
     let mut parts = Vec::new();
     if !left.coherent.is_empty() {
@@ -181,13 +194,7 @@ fn what_is_left(left: &Left<'_>) -> String {
             .collect();
         parts.push(format!("what is left of {}", follows.join(", of ")));
     }
-    if let Some(differs) = left.differs {
-        parts.push(format!(
-            "{} is clearly there in the flights that were fitted, but not as such in all: {}",
-            differs.effect.name(),
-            differs.sentence
-        ));
-    }
+    parts.extend(left.refused.map(clear_but_refused));
     parts.extend(left.doubt.map(|Doubt { named, force }| {
         format!("its name is in doubt: a force of no form in one equation of the declared model explains about as much (2 ln L {force:.0}, the effects named {named:.0})")
     }));

@@ -29,6 +29,12 @@ impl Dimension {
         self == Self::NONE
     }
 
+    /// Whether it is a power of the second, or a pure number.
+    pub fn is_of_time(self) -> bool {
+        let time = 2;
+        (0..self.0.len()).all(|i| i == time || self.0[i] == 0)
+    }
+
     /// The exponent of the second, where it is whole.
     pub fn seconds(self) -> Option<i32> {
         (self.0[2] % SIXTHS == 0).then(|| i32::from(self.0[2] / SIXTHS))

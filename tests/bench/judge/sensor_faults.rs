@@ -153,6 +153,43 @@ pub(crate) fn position(channel: &str, quantity: Quantity, axis: char) -> Fault {
     })
 }
 
+/// A sensor that is not quite on its axis: it sees another motion too.
+pub(crate) fn cross_axis(channel: &str, other: &str, seen: Quantity) -> Fault {
+    let sizing = Sizing::Worth {
+        guess: 0.05,
+        most: 0.25,
+    };
+    let fault = with_motion(
+        "sensor_cross_axis",
+        channel,
+        sizing,
+        move |share, y, m, _| {
+            y.iter()
+                .zip(m)
+                .map(|(y, m)| y + share * m.of(seen))
+                .collect()
+        },
+    );
+    Fault {
+        name: format!("sensor_cross_axis {channel} sees {other}"),
+        answers: vec![Answer::new("sensor_cross_axis", channel, Some(other))],
+        ..fault
+    }
+}
+
+/// Two channels under each other's name.
+pub(crate) fn swapped(a: &str, b: &str) -> Fault {
+    let names = (a.to_string(), b.to_string());
+    let fault = Fault::new(
+        Answer::new("swapped_channels", &format!("{a}+{b}"), None),
+        Sizing::Given([1.0; 3]),
+        move |_, _, plant, _| {
+            plant.swapped = Some(names.clone());
+        },
+    );
+    fault.positive()
+}
+
 /// Spikes of 7 to 15 noise deviations; the size is how many there are in a flight. With a stuck stretch at times.
 pub(crate) fn outliers(channel: &str) -> Fault {
     let name = channel.to_string();

@@ -3,6 +3,7 @@
 //! What a candidate is made for is told by what quantities are, not by what they are called.
 
 mod aerodynamics;
+mod axes;
 mod clocks;
 mod disturbances;
 mod fixed;
@@ -33,6 +34,7 @@ pub fn candidates(case: &Case, model: &Model) -> Vec<Effect> {
     let subject = Subject::new(case, &model.document);
     let mut effects = fixed::candidates(&subject);
     effects.extend(sensors::candidates(&subject));
+    effects.extend(axes::candidates(&subject));
     effects.extend(clocks::candidates(&subject));
     effects.extend(inputs::candidates(&subject));
     effects.extend(terms::candidates(&subject));

@@ -36,7 +36,7 @@ const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// Kind, instrument, lower and upper, usual standard deviation.
 #[rustfmt::skip]
-const TABLE: [(EditKind, Instrument, f64, f64, f64); 25] = {
+const TABLE: [(EditKind, Instrument, f64, f64, f64); 28] = {
     use EditKind::*;
     use Instrument::*;
     [
@@ -58,6 +58,9 @@ const TABLE: [(EditKind, Instrument, f64, f64, f64); 25] = {
         (SensorBias, Accelerometer, -1.0, 1.0, 0.2),
         (SensorBias, Attitude, -5.0 * DEGREE, 5.0 * DEGREE, DEGREE),
         (InputBias, Control, -5.0 * DEGREE, 5.0 * DEGREE, DEGREE),
+        (SensorCrossAxis, Vane, -0.3, 0.3, 0.05),
+        (SensorCrossAxis, Gyro, -0.3, 0.3, 0.05),
+        (SensorCrossAxis, Accelerometer, -0.3, 0.3, 0.05),
         (SensorPosition, Vane, -15.0, 15.0, 5.0),
         (SensorPosition, Accelerometer, -3.0, 3.0, 1.0),
         (SensorLag, Vane, 0.0, 1.0, 0.1),

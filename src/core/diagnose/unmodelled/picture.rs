@@ -68,14 +68,15 @@ pub(in crate::diagnose) fn found(case: &Case, fitted: &Fitted) -> Option<Picture
     picture(case, fitted, &left, LeftBy::WithEffects)
 }
 
-/// The picture of what the declared model leaves, if the likelihood ratio of that force is one that `rivals` the effects that
+/// The picture of what the declared model leaves, if that force, by its likelihood ratio and freedom, `rivals` the effects that
 /// were named.
 pub(in crate::diagnose) fn rival(
     case: &Case,
     declared: &Fitted,
-    rivals: impl Fn(f64) -> bool,
+    rivals: impl Fn(f64, f64) -> bool,
 ) -> Option<Picture> {
-    let left = significant(case, declared).filter(|left| rivals(left.likelihood_ratio))?;
+    let left =
+        significant(case, declared).filter(|left| rivals(left.likelihood_ratio, left.freedom))?;
     picture(case, declared, &left, LeftBy::Declared)
 }
 

@@ -6,6 +6,7 @@
 //! elements in the path of a signal (see [`super::Element`]). The time constants of the effects that are states must
 //! stay above about 0.4 of the time between samples: what is faster than that an explicit integrator cannot follow.
 
+mod axes;
 mod dynamics;
 mod edited;
 mod error;
@@ -43,6 +44,8 @@ impl Edit {
             EditKind::SensorDrift => sensors::drift(&mut sheet),
             EditKind::SensorDelay => sensors::delay(&mut sheet),
             EditKind::SensorLag => sensors::lag(&mut sheet),
+            EditKind::SensorCrossAxis => axes::cross_axis(&mut sheet),
+            EditKind::SwappedChannels => axes::swapped(&mut sheet),
             EditKind::SensorPosition => position::lever_arm(&mut sheet),
             EditKind::InputBias => inputs::bias(&mut sheet),
             EditKind::InputScale => inputs::scale(&mut sheet),

@@ -19,11 +19,11 @@ pub struct Edit {
     pub kind: EditKind,
     /// A fixed parameter for `fixed_parameter`, an output for `sensor_*` (or an input that is measured, as the
     /// accelerometers of a reconstruction), an input for `input_*`, `actuator_*` and `backlash`, a state or definition (its equation) for the others. Several
-    /// joined by `+` for `sensor_delay` and `stall_hysteresis`; `all` for the `missing_term` `qbar`.
+    /// joined by `+` for `sensor_delay`, `stall_hysteresis` and `swapped_channels` (two outputs); `all` for the `missing_term` `qbar`.
     #[schema(example = "q")]
     pub target: String,
     /// What else the kind needs: the term of a `missing_term` (`alpha^2`, `de*abs(de)`, `alphadot`, `qbar`), the arm of a
-    /// `sensor_position` (`x`, `y`, `z`), the channel of an `unrecorded_input` (`dt` or `dt[rad]`), the angle of
+    /// `sensor_position` (`x`, `y`, `z`), what else a `sensor_cross_axis` sees (`p`), the channel of an `unrecorded_input` (`dt` or `dt[rad]`), the angle of
     /// `unsteady_aero` and `stall_hysteresis` (`alpha`), the course of a `wind` (`constant`, `ramp`, `shear`), the label
     /// of the maneuver that meets a `gust` (absent: each meets one), the input that drives a `structural_mode`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -75,6 +75,10 @@ pub enum EditKind {
     SensorDelay,
     /// T ẏ_m = y - y_m, y_m what is recorded
     SensorLag,
+    /// y + k z, z what another sensor measures: the axes of an instrument are not those of the aircraft
+    SensorCrossAxis,
+    /// y1 + s (y2 - y1), y2 + s (y1 - y2): with s = 1 two channels have each other's name
+    SwappedChannels,
     /// The lever arm of a vane or an accelerometer: α - x q/V + y p/V, β + x r/V - z p/V, a + ω̇ × r + ω × (ω × r)
     SensorPosition,
     /// u + b
@@ -109,13 +113,15 @@ pub enum EditKind {
 
 impl EditKind {
     /// All of them, in the order of the catalogue.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 23] = [
         Self::FixedParameter,
         Self::SensorBias,
         Self::SensorScale,
         Self::SensorDrift,
         Self::SensorDelay,
         Self::SensorLag,
+        Self::SensorCrossAxis,
+        Self::SwappedChannels,
         Self::SensorPosition,
         Self::InputBias,
         Self::InputScale,
@@ -142,6 +148,8 @@ impl EditKind {
             Self::SensorDrift => "sensor_drift",
             Self::SensorDelay => "sensor_delay",
             Self::SensorLag => "sensor_lag",
+            Self::SensorCrossAxis => "sensor_cross_axis",
+            Self::SwappedChannels => "swapped_channels",
             Self::SensorPosition => "sensor_position",
             Self::InputBias => "input_bias",
             Self::InputScale => "input_scale",

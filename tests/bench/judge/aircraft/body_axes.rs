@@ -188,6 +188,7 @@ fn faults() -> Vec<Fault> {
         turbulence("wb", Angle::Alpha).or("process_noise", "AoA", None),
         gust("AoA", Angle::Alpha).or("gust", "wb", None),
         sensor::structural_mode("down_acc", "elev", ELEVATOR, 5.0),
+        sensor::cross_axis("yawrate", "rollrate", Quantity::P),
     ]
 }
 
@@ -198,7 +199,6 @@ fn unknown_faults() -> Vec<Fault> {
         unknown::hysteresis(Slot::Pitch, "C_pitch", 0.3, |m| m.alpha, |m| m.alphadot),
         unknown::wandering(Slot::Pitch, "C_pitch", 0.004),
         unknown::slosh(Slot::Roll, "C_roll", 0.05, |m| m.ay / 9.8),
-        unknown::cross_axis("yawrate", "rollrate", Quantity::P),
         unknown::clock_drift("AoA"),
         unknown::in_one_flight(sensor::scale("AoA")),
     ]

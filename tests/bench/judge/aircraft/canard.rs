@@ -220,6 +220,7 @@ fn faults() -> Vec<Fault> {
             .or("missing_term", "pitch_moment", Some("heavedot")),
         turbulence("heave", Angle::Alpha),
         sensor::structural_mode("load", "stab", ELEVATOR, 10.0),
+        sensor::swapped("inflow", "pitch_speed"),
     ]
 }
 
@@ -233,7 +234,6 @@ fn unknown_faults() -> Vec<Fault> {
         unknown::wandering(Slot::Pitch, "pitch_moment", 0.02),
         unknown::slosh(Slot::Pitch, "pitch_moment", 2.0, alpha),
         unknown::clock_drift("inflow"),
-        unknown::swapped("inflow", "pitch_speed"),
         unknown::vibration("load", 0.1),
         unknown::in_one_flight(sensor::scale("inflow")),
     ];

@@ -365,6 +365,8 @@ fn terms() -> Vec<Fault> {
             m.speed - m.steady_speed
         }),
         pressure("qbar"),
+        sensor::cross_axis("yawrate", "rollrate", Quantity::P),
+        sensor::swapped("rollrate", "yawrate"),
     ]
 }
 
@@ -378,8 +380,6 @@ fn unknown_faults() -> Vec<Fault> {
         unknown::slosh(Slot::Roll, "rollrate", 1.0, beta),
         unknown::hysteresis(Slot::Roll, "rollrate", 0.5, |m| m.r, |m| m.rdot),
         unknown::clock_drift("yawrate"),
-        unknown::cross_axis("yawrate", "rollrate", Quantity::P),
-        unknown::swapped("rollrate", "yawrate"),
         unknown::vibration("lat_acc", 0.05),
         unknown::in_one_flight(sensor::delay("lat_acc")),
         unknown::in_one_flight(surface::lag("ail", AILERON)),

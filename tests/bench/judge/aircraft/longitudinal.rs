@@ -277,6 +277,8 @@ fn faults() -> Vec<Fault> {
         turbulence("AoA", Angle::Alpha),
         gust("AoA", Angle::Alpha),
         sensor::structural_mode("down_acc", "elev", ELEVATOR, 5.0),
+        sensor::cross_axis("pitchrate", "rollrate", Quantity::P),
+        sensor::swapped("pitch", "AoA"),
     ]
 }
 
@@ -290,8 +292,6 @@ fn unknown_faults() -> Vec<Fault> {
         unknown::slosh(Slot::Pitch, "C_pitch", 0.1, alpha),
         unknown::ground_effect(Slot::Lift, "C_lift", "altitude", 0.1, 2000.0, 10.0),
         unknown::clock_drift("TAS"),
-        unknown::cross_axis("pitchrate", "rollrate", Quantity::P),
-        unknown::swapped("pitch", "AoA"),
         unknown::vibration("down_acc", 0.1),
         unknown::in_one_flight(sensor::scale("AoA")),
         unknown::in_one_flight(term(Slot::Drag, "C_drag", "AoA^2", 1.0, |m| {

@@ -167,15 +167,15 @@ fn faults() -> Vec<Fault> {
         sensor::position("sideslip", Quantity::Beta, 'x'),
         sensor::outliers("altitude"),
         sensor::outliers("AoA"),
+        sensor::cross_axis("sideslip", "AoA", Quantity::Alpha),
+        sensor::swapped("bank", "pitch"),
     ]
 }
 
 fn unknown_faults() -> Vec<Fault> {
     vec![
-        unknown::cross_axis("sideslip", "AoA", Quantity::Alpha),
         unknown::clock_drift("TAS"),
         unknown::clock_drift("bank"),
-        unknown::swapped("bank", "pitch"),
         unknown::vibration("AoA", 0.002),
         unknown::in_one_flight(sensor::scale("TAS")),
         unknown::in_one_flight(sensor::bias("AoA", 0.003)),

@@ -179,6 +179,8 @@ fn faults() -> Vec<Fault> {
         }),
         unsteady(Slot::Pitch, "nod", "lever", 5.0, |m| m.surface[THRUST]),
         sensor::structural_mode("acc_down", "lever", THRUST, 10.0),
+        sensor::cross_axis("acc_along", "acc_down", Quantity::Az),
+        sensor::swapped("acc_along", "acc_down"),
     ]
 }
 
@@ -189,8 +191,6 @@ fn unknown_faults() -> Vec<Fault> {
         unknown::wandering(Slot::Pitch, "nod", 0.02),
         unknown::slosh(Slot::Pitch, "nod", 2.0, |m| m.theta),
         unknown::vibration("acc_down", 0.1),
-        unknown::cross_axis("acc_along", "acc_down", Quantity::Az),
-        unknown::swapped("acc_along", "acc_down"),
         unknown::clock_drift("nod"),
         unknown::in_one_flight(sensor::scale("nod")),
     ]

@@ -211,6 +211,8 @@ fn faults() -> Vec<Fault> {
         turbulence("AoA", Angle::Alpha),
         gust("AoA", Angle::Alpha),
         sensor::structural_mode("pitchrate", "elev", ELEVATOR, 0.05),
+        sensor::cross_axis("pitchrate", "rollrate", Quantity::P),
+        sensor::swapped("AoA", "pitchrate"),
     ]
 }
 
@@ -224,8 +226,6 @@ fn unknown_faults() -> Vec<Fault> {
         unknown::slosh(Slot::Pitch, "pitchrate", 2.0, alpha),
         unknown::ground_effect(Slot::Pitch, "pitchrate", "altitude", 0.02, 2000.0, 4.0),
         unknown::clock_drift("AoA"),
-        unknown::cross_axis("pitchrate", "rollrate", Quantity::P),
-        unknown::swapped("AoA", "pitchrate"),
         unknown::vibration("pitchrate", 0.002),
         unknown::in_one_flight(sensor::delay("AoA")),
         unknown::in_one_flight(term(Slot::Pitch, "pitchrate", "AoA^2", 10.0, |m| {

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use crate::fault::{Answer, Fault, Sizing};
 use crate::force::{Force, Oscillator};
 use crate::force_faults::term;
-use crate::motion::{Added, Motion, Quantity, Slot};
+use crate::motion::{Added, Motion, Slot};
 use crate::sensor_faults::{later, with_motion};
 
 /// A fault in no catalogue, with the names that are tolerated for it.
@@ -204,47 +204,6 @@ pub(super) fn clock_drift(channel: &str) -> Fault {
         channel,
         &[channel],
         &tolerated,
-        fault.positive(),
-    )
-}
-
-/// A sensor that is not quite on its axis: it sees another motion too.
-pub(super) fn cross_axis(channel: &str, other: &str, seen: Quantity) -> Fault {
-    let sizing = Sizing::Worth {
-        guess: 0.05,
-        most: 1.0,
-    };
-    let fault = with_motion("cross_axis", channel, sizing, move |share, y, m, _| {
-        y.iter()
-            .zip(m)
-            .map(|(y, m)| y + share * m.of(seen))
-            .collect()
-    });
-    let tolerated = [answer("missing_term", channel, Some(other))];
-    unknown(
-        "cross_axis",
-        &format!("{channel} sees {other}"),
-        &[channel],
-        &tolerated,
-        fault,
-    )
-}
-
-/// Two channels under each other's name.
-pub(super) fn swapped(a: &str, b: &str) -> Fault {
-    let names = (a.to_string(), b.to_string());
-    let fault = Fault::new(
-        answer("swapped", a, None),
-        Sizing::Given([1.0; 3]),
-        move |_, _, plant, _| {
-            plant.swapped = Some(names.clone());
-        },
-    );
-    unknown(
-        "swapped",
-        &format!("{a} and {b}"),
-        &[a, b],
-        &[],
         fault.positive(),
     )
 }
