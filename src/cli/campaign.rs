@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use indexmap::IndexMap;
 use sha2::{Digest, Sha256};
 
 use super::recording::read_text;
@@ -66,9 +67,8 @@ impl ShowCampaign {
         for left_out in &campaign.left_out {
             eprintln!("{} is left out: {}", left_out.job, left_out.reason);
         }
-        for curve in (campaign.curves.iter()).filter(|curve| !curve.terms_left_out.is_empty()) {
-            let terms = curve.terms_left_out.join(", ");
-            eprintln!("{}: the fits do not tell {terms}", curve.parameter);
+        for (terms, parameters) in untold(&campaign) {
+            eprintln!("{}: the fits do not tell {terms}", parameters.join(", "));
         }
         Ok(())
     }
@@ -112,6 +112,18 @@ fn measured(histories: &[TimeHistory]) -> Vec<UsedRecording> {
     };
     let fitted = histories.iter().filter(|of| of.role == Role::Estimation);
     fitted.map(of).collect()
+}
+
+/// Terms that curves lack, with the parameters whose curves lack them.
+fn untold(campaign: &Campaign) -> IndexMap<String, Vec<&str>> {
+    let mut untold: IndexMap<String, Vec<&str>> = IndexMap::new();
+    for curve in (campaign.curves.iter()).filter(|curve| !curve.terms_left_out.is_empty()) {
+        let parameters = untold.entry(curve.terms_left_out.join(", ")).or_default();
+        if !parameters.contains(&curve.parameter.as_str()) {
+            parameters.push(&curve.parameter);
+        }
+    }
+    untold
 }
 
 fn tables(campaign: &Campaign) -> String {
