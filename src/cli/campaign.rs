@@ -2,14 +2,19 @@
 
 use std::path::PathBuf;
 
+use indexmap::IndexMap;
+use sha2::{Digest, Sha256};
+
 use super::recording::read_text;
 use super::{Failure, table};
-use crate::estimate::five_digits as number;
+use crate::estimate::{Role, TimeHistory, five_digits as number};
 use crate::http::campaign_as_csv;
-use crate::job::{Campaign, CampaignQuestion, Flown, JobResult, campaign, conditions_of};
+use crate::job::{
+    Campaign, CampaignQuestion, Flown, JobResult, UsedRecording, campaign, conditions_of,
+};
 
 /// Compares what many fits say of the same parameters: curves over conditions or weighted means, whether the fits agree, and
-/// which are outliers.
+/// which are outliers. Of fits to the same samples the last counts.
 #[derive(clap::Args, Debug)]
 pub(super) struct ShowCampaign {
     /// What `trimtab fit --json` printed, with its conditions: fit7.json@alpha=5,mach=0.4
@@ -37,17 +42,20 @@ pub(super) struct ShowCampaign {
 
 impl ShowCampaign {
     pub(super) fn run(&self) -> Result<(), Failure> {
-        let flown = self
-            .fits
-            .iter()
-            .map(|fit| read(fit))
-            .collect::<Result<Vec<_>, _>>()?;
         let question = CampaignQuestion {
             by: self.by.clone(),
             group: self.group.clone(),
             parameters: self.parameter.clone(),
             degree: self.degree.map(usize::from),
         };
+        if let Some((field, message)) = question.fault() {
+            return Err(Failure::new(format!("--{field}: {message}")));
+        }
+        let flown = self
+            .fits
+            .iter()
+            .map(|fit| read(fit))
+            .collect::<Result<Vec<_>, _>>()?;
         let campaign = campaign(&flown, &question);
         if self.csv {
             print!("{}", campaign_as_csv(&campaign));
@@ -58,6 +66,9 @@ impl ShowCampaign {
         }
         for left_out in &campaign.left_out {
             eprintln!("{} is left out: {}", left_out.job, left_out.reason);
+        }
+        for (terms, parameters) in untold(&campaign) {
+            eprintln!("{}: the fits do not tell {terms}", parameters.join(", "));
         }
         Ok(())
     }
@@ -76,8 +87,43 @@ fn read(fit: &str) -> Result<Flown, Failure> {
         job: file.to_string(),
         name: String::new(),
         conditions: conditions_of(&tags),
+        recordings: measured(&result.histories),
         estimate: result.estimate,
     })
+}
+
+/// What a fit was made to, by the samples that its result has of it: the name of its recording is not in it.
+fn measured(histories: &[TimeHistory]) -> Vec<UsedRecording> {
+    let of = |history: &TimeHistory| {
+        let outputs = history.outputs.iter().flat_map(|output| &output.measured);
+        let mut hash = Sha256::new();
+        for sample in history.time.iter().chain(outputs) {
+            hash.update(sample.to_le_bytes());
+        }
+        UsedRecording {
+            id: hash
+                .finalize()
+                .iter()
+                .map(|byte| format!("{byte:02x}"))
+                .collect(),
+            rows: None,
+            seconds: None,
+        }
+    };
+    let fitted = histories.iter().filter(|of| of.role == Role::Estimation);
+    fitted.map(of).collect()
+}
+
+/// Terms that curves lack, with the parameters whose curves lack them.
+fn untold(campaign: &Campaign) -> IndexMap<String, Vec<&str>> {
+    let mut untold: IndexMap<String, Vec<&str>> = IndexMap::new();
+    for curve in (campaign.curves.iter()).filter(|curve| !curve.terms_left_out.is_empty()) {
+        let parameters = untold.entry(curve.terms_left_out.join(", ")).or_default();
+        if !parameters.contains(&curve.parameter.as_str()) {
+            parameters.push(&curve.parameter);
+        }
+    }
+    untold
 }
 
 fn tables(campaign: &Campaign) -> String {

@@ -103,7 +103,7 @@ impl Linear {
             category: self.category,
             class: self.class,
             airspeed: self.airspeed,
-            band: None,
+            band: [None; 2],
         };
         let qualities = flying_qualities(problem, estimate, &question).map_err(none)?;
         if self.json {

@@ -1,37 +1,18 @@
 //! Linear systems and flying qualities as tables for the terminal.
 
 use super::table::{bordered, modes};
-use crate::dynamics::{FlyingQualities, LinearSystem, MatrixEstimate, Root};
+use crate::dynamics::{FlyingQualities, LinearSystem, NamedMatrix, Root};
 use crate::estimate::{Measure, five_digits as number};
 
 /// Matrices, modes, transfer functions.
 pub(super) fn system(system: &LinearSystem) -> String {
-    let states: Vec<&str> = system
-        .states
-        .iter()
-        .map(|state| state.name.as_str())
-        .collect();
-    let inputs: Vec<&str> = system
-        .inputs
-        .iter()
-        .map(|input| input.name.as_str())
-        .collect();
-    let outputs: Vec<&str> = system
-        .outputs
-        .iter()
-        .map(|output| output.name.as_str())
-        .collect();
     let mut parts = vec![format!("linear system at the start of {}", system.segment)];
-    for (name, values, rows, columns) in [
-        ("A", &system.a, &states, &states),
-        ("B", &system.b, &states, &inputs),
-        ("C", &system.c, &outputs, &states),
-        ("D", &system.d, &outputs, &inputs),
-    ] {
-        if !columns.is_empty() {
-            parts.push(matrix(name, values, rows, columns));
-        }
-    }
+    let matrices = system.matrices().into_iter();
+    parts.extend(
+        matrices
+            .filter(|of| !of.columns.is_empty())
+            .map(|of| matrix(&of)),
+    );
     if !system.modes.is_empty() {
         parts.push(modes(&system.modes));
     }
@@ -42,22 +23,18 @@ pub(super) fn system(system: &LinearSystem) -> String {
     parts.join("\n\n")
 }
 
-fn matrix(name: &str, matrix: &MatrixEstimate, rows: &[&str], columns: &[&str]) -> String {
+fn matrix(of: &NamedMatrix<'_>) -> String {
     let cell = |(value, error): (&f64, &Option<f64>)| match error {
         Some(error) if *error > 0.0 => format!("{} ± {}", number(*value), number(*error)),
         _ => number(*value),
     };
-    let lines = (rows.iter().zip(&matrix.values).zip(&matrix.standard_errors)).map(
-        |((row, values), errors)| {
-            let cells = values.iter().zip(errors).map(cell);
-            std::iter::once((*row).to_string()).chain(cells).collect()
-        },
-    );
-    bordered(
-        std::iter::once(name).chain(columns.iter().copied()),
-        lines,
-        1..,
-    )
+    let both = of.matrix.values.iter().zip(&of.matrix.standard_errors);
+    let lines = of.rows.iter().zip(both).map(|(row, (values, errors))| {
+        let cells = values.iter().zip(errors).map(cell);
+        std::iter::once((*row).to_string()).chain(cells).collect()
+    });
+    let titles = std::iter::once(of.name).chain(of.columns.iter().copied());
+    bordered(titles, lines, 1..)
 }
 
 fn transfer_functions(system: &LinearSystem) -> String {

@@ -8,7 +8,7 @@ use super::estimate_tables::mode_table;
 use super::layout::{Frame, page};
 use crate::dynamics::{
     Bandwidth, Criterion, EquivalentSystem, FlyingQualities, FrequencyResponse, LinearSystem,
-    MatrixEstimate, Root, TransferFunction,
+    NamedMatrix, Root, TransferFunction,
 };
 use crate::estimate::{Measure, five_digits as number};
 
@@ -29,7 +29,8 @@ const MOST_FIGURES: usize = 24;
 /// The whole page as HTML.
 pub fn dynamics_page(view: &DynamicsView) -> String {
     let system = &view.system;
-    let base = format!("/v1/jobs/{}", view.id);
+    let link = |resource: &str, more: &[(&str, &str)]| link(view, resource, more);
+    let table = link("frequency-response", &[("format", "csv")]);
     let content = html! {
         h1 { "Dynamics: " (view.title) }
         p { a href={ "/jobs/" (view.id) } { "The job's page" } }
@@ -45,15 +46,15 @@ pub fn dynamics_page(view: &DynamicsView) -> String {
             div.scroll tabindex="0" role="region" aria-labelledby="modes" { (mode_table(&system.modes)) }
         }
         (qualities(&view.qualities))
-        (responses(&view.responses, &base))
+        (responses(&view.responses, &table))
         (functions(&system.transfer_functions))
         (matrices(system))
         h2 { "Downloads" }
         ul.links {
-            li { a href={ (base) "/linear-system" } { "linear system (JSON)" } ", " a href={ (base) "/linear-system?format=mat" } { "as MAT file" } }
-            li { "the model as functions in " a href={ (base) "/source-code?language=c" } { "C" } ", " a href={ (base) "/source-code?language=python" } { "Python" } }
-            li { a href={ (base) "/frequency-response?format=csv" } { "frequency responses (CSV)" } }
-            li { a href={ (base) "/flying-qualities" } { "flying qualities (JSON)" } }
+            li { a href=(link("linear-system", &[])) { "linear system (JSON)" } ", " a href=(link("linear-system", &[("format", "mat")])) { "as MAT file" } }
+            li { "the model as functions in " a href=(link("source-code", &[("language", "c")])) { "C" } ", " a href=(link("source-code", &[("language", "python")])) { "Python" } }
+            li { a href=(link("frequency-response", &[("format", "csv")])) { "frequency responses (CSV)" } }
+            li { a href=(link("flying-qualities", &[])) { "flying qualities (JSON)" } }
         }
     };
     let frame = Frame {
@@ -62,6 +63,14 @@ pub fn dynamics_page(view: &DynamicsView) -> String {
         scripts: &[],
     };
     page(&frame, &content)
+}
+
+/// A resource of the job, at the start of the segment that the page is of.
+fn link(view: &DynamicsView, resource: &str, more: &[(&str, &str)]) -> String {
+    let path = format!("/v1/jobs/{}/{resource}?", view.id);
+    let mut query = form_urlencoded::Serializer::for_suffix(path.clone(), path.len());
+    query.append_pair("segment", &view.system.segment);
+    query.extend_pairs(more).finish()
 }
 
 fn measured(measure: Option<Measure>) -> String {
@@ -132,7 +141,7 @@ fn levels(levels: &[Criterion]) -> Markup {
     }
 }
 
-fn responses(responses: &[FrequencyResponse], base: &str) -> Markup {
+fn responses(responses: &[FrequencyResponse], table: &str) -> Markup {
     html! {
         h2 { "Frequency responses" }
         p.soft { "With bands of 2 standard errors; delays and lags of signals included." }
@@ -153,7 +162,7 @@ fn responses(responses: &[FrequencyResponse], base: &str) -> Markup {
             }
         }
         @if responses.len() > MOST_FIGURES {
-            p { "There are " (responses.len()) " responses: the others are in " a href={ (base) "/frequency-response?format=csv" } { "the table" } "." }
+            p { "There are " (responses.len()) " responses: the others are in " a href=(table) { "the table" } "." }
         }
     }
 }
@@ -176,43 +185,23 @@ fn functions(functions: &[TransferFunction]) -> Markup {
 }
 
 fn matrices(system: &LinearSystem) -> Markup {
-    let states: Vec<&str> = system
-        .states
-        .iter()
-        .map(|state| state.name.as_str())
-        .collect();
-    let inputs: Vec<&str> = system
-        .inputs
-        .iter()
-        .map(|input| input.name.as_str())
-        .collect();
-    let outputs: Vec<&str> = system
-        .outputs
-        .iter()
-        .map(|output| output.name.as_str())
-        .collect();
     html! {
         h2 { "A, B, C, D" }
-        @for (name, matrix, rows, columns) in [
-            ("A", &system.a, &states, &states),
-            ("B", &system.b, &states, &inputs),
-            ("C", &system.c, &outputs, &states),
-            ("D", &system.d, &outputs, &inputs),
-        ] {
-            @if !columns.is_empty() { (self::matrix(name, matrix, rows, columns)) }
+        @for of in system.matrices() {
+            @if !of.columns.is_empty() { (matrix(&of)) }
         }
     }
 }
 
-fn matrix(name: &str, matrix: &MatrixEstimate, rows: &[&str], columns: &[&str]) -> Markup {
-    let id = format!("matrix-{name}");
+fn matrix(of: &NamedMatrix<'_>) -> Markup {
+    let id = format!("matrix-{}", of.name);
     html! {
-        h3 id=(id) { (name) }
+        h3 id=(id) { (of.name) }
         div.scroll tabindex="0" role="region" aria-labelledby=(id) { table {
-            thead { tr { th scope="col" { "of" } @for column in columns { th.number scope="col" { "by " (column) } } } }
-            tbody { @for (at, row) in rows.iter().enumerate() { tr {
-                th scope="row" { (row) @if matches!(name, "A" | "B") { "˙" } }
-                @for (value, error) in matrix.values[at].iter().zip(&matrix.standard_errors[at]) {
+            thead { tr { th scope="col" { "of" } @for column in &of.columns { th.number scope="col" { "by " (column) } } } }
+            tbody { @for (at, row) in of.rows.iter().enumerate() { tr {
+                th scope="row" { (row) @if matches!(of.name, "A" | "B") { "˙" } }
+                @for (value, error) in of.matrix.values[at].iter().zip(&of.matrix.standard_errors[at]) {
                     td.number { (number(*value)) @if let Some(error) = error.filter(|error| *error > 0.0) { " ± " (number(error)) } }
                 }
             } } }

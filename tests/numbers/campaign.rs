@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use indexmap::IndexMap;
 use serde_json::json;
-use trimtab_core::job::{CampaignQuestion, Flown, campaign, conditions_of};
+use trimtab_core::estimate::Outcome;
+use trimtab_core::job::{CampaignQuestion, Flown, UsedRecording, campaign, conditions_of};
 use trimtab_core::simulate::Scenario;
 
 use crate::common::estimation::{compiled, solve};
@@ -25,7 +26,8 @@ fn place(k: usize) -> (f64, f64, bool) {
     )
 }
 
-fn flown() -> Vec<Flown> {
+/// The first flights of the campaign, of 40 at most.
+fn flown(count: usize) -> Vec<Flown> {
     let mut scenario: Scenario =
         toml::from_str(include_str!("../../data/elevator.toml")).expect("a scenario");
     scenario.duration = 16.0;
@@ -50,21 +52,27 @@ fn flown() -> Vec<Flown> {
             job: format!("job {k}"),
             name: format!("flight {k}"),
             conditions: conditions_of(&tags),
+            recordings: vec![UsedRecording {
+                id: maneuver.digest(),
+                rows: None,
+                seconds: None,
+            }],
             estimate: solve("short-period", &maneuver, &spec).estimate,
         }
     };
-    (0..40).map(fly).collect()
+    (0..count).map(fly).collect()
 }
 
 #[test]
 fn the_curve_is_within_its_bands_and_the_outliers_are_named() {
-    let all = flown();
+    let all = flown(40);
     let question = CampaignQuestion {
         by: vec!["alpha".to_string(), "mach".to_string()],
         group: vec!["flaps".to_string()],
         parameters: vec!["Ma".to_string(), "Mq".to_string()],
         degree: None,
     };
+    assert_eq!(question.fault(), None);
     let found = campaign(&all, &question);
     assert_eq!(found.left_out, []);
     let of = |parameter: &str, flaps: &str| {
@@ -110,7 +118,8 @@ fn the_curve_is_within_its_bands_and_the_outliers_are_named() {
 /// Jobs that do not say where they were flown, or did not converge, are named and do not count.
 #[test]
 fn what_cannot_be_used_says_why() {
-    let mut all: Vec<Flown> = flown().into_iter().take(4).collect();
+    let mut all = flown(5);
+    all[3].estimate.outcome = Outcome::Budget;
     all[1].conditions = IndexMap::new();
     all[2].conditions["alpha"] = "five".to_string();
     let question = CampaignQuestion {
@@ -126,7 +135,11 @@ fn what_cannot_be_used_says_why() {
         .collect();
     assert_eq!(
         reasons,
-        ["it has no tag alpha=...", "its tag alpha=five is no number"]
+        [
+            "it has no tag alpha=...",
+            "its tag alpha=five is no number",
+            &format!("its fit has not converged: {}", all[3].estimate.reason)
+        ]
     );
     assert_eq!(found.curves[0].points.len(), 2);
     // two points carry no parabola: a mean, with its degree of freedom
@@ -137,4 +150,67 @@ fn what_cannot_be_used_says_why() {
         ),
         (1, 1)
     );
+}
+
+/// A job that was run again on the same recording is one observation: of degree 0, n flights leave n − 1 degrees of freedom.
+#[test]
+fn a_rerun_does_not_count_twice() {
+    let again = |has_converged: bool| {
+        let mut all = flown(5);
+        let mut again = flown(2).remove(1);
+        again.job = "again".to_string();
+        if !has_converged {
+            again.estimate.outcome = Outcome::Budget;
+        }
+        all.push(again);
+        let question = CampaignQuestion {
+            parameters: vec!["Ma".to_string()],
+            ..CampaignQuestion::default()
+        };
+        campaign(&all, &question)
+    };
+    let found = again(true);
+    assert_eq!(found.curves[0].degrees_of_freedom, 4);
+    let [left_out] = &found.left_out[..] else {
+        panic!("one is left out: {:?}", found.left_out);
+    };
+    assert_eq!(left_out.job, "job 1");
+    assert!(
+        left_out.reason.starts_with("job again is newer"),
+        "{left_out:?}"
+    );
+    let found = again(false);
+    assert_eq!(found.curves[0].degrees_of_freedom, 4);
+    assert_eq!(found.left_out[0].job, "again");
+}
+
+#[test]
+fn what_a_campaign_cannot_be_asked_says_why() {
+    let names = |all: &[&str]| all.iter().map(ToString::to_string).collect::<Vec<_>>();
+    let fault = |by: &[&str], group: &[&str], degree| {
+        let question = CampaignQuestion {
+            by: names(by),
+            group: names(group),
+            parameters: Vec::new(),
+            degree,
+        };
+        question.fault()
+    };
+    let many = ["a", "b", "c", "d", "e", "f", "g", "h", "i"];
+    assert_eq!(fault(&many[..4], &many[..8], Some(3)), None);
+    for (found, field, said) in [
+        (fault(&many[..5], &[], None), "by", "at most 4"),
+        (fault(&[], &many, None), "group", "at most 8"),
+        (
+            fault(&["a", "b", "a"], &[], None),
+            "by",
+            "'a' is there twice",
+        ),
+        (fault(&[], &["b", "b"], None), "group", "'b' is there twice"),
+        (fault(&[], &[], Some(4)), "degree", "between 0 and 3"),
+    ] {
+        let (place, message) = found.expect("a fault");
+        assert_eq!(place, field);
+        assert!(message.contains(said), "{message}");
+    }
 }

@@ -291,3 +291,92 @@ fn what_cannot_be_predicted_says_why() {
     let unmapped = ask(json!({"channels": {"de": "stick/2"}}));
     assert!(unmapped[0].1.contains("stick"), "{unmapped:?}");
 }
+
+/// y = m a u, with a mass of each maneuver.
+fn of_mass() -> (JobResult, JobSpec) {
+    let model = json!({
+        "name": "of-mass", "inputs": {"de": {"unit": "rad"}},
+        "constants": {"m": {"value": 1.0, "unit": "kg"}},
+        "parameters": {"a": {"start": -1.0, "unit": "1/(kg*s)"}},
+        "outputs": {"q": {"equation": "m*a*de", "unit": "rad/s"}},
+    });
+    let elevator = maneuver(include_bytes!("../../data/elevator.csv"));
+    let id = elevator.digest();
+    let uses = json!([
+        {"id": id, "rows": [1, 200], "constants": {"m": 2.0}},
+        {"id": id, "rows": [201, 400], "constants": {"m": 4.0}},
+    ]);
+    let spec = json!({"model": model, "maneuvers": uses});
+    let spec: JobSpec = serde_json::from_value(spec).expect("a spec");
+    let both = [elevator.clone(), elevator];
+    let result = crate::common::plans::solve(model, json!({"maneuvers": uses}), &both);
+    (result, spec)
+}
+
+/// The mass is that of the recording that is predicted: y/(a u), a hand calculation.
+#[test]
+fn a_constant_is_that_of_the_predicted_recording() {
+    let (result, spec) = of_mass();
+    let recording = recorded(&[]);
+    let ask = |usage: Value| {
+        let mut wanted = json!({"id": recording.digest()});
+        for (key, value) in usage.as_object().expect("an object") {
+            wanted[key] = value.clone();
+        }
+        let wanted: PredictionSpec =
+            serde_json::from_value(json!({"maneuvers": [wanted]})).expect("a question");
+        let all = std::slice::from_ref(&recording);
+        job::predicted(&spec, &wanted, &result.model, &result.estimate, all)
+    };
+    let a = named(&result.estimate)("a");
+    let mass = json!({"mass": {"value": 6.0, "unit": "lb"}});
+    for (usage, kilograms) in [
+        (json!({"constants": {"m": 3.0}}), 3.0),
+        (json!({"start": {"m": 3.5}}), 3.5),
+        (
+            json!({"flown": mass, "constants": {"m": "recording.mass"}}),
+            6.0 * 0.453_592_37,
+        ),
+    ] {
+        let found = ask(usage).expect("a prediction").remove(0);
+        let output = found.output("q").expect("an output");
+        for (y, de) in output.values.iter().zip(elevator()) {
+            assert!(
+                (y - kilograms * a * de).abs() < 1e-12,
+                "{y} for {kilograms} kg"
+            );
+        }
+    }
+    for (usage, code) in [
+        (json!({}), "missing_constant"),
+        (
+            json!({"constants": {"m": "recording.mass"}}),
+            "unknown_quantity",
+        ),
+    ] {
+        let faults = ask(usage).expect_err("a refusal");
+        let faults: Vec<_> = faults.into_iter().collect();
+        assert_eq!(faults[0].pointer, "/maneuvers/0/constants/m");
+        assert_eq!(faults[0].code, code);
+    }
+}
+
+/// 10 000 draws of two quantities along 201 samples are 4 million values: of 24 recordings they are too many, of one not.
+#[test]
+fn draws_of_all_recordings_are_limited() {
+    let result = fitted();
+    let recording = recorded(&[]);
+    let uses = vec![json!({"id": recording.digest(), "start": {"alpha_0": 0.06}}); 25];
+    let question = json!({"maneuvers": uses, "names": ["q"], "monte_carlo": {"draws": 10_000}});
+    let wanted: PredictionSpec = serde_json::from_value(question).expect("a question");
+    let model = ModelSource::Document(Box::new(result.model.clone()));
+    let spec = JobSpec::new(JobKind::Estimate, model, wanted.maneuvers.clone());
+    let all = vec![recording; 25];
+    let refused = job::predicted(&spec, &wanted, &result.model, &result.estimate, &all);
+    let faults = refused.expect_err("a refusal").to_string();
+    assert!(faults.contains("100500000 values"), "{faults}");
+    assert!(
+        faults.contains("of all recordings, at most 100000000"),
+        "{faults}"
+    );
+}

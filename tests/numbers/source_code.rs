@@ -227,3 +227,46 @@ fn what_is_not_in_the_functions_is_said() {
         "{refused:?}"
     );
 }
+
+/// Exponentials and powers that leave the range: behind a fraction they are zero, in Rust as in C and in Python.
+#[test]
+fn what_leaves_the_range_is_infinite_in_c_and_in_python() {
+    let model = json!({
+        "name": "steep", "inputs": {"de": {"unit": "rad"}},
+        "parameters": {
+            "b": {"unit": "1/s", "start": 1.0},
+            "k": {"unit": "-", "start": 1e5, "fixed": true},
+            "n": {"unit": "-", "start": 400.5, "fixed": true},
+        },
+        "outputs": {"q": {
+            "unit": "rad/s",
+            "equation": "b*de/(1 + exp(k*(de + 0.02))) + b*de/(1 + (1 + 1e4*abs(de))^n)",
+        }},
+    });
+    let elevator = maneuver(include_bytes!("../../data/elevator.csv"));
+    let plan = plan(model, json!({}), std::slice::from_ref(&elevator));
+    let result = job::run(&plan, &mut |_| ControlFlow::Continue(()));
+    let result = result.unwrap_or_else(|faults| panic!("{faults:#?}"));
+    let beyond =
+        (plan.problem.segments[0].inputs[0].iter()).filter(|de| 1e5 * (*de + 0.02) > 710.0);
+    assert!(beyond.count() > 10, "the exponential leaves the range");
+    in_c(&plan, &result, "steep", 1e-12);
+    in_python(&plan, &result, "steep", 1e-12);
+}
+
+/// As C99 has it, annex F.9.3.1 and F.9.4.4.
+#[test]
+fn powers_in_python_are_those_of_c() {
+    if Command::new("python3").arg("--version").output().is_err() {
+        eprintln!("skipped: there is no python3");
+        return;
+    }
+    let elevator = maneuver(include_bytes!("../../data/elevator.csv"));
+    let (plan, result) = fitted("short-period", &elevator, json!({}));
+    let text = job::source_code(&plan, &result.estimate, None, SourceLanguage::Python);
+    let main = "print(_power(0.0, -0.5), _power(-0.0, -3.0), _power(-0.0, -2.0), _power(-10.0, 309.0), _power(-10.0, 400.0), _power(-8.0, 0.5), _exp(1e4), _exp(-1e4))";
+    let folder = Folder::new("powers");
+    let source = folder.write("powers.py", &(text.expect("a file") + main));
+    let printed = run(Command::new("python3").arg(source));
+    assert_eq!(printed.trim(), "inf -inf inf -inf inf nan inf 0.0");
+}

@@ -65,6 +65,15 @@ async fn a_finished_job_has_a_linear_system_responses_and_flying_qualities() {
     assert!(number(&qualities["control_anticipation_parameter"]["value"]) > 0.0);
     assert_eq!(qualities["levels"][0]["what"], "short period: damping");
 
+    // the end of the band that is not said stays what it was
+    let band = |query: &str| {
+        let path = format!("{base}/flying-qualities{query}");
+        let server = &server;
+        async move { server.get(&path).await.json()["equivalent_systems"][0]["band"].clone() }
+    };
+    let (whole, part) = (band("").await, band("?to=8").await);
+    assert_eq!(part, serde_json::json!([whole[0], 8.0]));
+
     let page = server
         .get(&format!(
             "/jobs/{id}/dynamics?category=B&class=II&airspeed=130"
@@ -72,6 +81,10 @@ async fn a_finished_job_has_a_linear_system_responses_and_flying_qualities() {
         .await
         .text();
     for part in [
+        "/linear-system?segment=",
+        "/source-code?segment=",
+        "/frequency-response?segment=",
+        "/flying-qualities?segment=",
         "short period (",
         "q over de",
         "<polygon",

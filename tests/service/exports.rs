@@ -118,9 +118,29 @@ async fn jobs_of_a_tag_are_a_campaign() {
         "{line}"
     );
     assert_eq!(line.lines().count(), 4);
+    // a rerun is the same observation once more
+    let old = points[0]["job"].as_str().expect("an id");
+    let again = server
+        .post_json(&format!("/v1/jobs/{old}/rerun"), &json!({}))
+        .await;
+    assert_eq!(again.status, 202, "{}", again.text());
+    let again = again.json()["id"].as_str().expect("an id").to_string();
+    server.wait(&again).await;
+    let rerun = server.get(path).await.json();
+    assert_eq!(rerun["curves"][0]["degrees_of_freedom"], 2);
+    assert_eq!(rerun["left_out"][0]["job"], old);
+    let reason = rerun["left_out"][0]["reason"].as_str().expect("a reason");
+    assert!(reason.contains(&again), "{reason}");
     let untagged = server.get(&format!("{path}&by=mach")).await.json();
     assert_eq!(untagged["left_out"][0]["reason"], "it has no tag mach=...");
-    for wrong in ["tag=nothing", "tag=campaign%207&degree=7", "by=alpha"] {
+    for wrong in [
+        "tag=nothing",
+        "tag=campaign%207&degree=7",
+        "by=alpha",
+        "tag=campaign%207&by=alpha,alpha",
+        "tag=campaign%207&by=a,b,c,d,e",
+        "tag=campaign%207&group=a,b,c,d,e,f,g,h,i",
+    ] {
         let refused = server.get(&format!("/v1/campaigns?{wrong}")).await;
         assert_eq!(refused.status, 400, "{wrong}: {}", refused.text());
     }

@@ -172,6 +172,7 @@ async fn constants_of_a_job_come_from_its_recordings() {
             .json();
         product.push(kilograms * estimated(&parameters));
     }
+    predictions_take_the_mass_of_their_recordings(&server, &id).await;
     // the product of mass and a is what the data tell
     assert!(
         (product[0] - product[1]).abs() < 1e-9 * product[0].abs(),
@@ -192,6 +193,49 @@ async fn constants_of_a_job_come_from_its_recordings() {
             .await
             .problem(422, code);
         assert_eq!(faults[0].0, "/constants/m", "{faults:?}");
+    }
+}
+
+/// The job's constant is the recording's mass, and so it is in predictions of other recordings: y = m a u by hand.
+async fn predictions_take_the_mass_of_their_recordings(server: &Server, fitted: &str) {
+    let number = server.submit(&job(fitted)).await;
+    server.wait(&number).await;
+    let parameters = server
+        .get(&format!("/v1/jobs/{number}/parameters"))
+        .await
+        .json();
+    let a = estimated(&parameters);
+    let input = server
+        .upload("t[s],de[rad]\n0,0.01\n0.1,0.02\n0.2,0.03\n")
+        .await;
+    let path = format!("/v1/jobs/{number}/predictions");
+    let wanted = json!({"maneuvers": [{"id": input}], "names": ["q"]});
+    let refused = server.post_json(&path, &wanted).await;
+    let expected = (
+        "/maneuvers/0/constants/m".to_string(),
+        "unknown_quantity".to_string(),
+    );
+    assert_eq!(refused.problem(422, "invalid_prediction"), [expected]);
+    let change = json!({"flown": {"mass": {"value": 7.0, "unit": "kg"}}});
+    assert_eq!(patch(server, &input, &change).await.status, 200);
+    let own = json!({"maneuvers": [{"id": input, "constants": {"m": 11.0}}], "names": ["q"]});
+    for (wanted, mass) in [(&wanted, 7.0), (&own, 11.0)] {
+        let answer = server.post_json(&path, wanted).await;
+        assert_eq!(answer.status, 200, "{}", answer.text());
+        let answer = answer.json();
+        let values = answer["segments"][0]["quantities"][0]["values"].clone();
+        for (value, de) in values
+            .as_array()
+            .expect("a list")
+            .iter()
+            .zip([0.01, 0.02, 0.03])
+        {
+            let value = value.as_f64().expect("a number");
+            assert!(
+                (value - mass * a * de).abs() < 1e-12,
+                "{value} for {mass} kg"
+            );
+        }
     }
 }
 

@@ -15,7 +15,7 @@ use crate::estimate::Measure;
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 /// rad/s, in which crossings are looked for.
-const RANGE: (f64, f64) = (0.05, 200.0);
+pub(super) const RANGE: (f64, f64) = (0.05, 200.0);
 const POINTS: usize = 800;
 
 /// Bandwidth and phase delay of an attitude.
@@ -86,6 +86,7 @@ impl Attitude<'_, '_> {
     /// ln H
     fn at(&self, omega: f64) -> Option<Response> {
         let mut response = self.channel.response(omega)?;
+        response.value.im -= std::f64::consts::TAU * self.channel.turns();
         if self.channel.gain < 0.0 {
             response.value.im -= std::f64::consts::PI;
         }

@@ -28,6 +28,8 @@ pub(super) struct Channel<'l> {
     pub gain_derivatives: Vec<f64>,
     pub poles: Vec<FoundRoot>,
     pub zeros: Vec<FoundRoot>,
+    /// Whether lag and delay of the output, which are those of its sensor, are in the response.
+    has_sensor: bool,
 }
 
 /// ln H at a frequency: real part ln |H|, imaginary part the phase in radians, continuous over all frequencies.
@@ -65,8 +67,33 @@ impl<'l> Channel<'l> {
             gain_derivatives,
             poles,
             zeros,
+            has_sensor: true,
             pencil,
         })
+    }
+
+    /// To what the output is of, without lag and delay of the sensor that records it.
+    pub(super) fn without_sensor(self) -> Self {
+        Self {
+            has_sensor: false,
+            ..self
+        }
+    }
+
+    /// Whole turns by which the phase of [`Self::response`] lies above that of the same channel with all its slow motions
+    /// damped: two conjugate poles right of the axis raise the phase by half a turn where damped ones lower it by as much, and
+    /// two zeros the other way. What is as fast as the fastest pole is no slow motion beside the one that is judged.
+    pub(super) fn turns(&self) -> f64 {
+        let fastest = (self.poles.iter())
+            .map(|pole| pole.value.norm())
+            .fold(0.0, f64::max);
+        let pairs = |roots: &[FoundRoot]| {
+            let unstable = roots.iter().map(|root| root.value).filter(|root| {
+                root.re > 0.0 && root.im > 0.0 && root.norm() < fastest * (1.0 - 1e-9)
+            });
+            unstable.count() as f64
+        };
+        pairs(&self.poles) - pairs(&self.zeros)
     }
 
     /// H(jω), delays and lags of both signals included.
@@ -74,10 +101,11 @@ impl<'l> Channel<'l> {
         let (core, left, right) = self.without_paths(omega)?;
         let by_matrix = (self.pencil.by_place.iter()).map(|by| form(&left, by, &right) / core);
         let sizes = &self.linear.at.paths;
-        let (input, output) = (
-            self.input.path_response(sizes, omega),
-            self.output.path_response(sizes, omega),
-        );
+        let input = self.input.path_response(sizes, omega);
+        let output = match self.has_sensor {
+            true => self.output.path_response(sizes, omega),
+            false => (Complex64::ZERO, Vec::new()),
+        };
         let paths = || input.1.iter().chain(&output.1);
         let by_paths = |numbers: &Numbers| -> Complex64 {
             paths()

@@ -169,8 +169,8 @@ fn fitted(channel: &Channel<'_>, form: EquivalentForm, band: (f64, f64)) -> Opti
         true => (-1.0, std::f64::consts::PI),
         false => (1.0, 0.0),
     };
-    let half_turn = Complex64::new(0.0, turned);
-    let target: Vec<Complex64> = responses.iter().map(|r| r.value - half_turn).collect();
+    let turned = Complex64::new(0.0, turned + std::f64::consts::TAU * channel.turns());
+    let target: Vec<Complex64> = responses.iter().map(|r| r.value - turned).collect();
     let fit = best(form, &omegas, &target)?;
     Some(Fitted {
         sign,

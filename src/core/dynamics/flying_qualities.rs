@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::bandwidth::{Bandwidth, bandwidth};
+use super::bandwidth::{Bandwidth, RANGE, bandwidth};
 use super::channel::Channel;
 use super::equivalent_system::{self, EquivalentForm, EquivalentSystem};
 use super::level::{AirplaneClass, Criterion, FlightPhaseCategory, control_anticipation, of_modes};
@@ -26,11 +26,14 @@ pub struct FlyingQualityQuestion {
     pub class: Option<AirplaneClass>,
     /// True airspeed, m/s, of a model that does not have it.
     pub airspeed: Option<f64>,
-    /// Frequencies that equivalent systems are fitted over, rad/s; where absent 0.1 to 10, and above a phugoid.
-    pub band: Option<[f64; 2]>,
+    /// The lowest and the highest frequency that equivalent systems are fitted over, rad/s; where absent 0.1, or above a phugoid,
+    /// and 10.
+    pub band: [Option<f64>; 2],
 }
 
-/// Flying qualities at the start of a segment, with the standard errors that the covariance of the parameters carries over.
+/// Flying qualities at the start of a segment, with the standard errors that the covariance of the parameters carries over. They are
+/// those of the aircraft with its controls: lag and delay of a control are in them, those of an output, which are its sensor's,
+/// are not.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct FlyingQualities {
     /// The segment at whose start the model was linearised.
@@ -69,7 +72,7 @@ pub fn flying_qualities(
     let of_segment = |mode: &&Mode| mode.segment.as_ref().is_none_or(|of| *of == linear.segment);
     let modes: Vec<Mode> = estimate.modes.iter().filter(of_segment).cloned().collect();
     let band = band(question, &modes)?;
-    let equivalent_systems = equivalent_systems(&linear, band);
+    let (equivalent_systems, without_fit) = equivalent_systems(&linear, band);
     let airspeed = question.airspeed.or_else(|| airspeed(&linear));
     let has = |name: ModeName| modes.iter().any(|mode| mode.name == Some(name));
     let anticipation = airspeed
@@ -90,9 +93,12 @@ pub fn flying_qualities(
     if linear.is_kinematic {
         remarks.push("the motion is recorded and not computed from forces: there are no flying qualities in it".to_string());
     }
+    let bandwidths = bandwidths(&linear);
+    remarks.extend(without_fit);
+    remarks.extend(bandwidths.iter().filter_map(no_crossing));
     Ok(FlyingQualities {
         segment: linear.segment.clone(),
-        bandwidths: bandwidths(&linear),
+        bandwidths,
         modes,
         equivalent_systems,
         control_anticipation_parameter: anticipation,
@@ -110,7 +116,8 @@ fn band(question: &FlyingQualityQuestion, modes: &[Mode]) -> Result<(f64, f64), 
         .filter(|mode| mode.name == Some(ModeName::Phugoid))
         .filter_map(|mode| Some(ABOVE_PHUGOID * mode.natural_frequency?.value));
     let lowest = phugoid.fold(0.1, f64::max).min(1.0);
-    let [from, to] = question.band.unwrap_or([lowest, 10.0]);
+    let [from, to] = question.band;
+    let (from, to) = (from.unwrap_or(lowest), to.unwrap_or(10.0));
     // written so that NaN is refused
     if !(from > 0.0 && from < to && to.is_finite()) {
         let why =
@@ -155,10 +162,15 @@ fn channels<'l>(
     };
     (controls(linear, motion, controls_of).into_iter())
         .filter_map(|input| Channel::of(linear, input, output))
+        .map(Channel::without_sensor)
         .collect()
 }
 
-fn equivalent_systems(linear: &Linearisation<'_>, band: (f64, f64)) -> Vec<EquivalentSystem> {
+/// Equivalent systems, and remarks on the responses that have none.
+fn equivalent_systems(
+    linear: &Linearisation<'_>,
+    band: (f64, f64),
+) -> (Vec<EquivalentSystem>, Vec<String>) {
     use PhysicalQuantity::{Aileron, AngleOfSideslip, PitchRate, RollRate, Rudder};
     let wanted: [(
         Motion,
@@ -185,16 +197,39 @@ fn equivalent_systems(linear: &Linearisation<'_>, band: (f64, f64)) -> Vec<Equiv
             EquivalentForm::Sideslip,
         ),
     ];
+    let (mut systems, mut remarks) = (Vec::new(), Vec::new());
     if linear.is_kinematic {
-        return Vec::new();
+        return (systems, remarks);
     }
-    let of = |(motion, controls, output, form): (Motion, &[PhysicalQuantity], _, _)| {
-        let channels = channels(linear, motion, controls, output);
-        let systems = channels.iter();
-        let systems = systems.filter_map(|c| equivalent_system::equivalent_system(c, form, band));
-        systems.collect::<Vec<_>>()
+    for (motion, controls, output, form) in wanted {
+        for channel in channels(linear, motion, controls, output) {
+            match equivalent_system::equivalent_system(&channel, form, band) {
+                Some(system) => systems.push(system),
+                None => remarks.push(no_fit(&channel, band)),
+            }
+        }
+    }
+    (systems, remarks)
+}
+
+fn no_fit(channel: &Channel<'_>, (from, to): (f64, f64)) -> String {
+    format!(
+        "{} over {}: no equivalent system was found from {from} to {to} rad/s; choose another band",
+        channel.output.name, channel.input.name
+    )
+}
+
+/// A remark on a phase that does not come to what bandwidth and phase delay are taken at.
+fn no_crossing(bandwidth: &Bandwidth) -> Option<String> {
+    let (phase, lacking) = match (bandwidth.phase, bandwidth.neutral_frequency) {
+        (None, _) => ("−135°", "no bandwidth by phase"),
+        (_, None) => ("−180°", "no bandwidth by gain and no phase delay"),
+        _ => return None,
     };
-    wanted.into_iter().flat_map(of).collect()
+    let (output, input, (from, to)) = (&bandwidth.output, &bandwidth.input, RANGE);
+    Some(format!(
+        "{output} over {input}: the phase of the attitude does not fall through {phase} from {from} to {to} rad/s, so there is {lacking}"
+    ))
 }
 
 /// ω²/(n/α) by the pitch rate's equivalent system: n/α = V/(g T).

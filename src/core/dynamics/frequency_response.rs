@@ -13,6 +13,8 @@ pub(super) const DECIBELS: f64 = 20.0 / std::f64::consts::LN_10;
 
 /// Frequencies of one response, at most.
 const MOST_FREQUENCIES: usize = 10_000;
+/// Frequencies of all responses together, at most.
+const MOST_IN_ALL: usize = 1_000_000;
 /// Where nobody says otherwise.
 const FREQUENCIES: usize = 100;
 /// Beyond the slowest and the fastest pole, where nobody says otherwise.
@@ -201,6 +203,13 @@ fn frequencies(
     if !(1..=MOST_FREQUENCIES).contains(&points) {
         return refuse(format!(
             "points: {points} is not between 1 and {MOST_FREQUENCIES}"
+        ));
+    }
+    let responses = channels.len();
+    if responses * points > MOST_IN_ALL {
+        return refuse(format!(
+            "points: {points} of each of {responses} responses are more than {MOST_IN_ALL}; ask for at most {}, or for one input or output",
+            MOST_IN_ALL / responses
         ));
     }
     Ok(logarithmic(from, to, points))

@@ -1,7 +1,8 @@
 //! Levels of flying qualities by the modes, after MIL-F-8785C, which MIL-STD-1797A took most of these numbers from.
 //!
 //! The numbers were checked against what others quote of the text of MIL-F-8785C (its tables IV, VI, VII and VIII, the
-//! lines of figures 1 to 3, and 3.2.1.2): the text of MIL-STD-1797A itself was not to be had. The floors of ω and of n/α that
+//! lines of figures 1 to 3, and 3.2.1.2): the text of MIL-STD-1797A itself was not to be had. The lower line of figure 3 for levels
+//! 2 and 3 is 0.096; some read 0.036 in copies of it. The floors of ω and of n/α that
 //! figures 1 and 3 draw besides are not applied.
 
 use serde::{Deserialize, Serialize};
@@ -156,7 +157,7 @@ pub(super) fn control_anticipation(measure: Measure, category: FlightPhaseCatego
     let limits = match category {
         FlightPhaseCategory::A => [(0.28, 3.6), (0.16, 10.0), (0.16, ANY)],
         FlightPhaseCategory::B => [(0.085, 3.6), (0.038, 10.0), (0.038, ANY)],
-        FlightPhaseCategory::C => [(0.16, 3.6), (0.036, 10.0), (0.036, ANY)],
+        FlightPhaseCategory::C => [(0.16, 3.6), (0.096, 10.0), (0.096, ANY)],
     };
     let (low, high) = limits[0];
     let title = (
@@ -351,6 +352,36 @@ mod tests {
             levels(mode(ModeName::RollSpiral, -0.6, 0.2, 0.0), B, II),
             Some(1)
         );
+    }
+
+    /// The lines of figures 1 to 3 of MIL-F-8785C, each from both sides.
+    #[test]
+    fn control_anticipation_has_the_lines_of_the_figures() {
+        use FlightPhaseCategory::*;
+        for (category, lines) in [
+            (A, [0.28, 3.6, 0.16, 10.0]),
+            (B, [0.085, 3.6, 0.038, 10.0]),
+            (C, [0.16, 3.6, 0.096, 10.0]),
+        ] {
+            let [low_1, high_1, low_2, high_2] = lines;
+            for (value, level) in [
+                (1.001 * low_1, Some(1)),
+                (0.999 * low_1, Some(2)),
+                (0.999 * high_1, Some(1)),
+                (1.001 * high_1, Some(2)),
+                (1.001 * low_2, Some(2)),
+                (0.999 * low_2, None),
+                (0.999 * high_2, Some(2)),
+                (1.001 * high_2, Some(3)),
+            ] {
+                let measure = Measure {
+                    value,
+                    standard_error: None,
+                };
+                let found = control_anticipation(measure, category).level;
+                assert_eq!(found, level, "{value} in category {category:?}");
+            }
+        }
     }
 
     /// Damping 0.36 ± 0.02: level 1 or 2.

@@ -96,6 +96,43 @@ pub struct MatrixEstimate {
     pub standard_errors: Vec<Vec<Option<f64>>>,
 }
 
+/// One of A, B, C, D with the names of its rows and columns.
+pub struct NamedMatrix<'s> {
+    /// `A`, `B`, `C` or `D`.
+    pub name: &'static str,
+    /// Its entries.
+    pub matrix: &'s MatrixEstimate,
+    /// States of A and B, outputs of C and D.
+    pub rows: Vec<&'s str>,
+    /// States of A and C, inputs of B and D.
+    pub columns: Vec<&'s str>,
+}
+
+impl LinearSystem {
+    /// A, B, C, D, in this order.
+    pub fn matrices(&self) -> [NamedMatrix<'_>; 4] {
+        let states = || -> Vec<&str> { self.states.iter().map(|s| s.name.as_str()).collect() };
+        let inputs = || signal_names(&self.inputs);
+        let outputs = || signal_names(&self.outputs);
+        [
+            ("A", &self.a, states(), states()),
+            ("B", &self.b, states(), inputs()),
+            ("C", &self.c, outputs(), states()),
+            ("D", &self.d, outputs(), inputs()),
+        ]
+        .map(|(name, matrix, rows, columns)| NamedMatrix {
+            name,
+            matrix,
+            rows,
+            columns,
+        })
+    }
+}
+
+fn signal_names(signals: &[LinearSignal]) -> Vec<&str> {
+    signals.iter().map(|signal| signal.name.as_str()).collect()
+}
+
 /// The linear system of an estimate at the start of the segment of this label, or of the first.
 ///
 /// # Errors

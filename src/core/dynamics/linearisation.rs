@@ -12,7 +12,7 @@ use crate::estimate::{Estimate, Estimated, Problem, is_kinematic};
 use crate::model::{
     Jacobian, Model, ModelDocument, Parameter, PathElement, Per, Program, Quantities, Scalar, Start,
 };
-use crate::simulate::initial_state;
+use crate::simulate::{Segment, initial_state};
 
 /// Beside numbers near one this loses nothing, and its square is zero.
 const COMPLEX_STEP: f64 = 1e-40;
@@ -68,9 +68,7 @@ impl<'p> Linearisation<'p> {
         let mut parameters = Vec::new();
         (estimated.unknowns).parameters(segment, &estimated.theta, &mut parameters);
         let data = &problem.segments[segment];
-        let input_values: Vec<f64> = (data.inputs.iter())
-            .map(|samples| samples.first().copied().unwrap_or_default())
-            .collect();
+        let input_values = inputs_at_start(data);
         let at = equations.numbers(&equations.values(&parameters, &input_values));
         let mut by_place = vec![at.zero(); estimated.theta.len()];
         let mut own = false;
@@ -89,6 +87,7 @@ impl<'p> Linearisation<'p> {
         if !at.is_finite() || !by_place.iter().all(Numbers::is_finite) {
             return Err(NoLinearSystem::NotFinite(data.label.clone()));
         }
+        let is_same = equations.are_same(problem, &estimated, &at);
         let quantities = Quantities::of(&model.document);
         let inputs = signals(model, &quantities, true);
         let outputs = signals(model, &quantities, false);
@@ -96,7 +95,7 @@ impl<'p> Linearisation<'p> {
             problem,
             estimated,
             segment: data.label.clone(),
-            is_everywhere: !equations.varies() && !own,
+            is_everywhere: !own && !equations.varies() && is_same,
             is_kinematic: is_kinematic(model),
             quantities,
             inputs,
@@ -179,6 +178,16 @@ impl<'m> Equations<'m> {
         })
     }
 
+    /// Whether matrices and paths of all segments are these: values that are held differ from maneuver to maneuver, too.
+    fn are_same(&self, problem: &Problem, estimated: &Estimated, at: &Numbers) -> bool {
+        let mut parameters = Vec::new();
+        problem.segments.iter().enumerate().all(|(index, data)| {
+            (estimated.unknowns).parameters(index, &estimated.theta, &mut parameters);
+            let other = self.numbers(&self.values(&parameters, &inputs_at_start(data)));
+            other.matrix == at.matrix && other.paths == at.paths
+        })
+    }
+
     /// [A B; C D] by rows, then the sizes of paths, x0 and dx/dt, for any kind of number.
     fn values<T: Scalar>(&self, parameters: &[T], inputs: &[f64]) -> Vec<T> {
         let inputs = inputs.iter().map(|&value| T::from_f64(value));
@@ -229,6 +238,12 @@ impl<'m> Equations<'m> {
             rates: rates.to_vec(),
         }
     }
+}
+
+fn inputs_at_start(segment: &Segment) -> Vec<f64> {
+    (segment.inputs.iter())
+        .map(|samples| samples.first().copied().unwrap_or_default())
+        .collect()
 }
 
 /// All results of a program at one state, at the start of time.

@@ -8,18 +8,9 @@ use crate::estimate::Measure;
 /// `output_lag`, `output_delay` (s, 0 for none), and the names `states`, `inputs`, `outputs`, a row each.
 pub fn linear_system_as_mat(system: &LinearSystem) -> Vec<u8> {
     let mut file = Vec::new();
-    let (n, m, p) = (
-        system.states.len(),
-        system.inputs.len(),
-        system.outputs.len(),
-    );
-    for (name, matrix, size) in [
-        ("A", &system.a, (n, n)),
-        ("B", &system.b, (n, m)),
-        ("C", &system.c, (p, n)),
-        ("D", &system.d, (p, m)),
-    ] {
-        estimated(&mut file, name, matrix, size);
+    for of in system.matrices() {
+        let size = (of.rows.len(), of.columns.len());
+        estimated(&mut file, of.name, of.matrix, size);
     }
     let column = |values: Vec<f64>| ((values.len(), 1), values);
     let sizes = |signals: &[LinearSignal], of: fn(&LinearSignal) -> Option<Measure>| {

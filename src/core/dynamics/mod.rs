@@ -44,7 +44,9 @@ pub use frequency_response::{
     FrequencyQuestion, FrequencyResponse, FrequencyUnit, frequency_responses,
 };
 pub use level::{AirplaneClass, Criterion, FlightPhaseCategory};
-pub use linear_system::{LinearSignal, LinearState, LinearSystem, MatrixEstimate, linear_system};
+pub use linear_system::{
+    LinearSignal, LinearState, LinearSystem, MatrixEstimate, NamedMatrix, linear_system,
+};
 pub use mat::linear_system_as_mat;
 pub use no_linear_system::NoLinearSystem;
 pub use transfer_function::{Root, TransferFunction};

@@ -18,8 +18,11 @@ use crate::simulate::{Outputs, Segment, path_out_of_bounds};
 /// Draws that a question may ask for.
 pub const DRAWS: std::ops::RangeInclusive<usize> = 40..=10_000;
 
-/// Values of all draws together, at most.
+/// Values of all draws of one segment, at most: they are in memory together.
 pub(crate) const MOST_DRAWN: usize = 20_000_000;
+
+/// Values of all draws of all segments, at most: seconds, not minutes.
+pub(crate) const MOST_DRAWN_IN_ALL: usize = 100_000_000;
 
 /// How many draws, and of which numbers.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]

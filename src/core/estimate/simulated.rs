@@ -7,7 +7,7 @@ use utoipa::ToSchema;
 use super::accuracy::coloured_residuals::Colour;
 use super::accuracy::covariance::Estimated;
 use super::accuracy::fit::{fits, histories};
-use super::monte_carlo::{MOST_DRAWN, MonteCarlo, Range, ranges};
+use super::monte_carlo::{MOST_DRAWN, MOST_DRAWN_IN_ALL, MonteCarlo, Range, ranges};
 use super::problem::Problem;
 use super::problem::unusable::Unusable;
 use super::report::estimate::Estimate;
@@ -60,9 +60,16 @@ pub enum NoSimulation {
     Unusable(Unusable),
     /// More than fits into memory.
     #[error(
-        "{0} values of all draws, at most {MOST_DRAWN}; ask for fewer draws, or for some quantities by name"
+        "{drawn} values of all draws of {of}, at most {most}; ask for fewer draws, for some quantities by name, or for fewer recordings at once"
     )]
-    TooManyDrawn(usize),
+    TooManyDrawn {
+        /// Draws by quantities by samples.
+        drawn: usize,
+        /// One recording, or all.
+        of: &'static str,
+        /// As many may be.
+        most: usize,
+    },
 }
 
 /// Simulates an estimate along the segments of a problem of the same model whose shared parameters are those of the
@@ -81,12 +88,8 @@ pub fn simulate_estimate(
     let wanted: Vec<Quantity> = (quantities(&problem.model.document).into_iter())
         .filter(is_wanted)
         .collect();
-    let longest = problem.segments.iter().map(|segment| segment.len()).max();
     if let Some(question) = monte_carlo {
-        let drawn = question.draws * wanted.len() * longest.unwrap_or_default();
-        if drawn > MOST_DRAWN {
-            return Err(NoSimulation::TooManyDrawn(drawn));
-        }
+        check_drawn(problem, question.draws * wanted.len())?;
     }
     let simulated = along_all(problem, &at, &wanted).map_err(NoSimulation::Unusable)?;
     let drawn = monte_carlo.map(|question| ranges(problem, &at, &wanted, question));
@@ -108,6 +111,22 @@ pub fn simulate_estimate(
         }
     };
     Ok(histories.into_iter().enumerate().map(segment).collect())
+}
+
+/// Whether so many values at each sample are not too many.
+fn check_drawn(problem: &Problem, at_each: usize) -> Result<(), NoSimulation> {
+    let lengths = || problem.segments.iter().map(|segment| segment.len());
+    let longest = lengths().max().unwrap_or_default();
+    for (of, samples, most) in [
+        ("one recording", longest, MOST_DRAWN),
+        ("all recordings", lengths().sum(), MOST_DRAWN_IN_ALL),
+    ] {
+        let drawn = at_each * samples;
+        if drawn > most {
+            return Err(NoSimulation::TooManyDrawn { drawn, of, most });
+        }
+    }
+    Ok(())
 }
 
 /// What has no standard error because a parameter behind it has none has no range either: draws do not move that parameter.

@@ -27,7 +27,7 @@ mod trajectories;
 pub use crate::flight::{Fault, Faults};
 pub use campaign::{
     Campaign, CampaignCurve, CampaignPoint, CampaignQuestion, CampaignTerm, Flown, LeftOut,
-    MOST_DEGREE, campaign, conditions_of,
+    UsedRecording, campaign, conditions_of,
 };
 pub use constant::ConstantValue;
 pub use corrected::corrected;

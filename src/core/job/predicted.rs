@@ -22,7 +22,9 @@ use crate::model::{ModelDocument, Quantities};
 #[serde(deny_unknown_fields)]
 pub struct PredictionSpec {
     /// Recordings of the inputs, and of as many outputs as they have. Parameters of a maneuver (initial states, biases) are at
-    /// the model's start values, or at what `start` says; nothing is estimated. `role` does not matter.
+    /// the model's start values, or at what `start` says; nothing is estimated. What the job takes from its recordings
+    /// (`recording.mass`) is taken from these; what each of its maneuvers had a value of its own of, each of these says in
+    /// `constants`. `role` does not matter.
     #[schema(min_items = 1)]
     pub maneuvers: Vec<ManeuverUse>,
     /// How model inputs and outputs are made from recorded channels, where not as the job says.
@@ -85,7 +87,7 @@ pub fn predicted(
     let mut channels = spec.channels.clone();
     channels.extend(wanted.channels.clone());
     let spec = JobSpec {
-        maneuvers: wanted.maneuvers.clone(),
+        maneuvers: with_constants_of(spec, &wanted.maneuvers),
         channels,
         // what they did is in the model
         edits: Vec::new(),
@@ -112,6 +114,23 @@ pub fn predicted(
         draws_lost: segment.draws_lost,
     };
     Ok(simulated.into_iter().enumerate().map(report).collect())
+}
+
+/// Constants that the job takes from what is said of its recordings are taken from that of these, where they do not say
+/// otherwise.
+fn with_constants_of(spec: &JobSpec, wanted: &[ManeuverUse]) -> Vec<ManeuverUse> {
+    let mut wanted = wanted.to_vec();
+    for (name, value) in &spec.constants {
+        if value.of_recording().is_none() {
+            continue;
+        }
+        let silent = |usage: &&mut ManeuverUse| !usage.start.contains_key(name);
+        for usage in wanted.iter_mut().filter(silent) {
+            let own = usage.constants.entry(name.clone());
+            own.or_insert_with(|| value.clone());
+        }
+    }
+    wanted
 }
 
 fn compared(

@@ -5,4 +5,5 @@ pub(super) mod decimate;
 pub(super) mod format;
 pub(super) mod prediction_table;
 pub(super) mod response_table;
+mod series_table;
 pub(super) mod trajectory_table;

@@ -1,53 +1,37 @@
 //! Trajectories as CSV.
 
-use crate::estimate::{QuantityKind, Trajectory, TrajectorySeries};
-use crate::ingest::CsvWriter;
+use super::series_table::{SegmentSeries, Series, series_as_csv};
+use crate::estimate::Trajectory;
 
 /// A table of trajectories: a row for each sample, a column for each quantity and its standard error.
 pub fn trajectories_as_csv(trajectories: &[Trajectory]) -> String {
-    let first = trajectories.first();
-    let titles = first.iter().flat_map(|trajectory| &trajectory.quantities);
-    let titles = titles.flat_map(|series| {
-        let error = title(series, "_standard_error");
-        [
-            Some(title(series, "")),
-            (!series.standard_errors.is_empty()).then_some(error),
-        ]
-    });
-    let begin = ["segment", "t[s]"].map(|title| Some(title.to_string()));
-    let mut csv = CsvWriter::with_header(begin.into_iter().chain(titles).flatten());
-    for trajectory in trajectories {
-        for (row, time) in trajectory.time.iter().enumerate() {
-            csv.text(&trajectory.segment);
-            csv.number(*time);
-            for series in &trajectory.quantities {
-                csv.number(series.values.get(row).copied());
-                if let Some(error) = series.standard_errors.get(row) {
-                    csv.number(*error);
-                }
-            }
-            csv.end_row();
-        }
-    }
-    csv.finish()
+    let segments: Vec<SegmentSeries<'_>> = trajectories.iter().map(of_segment).collect();
+    series_as_csv(&segments)
 }
 
-/// `CL`, `q[rad/s]`, and of an output, which may have the name of a state, `q_model[rad/s]`.
-fn title(series: &TrajectorySeries, what: &str) -> String {
-    let model = match series.kind {
-        QuantityKind::Output => "_model",
-        QuantityKind::State | QuantityKind::Definition => "",
-    };
-    let name = format!("{}{model}{what}", series.name);
-    match series.unit.as_str() {
-        "" | "-" => name,
-        unit => format!("{name}[{unit}]"),
+fn of_segment(trajectory: &Trajectory) -> SegmentSeries<'_> {
+    let Trajectory {
+        segment: label,
+        time,
+        quantities,
+    } = trajectory;
+    let series = quantities.iter().map(|of| Series {
+        name: &of.name,
+        kind: of.kind,
+        unit: &of.unit,
+        parts: [&of.values, &of.standard_errors, &[], &[]],
+    });
+    SegmentSeries {
+        label,
+        time,
+        series: series.collect(),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::estimate::{QuantityKind, TrajectorySeries};
 
     #[test]
     fn an_output_is_told_from_a_state_of_its_name() {

@@ -13,7 +13,9 @@ use crate::http::code::Code;
 use crate::http::problem::{Problem, ProblemDocument};
 use crate::http::request::query::{LONGEST_PAGE, Parameters, bad_cursor};
 use crate::http::service::{Server, Service};
-use crate::job::{Campaign, CampaignQuestion, Flown, MOST_DEGREE, Status, campaign, conditions_of};
+use crate::job::{
+    Campaign, CampaignQuestion, Flown, JobSpec, Status, UsedRecording, campaign, conditions_of,
+};
 use crate::store::{JobFilter, JobRecord, Part};
 
 pub(crate) fn router() -> OpenApiRouter<Server> {
@@ -30,11 +32,11 @@ struct CampaignQuery {
     /// The tag that all jobs of the campaign have.
     #[param(example = "campaign 7")]
     tag: String,
-    /// Conditions with numbers over which parameters are curves, with commas between: `alpha,mach` where jobs have tags such as
+    /// Conditions with numbers over which parameters are curves, at most 4, with commas between: `alpha,mach` where jobs have tags such as
     /// `alpha=5` and `mach=0.4`. Absent: weighted means.
     #[param(example = "alpha,mach")]
     by: Option<String>,
-    /// Conditions with words, with commas between; each combination has curves of its own.
+    /// Conditions with words, at most 8, with commas between; each combination has curves of its own.
     #[param(example = "flaps")]
     group: Option<String>,
     /// Parameters, with commas between; absent: all that are shared by maneuvers and have a standard error.
@@ -49,12 +51,13 @@ struct CampaignQuery {
 }
 
 /// What the finished jobs of a tag say of the same parameters: a curve over the conditions in their tags (or a weighted mean), with
-/// its bounds, whether the jobs agree (χ²), and which of them are outliers.
+/// its bounds, whether the jobs agree (χ²), and which of them are outliers. Of jobs that were fitted to the same samples, such as
+/// reruns, the newest counts, and `left_out` has the others.
 #[utoipa::path(get, path = "/v1/campaigns", tag = "Results", operation_id = "getCampaign",
     params(CampaignQuery),
     responses(
         (status = 200, description = "The campaign.", content((Campaign = "application/json"), (String = "text/csv"))),
-        (status = 400, description = "`invalid_query`: no job has the tag, too many have it, or the degree cannot be.", body = ProblemDocument, content_type = "application/problem+json"),
+        (status = 400, description = "`invalid_query`: no job has the tag, too many have it, or conditions or degree cannot be.", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn get_campaign(
     service: Service,
@@ -63,18 +66,6 @@ async fn get_campaign(
 ) -> Result<Response, Problem> {
     let format = choose(query.format, &headers, &[Format::Json, Format::Csv])?;
     let refuse = |detail: String| Err(Problem::new(Code::InvalidQuery, detail));
-    if let Some(degree) = query.degree.filter(|&degree| degree > MOST_DEGREE) {
-        return refuse(format!(
-            "degree: {degree} is not between 0 and {MOST_DEGREE}"
-        ));
-    }
-    let flown = flown(&service, &query.tag).await?;
-    if flown.is_empty() {
-        return refuse(format!(
-            "tag: no finished job with a result has the tag '{}'",
-            query.tag
-        ));
-    }
     let names = |text: &Option<String>| -> Vec<String> {
         let all = text.iter().flat_map(|text| text.split(',')).map(str::trim);
         all.filter(|name| !name.is_empty())
@@ -87,6 +78,16 @@ async fn get_campaign(
         parameters: names(&query.parameters),
         degree: query.degree,
     };
+    if let Some((field, message)) = question.fault() {
+        return refuse(format!("{field}: {message}"));
+    }
+    let flown = flown(&service, &query.tag).await?;
+    if flown.is_empty() {
+        return refuse(format!(
+            "tag: no finished job with a result has the tag '{}'",
+            query.tag
+        ));
+    }
     let answer = move || {
         let campaign: Campaign = campaign(&flown, &question);
         let body = match format {
@@ -131,10 +132,15 @@ async fn flown(service: &Service, tag: &str) -> Result<Vec<Flown>, Problem> {
         let Some(text) = service.store.result_part(record.id, Part::Estimate).await? else {
             continue;
         };
+        let Some(spec) = service.store.job_spec(record.id).await? else {
+            continue;
+        };
+        let spec: JobSpec = serde_json::from_str(&spec)?;
         flown.push(Flown {
             job: record.id.to_string(),
             name: record.name,
             conditions: conditions_of(&record.tags),
+            recordings: UsedRecording::of(&spec.maneuvers),
             estimate: serde_json::from_str(&text)?,
         });
     }

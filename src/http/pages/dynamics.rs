@@ -57,7 +57,7 @@ async fn get_dynamics_page(
             category: query.category,
             class: query.class,
             airspeed: query.airspeed.filter(|airspeed| *airspeed > 0.0),
-            band: None,
+            band: [None; 2],
         };
         let view = DynamicsView {
             id: view.id.clone(),

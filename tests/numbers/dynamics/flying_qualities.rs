@@ -1,11 +1,14 @@
 //! Equivalent systems, control anticipation, bandwidth, levels.
 
+use serde_json::json;
 use trimtab_core::dynamics::{
-    AirplaneClass, EquivalentForm, FlightPhaseCategory, FlyingQualityQuestion, flying_qualities,
+    AirplaneClass, EquivalentForm, FlightPhaseCategory, FlyingQualities, FlyingQualityQuestion,
+    flying_qualities,
 };
-use trimtab_core::estimate::{Measure, ModeName};
+use trimtab_core::estimate::{Estimate, Measure, ModeName};
+use trimtab_core::job::Plan;
 
-use super::{light_airplane, navion};
+use super::{estimated, light_airplane, light_airplane_with, navion};
 
 #[track_caller]
 fn near(found: Option<Measure>, expected: f64, within: f64) {
@@ -23,7 +26,7 @@ fn equivalent_system_and_bandwidth_are_those_of_scipy() {
     let question = FlyingQualityQuestion {
         category: Some(FlightPhaseCategory::B),
         class: Some(AirplaneClass::I),
-        band: Some([0.5, 10.0]),
+        band: [Some(0.5), Some(10.0)],
         ..FlyingQualityQuestion::default()
     };
     let found = flying_qualities(&plan.problem, &estimate, &question).expect("qualities");
@@ -69,6 +72,112 @@ fn equivalent_system_and_bandwidth_are_those_of_scipy() {
         ("short period: control anticipation parameter", Some(1)),
     ];
     assert_eq!(levels, expected);
+}
+
+fn of_band(plan: &Plan, estimate: &Estimate, band: [Option<f64>; 2]) -> FlyingQualities {
+    let question = FlyingQualityQuestion {
+        band,
+        ..FlyingQualityQuestion::default()
+    };
+    flying_qualities(&plan.problem, estimate, &question).expect("qualities")
+}
+
+/// A phugoid that grows slowly changes next to nothing of what is judged above it: numpy's response with the phase from its end at
+/// high frequency, and scipy.optimize.least_squares.
+#[test]
+fn an_unstable_phugoid_leaves_bandwidth_and_equivalent_system() {
+    let band = [Some(0.5), Some(10.0)];
+    let (plan, estimate) = light_airplane_with(0.02, false);
+    let found = of_band(&plan, &estimate, band);
+    let phugoid = found.modes.last().expect("a phugoid");
+    assert_eq!(phugoid.name, Some(ModeName::Phugoid));
+    near(Some(phugoid.real), 0.011_299_23, 1e-6);
+    let system = &found.equivalent_systems[0];
+    near(Some(system.gain), -9.259_623_683, 1e-6);
+    near(system.numerator_root, 2.346_602_575, 1e-6);
+    near(system.natural_frequency, 3.808_486_848, 1e-6);
+    near(system.damping_ratio, 0.581_601_718, 1e-6);
+    near(Some(system.delay), 0.107_820_128, 1e-6);
+    near(found.control_anticipation_parameter, 1.130_892_342, 1e-6);
+    let bandwidth = &found.bandwidths[0];
+    near(bandwidth.phase, 3.439_539_454, 1e-6);
+    near(bandwidth.neutral_frequency, 5.588_606_349, 1e-6);
+    near(bandwidth.gain, 3.610_626_620, 1e-6);
+    near(bandwidth.phase_delay, 0.092_453_280, 1e-6);
+
+    let (plan, estimate) = light_airplane();
+    let stable = of_band(&plan, &estimate, band);
+    let of = |found: &FlyingQualities| {
+        let (system, bandwidth) = (&found.equivalent_systems[0], &found.bandwidths[0]);
+        [
+            system.natural_frequency,
+            system.damping_ratio,
+            bandwidth.bandwidth,
+            bandwidth.phase_delay,
+        ]
+        .map(|measure| measure.expect("a number").value)
+    };
+    for (unstable, stable) in of(&found).into_iter().zip(of(&stable)) {
+        assert!(
+            (unstable / stable - 1.0).abs() < 0.01,
+            "{unstable} {stable}"
+        );
+    }
+    assert_eq!(found.remarks, stable.remarks);
+    assert!(found.remarks.is_empty(), "{:?}", found.remarks);
+}
+
+/// Lag and delay of a sensor are none of the aircraft's.
+#[test]
+fn a_slow_sensor_changes_no_flying_quality() {
+    let band = [Some(0.5), Some(10.0)];
+    let (plan, estimate) = light_airplane();
+    let without = of_band(&plan, &estimate, band);
+    let (plan, estimate) = light_airplane_with(-0.0451, true);
+    let with = of_band(&plan, &estimate, band);
+    assert_eq!(with.equivalent_systems[0].output, "q");
+    for (with, without) in [
+        (
+            &with.equivalent_systems[0].delay,
+            &without.equivalent_systems[0].delay,
+        ),
+        (
+            &with.bandwidths[0].phase_delay.expect("one"),
+            &without.bandwidths[0].phase_delay.expect("one"),
+        ),
+        (
+            &with.control_anticipation_parameter.expect("one"),
+            &without.control_anticipation_parameter.expect("one"),
+        ),
+    ] {
+        near(Some(*with), without.value, 1e-9);
+    }
+}
+
+/// An end of the band that is not said is what it is where neither is.
+#[test]
+fn one_end_of_the_band_alone_leaves_the_other() {
+    let (plan, estimate) = light_airplane();
+    let ends = |band| of_band(&plan, &estimate, band).equivalent_systems[0].band;
+    let [low, high] = ends([None, None]);
+    // five times the phugoid's frequency, of numpy.linalg.eigvals
+    let phugoid = f64::hypot(0.021_232_47, 0.106_325_69);
+    assert!((low / (5.0 * phugoid) - 1.0).abs() < 1e-6, "{low}");
+    assert_eq!(high, 10.0);
+    assert_eq!(ends([None, Some(8.0)]), [low, 8.0]);
+    assert_eq!(ends([Some(0.7), None]), [0.7, 10.0]);
+}
+
+/// An elevator without lag or delay: the phase of the attitude never comes to −180°.
+#[test]
+fn a_bandwidth_that_is_not_there_is_said() {
+    let elevator =
+        crate::common::recordings::maneuver(include_bytes!("../../../data/elevator.csv"));
+    let (plan, estimate) = estimated(json!("short-period"), json!({}), &elevator);
+    let found = of_band(&plan, &estimate, [None, None]);
+    assert_eq!(found.bandwidths[0].neutral_frequency, None);
+    let said = |remark: &String| remark.contains("−180°") && remark.starts_with("q over de");
+    assert!(found.remarks.iter().any(said), "{:?}", found.remarks);
 }
 
 /// Without a word of the flight phase there are numbers, and no levels.

@@ -1,14 +1,17 @@
 //! A, B, C, D, poles and zeros.
 
+use std::ops::ControlFlow;
+
 use serde_json::json;
 use trimtab_core::dynamics::{LinearSystem, NoLinearSystem, Root, linear_system};
 use trimtab_core::estimate::{Estimate, ModeName};
-use trimtab_core::job::Plan;
+use trimtab_core::job::{self, Plan};
 use trimtab_core::model::{Model, Program};
 use trimtab_core::simulate::initial_state;
 
 use super::{estimated, navion};
 use crate::common::estimation::{fly, scenario};
+use crate::common::plans::plan;
 use crate::common::recordings::maneuver;
 
 fn system(plan: &Plan, estimate: &Estimate) -> LinearSystem {
@@ -292,4 +295,47 @@ fn a_segment_that_is_not_there_is_named() {
         refused.to_string(),
         "segment: there is no 'flight 9'; there is 1"
     );
+}
+
+/// dx/dt = −m x + b u, with an m of each maneuver that nothing is estimated of: a system of its own where they differ.
+#[test]
+fn a_value_that_is_held_for_each_maneuver_is_of_its_segment() {
+    let model = json!({
+        "name": "of-mass", "inputs": {"de": {"unit": "rad"}},
+        "constants": {"m": {"value": 5.0, "unit": "1/s"}},
+        "parameters": {"b": {"unit": "1/s^2", "start": -1.0}},
+        "states": {"x": {"unit": "rad/s", "initial": "0", "derivative": "-m*x + b*de"}},
+        "outputs": {"q": {"unit": "rad/s", "equation": "x"}},
+    });
+    let elevator = maneuver(include_bytes!("../../../data/elevator.csv"));
+    let with = |masses: [f64; 2]| {
+        let id = elevator.digest();
+        let uses = json!([
+            {"id": id, "label": "light", "rows": [1, 200], "constants": {"m": masses[0]}},
+            {"id": id, "label": "heavy", "rows": [201, 400], "constants": {"m": masses[1]}},
+        ]);
+        let both = [elevator.clone(), elevator.clone()];
+        let plan = plan(model.clone(), json!({"maneuvers": uses}), &both);
+        let result = job::run(&plan, &mut |_| ControlFlow::Continue(()));
+        let estimate = result
+            .unwrap_or_else(|faults| panic!("{faults:#?}"))
+            .estimate;
+        (plan, estimate)
+    };
+    let (plan, estimate) = with([1.0, 2.0]);
+    for (label, mass) in [("light", 1.0), ("heavy", 2.0)] {
+        let system = linear_system(&plan.problem, &estimate, Some(label)).expect("a system");
+        assert_eq!(system.a.values, [[-mass]]);
+        assert!(!system.is_everywhere);
+        let [mode] = &system.modes[..] else {
+            panic!("one mode of {label}: {:?}", system.modes);
+        };
+        assert_eq!(mode.segment.as_deref(), Some(label));
+        assert!((mode.real.value + mass).abs() < 1e-12, "{mode:?}");
+    }
+    let (plan, estimate) = with([2.0, 2.0]);
+    let system = system(&plan, &estimate);
+    assert!(system.is_everywhere);
+    assert_eq!(system.modes.len(), 1);
+    assert_eq!(system.modes[0].segment, None);
 }

@@ -78,11 +78,22 @@ fn navion() -> (Plan, Estimate) {
 
 /// A light airplane with short period and phugoid, the elevator behind a lag and a delay.
 fn light_airplane() -> (Plan, Estimate) {
+    light_airplane_with(-0.0451, false)
+}
+
+/// The same with a damping of the speed, 1/s, and where that is wanted with its pitch sensors behind lags and delays.
+fn light_airplane_with(damping: f64, has_slow_sensors: bool) -> (Plan, Estimate) {
     let mut model = document("longitudinal");
     model["inputs"]["de"]["lag"] = json!("T_de");
     model["inputs"]["de"]["delay"] = json!("tau_de");
+    if has_slow_sensors {
+        for output in ["q", "theta"] {
+            model["outputs"][output]["lag"] = json!("T_de");
+            model["outputs"][output]["delay"] = json!("tau_de");
+        }
+    }
     let values = [
-        ("XV", "1/s", -0.0451),
+        ("XV", "1/s", damping),
         ("Xa", "m/s^2", -6.348),
         ("Xde", "m/s^2", 0.0),
         ("ZV", "1/m", -0.002),

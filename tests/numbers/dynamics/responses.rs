@@ -221,3 +221,43 @@ fn what_cannot_be_asked_for_says_why() {
         "{refused}"
     );
 }
+
+/// Each response may have 10 000 frequencies, and 110 responses at once not.
+#[test]
+fn frequencies_of_all_responses_are_limited() {
+    let time: Vec<f64> = (0..20).map(f64::from).collect();
+    let names: Vec<String> = (0..11).map(|k| format!("u{k}")).collect();
+    let outputs: Vec<String> = (0..10).map(|k| format!("y{k}")).collect();
+    let values =
+        |k: usize| -> Vec<f64> { time.iter().map(|t| (t * (1.0 + k as f64)).sin()).collect() };
+    let channels: Vec<(&str, Vec<f64>)> = (names.iter().chain(&outputs).enumerate())
+        .map(|(k, name)| (name.as_str(), values(k)))
+        .collect();
+    let recording = crate::common::plans::recording(time.clone(), &channels);
+    let mut model = json!({
+        "name": "wide", "inputs": {}, "outputs": {},
+        "parameters": {"b": {"unit": "-", "start": 1.0}},
+    });
+    for name in &names {
+        model["inputs"][name] = json!({"unit": "-"});
+    }
+    for name in &outputs {
+        model["outputs"][name] =
+            json!({"unit": "-", "equation": format!("b*({})", names.join(" + "))});
+    }
+    let (plan, estimate) = super::estimated(model, json!({}), &recording);
+    let ask = |points, output: Option<&str>| {
+        let question = FrequencyQuestion {
+            from: Some(1.0),
+            to: Some(2.0),
+            points: Some(points),
+            output: output.map(ToString::to_string),
+            ..FrequencyQuestion::default()
+        };
+        frequency_responses(&plan.problem, &estimate, &question)
+    };
+    let refused = ask(10_000, None).unwrap_err().to_string();
+    assert!(refused.contains("at most 9090"), "{refused}");
+    assert_eq!(ask(2, None).expect("responses").len(), 110);
+    assert_eq!(ask(10_000, Some("y0")).expect("responses").len(), 11);
+}

@@ -92,10 +92,18 @@ impl StateMatrix {
             return None;
         }
         let varies = (0..jacobian.by_state.len()).any(|i| jacobian.program.varies(i));
+        // values that are held differ from maneuver to maneuver, too
+        let mut is_same = || {
+            problem.segments.iter().enumerate().all(|(index, data)| {
+                (problem.unknowns).parameters(index, theta, &mut parameters);
+                let [other] = at_start(model, [jacobian], data, &parameters);
+                filled(&other) == value
+            })
+        };
         Some(Self {
+            is_everywhere: !own && !varies && is_same(),
             value,
             by_place,
-            is_everywhere: !varies && !own,
         })
     }
 

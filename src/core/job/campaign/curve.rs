@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
+use super::monomials::{distinct, powers, term_name};
 use super::report::CampaignTerm;
 
 /// A value with its standard error, where it was flown.
@@ -54,8 +55,11 @@ impl Curve {
             return None;
         }
         let mut degrees = (0..=degree).rev();
+        let most: Vec<u32> = (0..names.len())
+            .map(|condition| highest_power(observations, condition))
+            .collect();
         let powers = degrees.find_map(|degree| {
-            let powers = powers(names.len(), degree);
+            let powers = powers(&most, degree);
             // one degree of freedom is left, but for a mean
             let is_enough = degree == 0 || observations.len() > powers.len();
             let all: Vec<&Observation> = observations.iter().collect();
@@ -104,46 +108,27 @@ impl Curve {
         let coefficients = &shift * &self.solved.coefficients;
         let covariance = &shift * &self.solved.covariance * shift.transpose();
         let term = |(place, powers): (usize, &Vec<u32>)| CampaignTerm {
-            term: self.name(powers),
+            term: term_name(&self.names, powers),
             value: coefficients[place],
             standard_error: self.scatter * covariance[(place, place)].max(0.0).sqrt(),
         };
         self.powers.iter().enumerate().map(term).collect()
     }
 
-    fn name(&self, powers: &[u32]) -> String {
-        let factor = |(name, power): (&String, &u32)| match power {
-            0 => None,
-            1 => Some(name.clone()),
-            power => Some(format!("{name}^{power}")),
-        };
-        let factors: Vec<String> = self.names.iter().zip(powers).filter_map(factor).collect();
-        match factors.is_empty() {
-            true => "1".to_string(),
-            false => factors.join("*"),
-        }
+    /// Names of the terms up to a degree that it does not have.
+    pub(super) fn left_out(&self, degree: usize) -> Vec<String> {
+        let unlimited = vec![u32::MAX; self.names.len()];
+        let all = powers(&unlimited, degree).into_iter();
+        all.filter(|powers| !self.powers.contains(powers))
+            .map(|powers| term_name(&self.names, &powers))
+            .collect()
     }
 }
 
-/// The powers of all monomials up to a degree, the constant first.
-fn powers(conditions: usize, degree: usize) -> Vec<Vec<u32>> {
-    let mut all = vec![vec![0; conditions]];
-    let mut last = all.clone();
-    for _ in 0..degree {
-        let mut next: Vec<Vec<u32>> = Vec::new();
-        for powers in &last {
-            for condition in 0..conditions {
-                let mut more = powers.clone();
-                more[condition] += 1;
-                if !next.contains(&more) {
-                    next.push(more);
-                }
-            }
-        }
-        all.extend(next.clone());
-        last = next;
-    }
-    all
+/// n values of a condition carry a polynomial of degree n − 1.
+fn highest_power(observations: &[Observation], condition: usize) -> u32 {
+    let values = observations.iter().map(|o| o.conditions[condition]);
+    distinct(values.collect()).saturating_sub(1)
 }
 
 fn counted<'o>(observations: &'o [Observation], is_outlier: &[bool]) -> Vec<&'o Observation> {
@@ -338,6 +323,37 @@ mod tests {
                 "{term:?}"
             );
         }
+    }
+
+    /// Two settings of flaps tell no square of them, and the curve in alpha stays one: by hand 1 + 0.5 alpha² + 0.02 flaps.
+    #[test]
+    fn a_condition_with_few_values_does_not_flatten_the_others() {
+        let names = ["alpha", "flaps"].map(ToString::to_string);
+        let all: Vec<Observation> = (0..20)
+            .map(|k| (f64::from(k % 10) - 2.0, 14.0 * f64::from(k / 10)))
+            .map(|(alpha, flaps)| Observation {
+                conditions: vec![alpha, flaps],
+                value: 1.0 + 0.5 * alpha * alpha + 0.02 * flaps,
+                error: 0.1,
+            })
+            .collect();
+        let curve = Curve::fit(&all, &names, 2).expect("a curve");
+        for term in curve.terms() {
+            let expected = match term.term.as_str() {
+                "1" => 1.0,
+                "alpha^2" => 0.5,
+                "flaps" => 0.02,
+                _ => 0.0,
+            };
+            assert!((term.value - expected).abs() < 1e-9, "{term:?}");
+        }
+        assert_eq!(curve.left_out(2), ["flaps^2"]);
+        // with one value it is no condition at all
+        let same: Vec<Observation> = all[..10].to_vec();
+        let curve = Curve::fit(&same, &names, 2).expect("a curve");
+        let names: Vec<String> = curve.terms().into_iter().map(|term| term.term).collect();
+        assert_eq!(names, ["1", "alpha", "alpha^2"]);
+        assert_eq!(curve.left_out(2), ["flaps", "alpha*flaps", "flaps^2"]);
     }
 
     #[test]

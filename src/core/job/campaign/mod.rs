@@ -8,10 +8,13 @@
 //!
 //! over the ν degrees of freedom: where χ² is improbable the flights differ by more than their bounds say, and bounds of the
 //! curve are widened by the scatter (R. T. Birge, Phys. Rev. 40, 1932). A flight whose distance from the curve that the others
-//! make is improbable is an outlier, is named, and does not count.
+//! make is improbable is an outlier, is named, and does not count. The law of χ² is that of independent flights: of jobs that
+//! were fitted to the same samples, reruns above all, the newest counts.
 
 mod condition;
 mod curve;
+mod monomials;
+mod recording;
 mod report;
 
 use indexmap::IndexMap;
@@ -19,14 +22,14 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 pub use condition::conditions_of;
 use curve::{Curve, Observation};
+pub use recording::UsedRecording;
+use recording::share_data;
 pub use report::{
     Campaign, CampaignCurve, CampaignPoint, CampaignQuestion, CampaignTerm, Flown, LeftOut,
 };
 
-/// Highest degree where nobody says otherwise, and at most.
+/// Highest degree where nobody says otherwise.
 const DEGREE: usize = 2;
-/// The highest that may be asked for.
-pub const MOST_DEGREE: usize = 3;
 
 /// A job with the conditions that are asked for.
 struct Placed<'f> {
@@ -35,24 +38,9 @@ struct Placed<'f> {
     group: IndexMap<String, String>,
 }
 
-/// Parameters of many jobs over their conditions.
+/// Parameters of many jobs, oldest first, over their conditions. The question has no [fault](CampaignQuestion::fault).
 pub fn campaign(all: &[Flown], question: &CampaignQuestion) -> Campaign {
-    let mut left_out = Vec::new();
-    let mut placed = Vec::new();
-    for flown in all {
-        match condition::place(flown, question) {
-            Ok((conditions, group)) => placed.push(Placed {
-                flown,
-                conditions,
-                group,
-            }),
-            Err(reason) => left_out.push(LeftOut {
-                job: flown.job.clone(),
-                name: flown.name.clone(),
-                reason,
-            }),
-        }
-    }
+    let (placed, left_out) = placed(all, question);
     let mut curves = Vec::new();
     for (parameter, unit) in parameters(&placed, question) {
         let mut groups: Vec<&IndexMap<String, String>> = placed.iter().map(|p| &p.group).collect();
@@ -67,6 +55,36 @@ pub fn campaign(all: &[Flown], question: &CampaignQuestion) -> Campaign {
         }
     }
     Campaign { curves, left_out }
+}
+
+/// Jobs that can be used, and the others with the reason, both in their order.
+fn placed<'f>(all: &'f [Flown], question: &CampaignQuestion) -> (Vec<Placed<'f>>, Vec<LeftOut>) {
+    let (mut placed, mut left_out): (Vec<Placed<'_>>, Vec<LeftOut>) = Default::default();
+    for flown in all.iter().rev() {
+        let newer = |placed: &&Placed<'_>| share_data(&placed.flown.recordings, &flown.recordings);
+        let found = match (condition::place(flown, question), placed.iter().find(newer)) {
+            (Ok(_), Some(newer)) => Err(format!(
+                "job {} is newer and was fitted to the same samples: both are one observation",
+                newer.flown.job
+            )),
+            (found, _) => found,
+        };
+        match found {
+            Ok((conditions, group)) => placed.push(Placed {
+                flown,
+                conditions,
+                group,
+            }),
+            Err(reason) => left_out.push(LeftOut {
+                job: flown.job.clone(),
+                name: flown.name.clone(),
+                reason,
+            }),
+        }
+    }
+    placed.reverse();
+    left_out.reverse();
+    (placed, left_out)
 }
 
 /// Names and units, in the order in which jobs have them.
@@ -107,7 +125,7 @@ fn curve(
     question: &CampaignQuestion,
     told: Vec<(&Placed<'_>, Observation)>,
 ) -> Option<CampaignCurve> {
-    let degree = question.degree.unwrap_or(DEGREE).min(MOST_DEGREE);
+    let degree = question.degree.unwrap_or(DEGREE);
     let (placed, observations): (Vec<&Placed<'_>>, Vec<Observation>) = told.into_iter().unzip();
     let curve = Curve::fit(&observations, &question.by, degree)?;
     let freedom = curve.degrees_of_freedom;
@@ -133,6 +151,7 @@ fn curve(
         unit: unit.to_string(),
         group: group.clone(),
         terms: curve.terms(),
+        terms_left_out: curve.left_out(degree),
         chi_squared: curve.chi_squared,
         degrees_of_freedom: freedom,
         probability: law.map(|law| law.sf(curve.chi_squared)),

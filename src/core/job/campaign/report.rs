@@ -4,6 +4,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::recording::UsedRecording;
 use crate::estimate::Estimate;
 
 /// A job of a campaign.
@@ -14,6 +15,8 @@ pub struct Flown {
     pub name: String,
     /// By name: what tags of the form `alpha=5` say.
     pub conditions: IndexMap<String, String>,
+    /// What it was fitted to, as far as that is known: jobs that have data in common do not count twice.
+    pub recordings: Vec<UsedRecording>,
     /// What came of it.
     pub estimate: Estimate,
 }
@@ -21,14 +24,49 @@ pub struct Flown {
 /// What is asked of a campaign.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct CampaignQuestion {
-    /// Conditions with numbers, over which parameters are curves; none: weighted means.
+    /// Conditions with numbers, over which parameters are curves, at most 4; none: weighted means.
     pub by: Vec<String>,
-    /// Conditions with words, each of whose values has curves of its own.
+    /// Conditions with words, each of whose values has curves of its own, at most 8.
     pub group: Vec<String>,
     /// Parameters by name; empty: all that are shared and have a standard error.
     pub parameters: Vec<String>,
     /// Highest degree of the polynomials, 0 to 3; 2 where absent.
     pub degree: Option<usize>,
+}
+
+/// Conditions of a curve, at most.
+const MOST_BY: usize = 4;
+/// Conditions of a group, at most.
+const MOST_GROUP: usize = 8;
+/// The highest degree that may be asked for.
+const MOST_DEGREE: usize = 3;
+
+impl CampaignQuestion {
+    /// Which field cannot be, and what is allowed.
+    pub fn fault(&self) -> Option<(&'static str, String)> {
+        let all = [
+            ("by", &self.by, MOST_BY),
+            ("group", &self.group, MOST_GROUP),
+        ];
+        for (field, names, most) in all {
+            if names.len() > most {
+                let message = format!("{} conditions; give at most {most}", names.len());
+                return Some((field, message));
+            }
+            let twice = names.iter().enumerate();
+            let twice = twice
+                .filter(|(place, name)| names[..*place].contains(name))
+                .map(|(_, name)| name);
+            if let Some(name) = { twice }.next() {
+                return Some((field, format!("'{name}' is there twice; name it once")));
+            }
+        }
+        let degree = self.degree.filter(|&degree| degree > MOST_DEGREE)?;
+        Some((
+            "degree",
+            format!("{degree} is not between 0 and {MOST_DEGREE}"),
+        ))
+    }
 }
 
 /// Parameters over the conditions of many jobs.
@@ -54,6 +92,10 @@ pub struct CampaignCurve {
     pub group: IndexMap<String, String>,
     /// The polynomial's terms with their coefficients, in the parameter's unit and those of the conditions.
     pub terms: Vec<CampaignTerm>,
+    /// Terms up to the degree that was asked for, or 2, which the jobs do not tell: a condition with n values carries powers up
+    /// to n − 1, and a curve has fewer terms than jobs.
+    #[schema(example = json!(["alpha^2"]))]
+    pub terms_left_out: Vec<String>,
     /// Of those that are no outliers.
     #[schema(example = 31.2)]
     pub chi_squared: f64,

@@ -1,6 +1,7 @@
 //! The model of a job: the declared one with the job's edits and overrides in it, compiled.
 
 use super::checks::MOST_EDITS;
+use super::flown::is_own_constant;
 use super::unknown_name::unknown_name;
 use crate::flight::Fault;
 use crate::job::spec::JobSpec;
@@ -80,8 +81,7 @@ fn of_each_maneuver(
         return;
     }
     // it is one already where another maneuver has named it
-    let is_one = |parameter: &Parameter| parameter.fixed && parameter.per == Per::Maneuver;
-    if document.parameters.get(name).is_some_and(is_one) {
+    if document.parameters.get(name).is_some_and(is_own_constant) {
         return;
     }
     let pointer = format!("/maneuvers/{index}/constants");

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use crate::flight::{Fault, Flown, Unit, escape};
 use crate::job::constant::ConstantValue;
 use crate::job::spec::{JobKind, JobSpec, ManeuverUse};
-use crate::model::{Constant, ModelDocument};
+use crate::model::{ModelDocument, Parameter, Per};
 
 /// The spec with a number for every constant. One that is the same in all recordings is one of the job; others are those of
 /// each maneuver.
@@ -23,13 +23,12 @@ pub(super) fn resolved<'s>(
     }
     let mut numbers = spec.clone();
     for (name, value) in &spec.constants {
-        let (Some(path), Some(constant)) = (value.of_recording(), declared.constants.get(name))
-        else {
+        let (Some(path), Some(unit)) = (value.of_recording(), unit_of(declared, name)) else {
             continue;
         };
         let place = format!("/constants/{}", escape(name));
         let of = |(index, usage): (usize, &ManeuverUse)| {
-            number(path, usage.flown.as_ref(), constant, &spec.label(index))
+            number(path, usage.flown.as_ref(), unit, &spec.label(index))
         };
         let found: Result<Vec<f64>, Fault> = spec.maneuvers.iter().enumerate().map(of).collect();
         match found {
@@ -46,12 +45,11 @@ pub(super) fn resolved<'s>(
     }
     for (index, usage) in spec.maneuvers.iter().enumerate() {
         for (name, value) in &usage.constants {
-            let (Some(path), Some(constant)) = (value.of_recording(), declared.constants.get(name))
-            else {
+            let (Some(path), Some(unit)) = (value.of_recording(), unit_of(declared, name)) else {
                 continue;
             };
             let place = format!("/maneuvers/{index}/constants/{}", escape(name));
-            match number(path, usage.flown.as_ref(), constant, &spec.label(index)) {
+            match number(path, usage.flown.as_ref(), unit, &spec.label(index)) {
                 Ok(number) => {
                     numbers.maneuvers[index]
                         .constants
@@ -62,6 +60,21 @@ pub(super) fn resolved<'s>(
         }
     }
     Cow::Owned(numbers)
+}
+
+/// The unit of a constant, or of what a constant becomes where each maneuver has a value of its own.
+fn unit_of<'d>(declared: &'d ModelDocument, name: &str) -> Option<&'d str> {
+    let constant = declared.constants.get(name).map(|constant| &constant.unit);
+    let parameter = declared.parameters.get(name);
+    let parameter = parameter.filter(|parameter| is_own_constant(parameter));
+    constant
+        .or(parameter.map(|parameter| &parameter.unit))
+        .map(String::as_str)
+}
+
+/// Whether a parameter is a value that each maneuver has of its own and nothing is estimated of.
+pub(super) fn is_own_constant(parameter: &Parameter) -> bool {
+    parameter.fixed && parameter.per == Per::Maneuver
 }
 
 fn are_one(values: &[f64]) -> bool {
@@ -83,11 +96,11 @@ fn give(spec: &mut JobSpec, name: &str, values: &[f64]) {
     }
 }
 
-/// The number of a quantity in the unit of a constant.
+/// The number of a quantity in a constant's unit.
 fn number(
     path: Result<&str, &str>,
     flown: Option<&Flown>,
-    constant: &Constant,
+    unit: &str,
     label: &str,
 ) -> Result<f64, Fault> {
     let path = path.map_err(|text| {
@@ -111,13 +124,13 @@ fn number(
     let mismatch = || {
         let message = format!(
             "{path} of the recording of maneuver '{label}' is in {}, and the constant in {}",
-            quantity.unit, constant.unit
+            quantity.unit, unit
         );
         Fault::new("", "unit_mismatch", message)
     };
     let (value, dimension) = quantity.in_si().ok_or_else(mismatch)?;
     // a unit of the model that cannot be read is told of the model
-    let unit = Unit::parse(&constant.unit).unwrap_or(Unit::NONE);
+    let unit = Unit::parse(unit).unwrap_or(Unit::NONE);
     match unit.dimension == dimension {
         true => Ok(unit.from_si(value)),
         false => Err(mismatch()),

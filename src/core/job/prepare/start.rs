@@ -19,9 +19,12 @@ pub(super) fn unknowns(
         let info = &model.parameters[parameter];
         let (segment, stretch) = &resolved[segment];
         let usage = &spec.maneuvers[stretch.index];
-        let own = usage.constants.get(&info.name);
-        if let Some(value) = own.and_then(ConstantValue::number) {
-            return Ok(info.unit.to_si(value));
+        match usage.constants.get(&info.name) {
+            Some(ConstantValue::Number(value)) => return Ok(info.unit.to_si(*value)),
+            Some(ConstantValue::Recording(text)) => {
+                return Err(not_found(stretch.index, &info.name, text));
+            }
+            None => {}
         }
         let own = usage.start.get(&info.name);
         let text = match own.unwrap_or(&info.document.start) {
@@ -46,6 +49,13 @@ pub(super) fn unknowns(
         segment.label == label || spec.label(stretch.index) == label
     };
     Ok(unknowns.held_elsewhere(model, is_called))
+}
+
+/// Nothing is started from a quantity of a recording that has no number by now.
+fn not_found(maneuver: usize, name: &str, text: &str) -> Fault {
+    let message = format!("'{text}' was not found in what is said of the recording; give a number");
+    let pointer = format!("/maneuvers/{maneuver}/constants/{}", escape(name));
+    Fault::new(pointer, "unknown_quantity", message)
 }
 
 /// Where a parameter's start was given.

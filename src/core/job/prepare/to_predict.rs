@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use super::flown::{self, is_own_constant};
 use super::{bounds, checks, document, gaps, refuse_if_any, resolve, start};
 use crate::estimate::{Estimate, Problem};
-use crate::flight::{Fault, Faults, Maneuver};
+use crate::flight::{Fault, Faults, Maneuver, escape};
 use crate::job::spec::JobSpec;
 use crate::model::{ModelDocument, Per, Start};
 
@@ -20,7 +21,10 @@ pub(in crate::job) fn prepare_prediction(
     maneuvers: &[Arc<Maneuver>],
 ) -> Result<Problem, Faults> {
     let (mut faults, mut findings) = (Vec::new(), Vec::new());
+    check_own(spec, estimated, estimate, &mut faults);
     let estimated = at_estimate(estimated, estimate);
+    let spec = flown::resolved(spec, &estimated, &mut faults);
+    let spec = spec.as_ref();
     let document = document::edited(spec, &estimated, &mut faults);
     checks::check_shape(spec, maneuvers.len(), &mut faults);
     let model = document::compiled(&document, spec, &estimated, &mut faults)?;
@@ -43,6 +47,39 @@ pub(in crate::job) fn prepare_prediction(
     let problem = Problem::new(model, segments, unknowns, spec.options.clone());
     checks::check_stiffness(&problem)?;
     Ok(problem)
+}
+
+/// What each maneuver of the job had a number of its own of, each recording to be predicted says, too.
+fn check_own(
+    spec: &JobSpec,
+    estimated: &ModelDocument,
+    estimate: &Estimate,
+    faults: &mut Vec<Fault>,
+) {
+    let differs = |name: &String, start: &Start| match start {
+        Start::Value(value) => (estimate.parameters.iter())
+            .filter(|row| row.name == *name && row.segment.is_some())
+            // but for the rounding of units
+            .any(|row| (row.estimate - value).abs() > 1e-9 * value.abs()),
+        Start::FromData(_) => false,
+    };
+    let own = estimated
+        .parameters
+        .iter()
+        .filter(|(name, parameter)| is_own_constant(parameter) && differs(name, &parameter.start));
+    for (name, parameter) in own {
+        for (index, usage) in spec.maneuvers.iter().enumerate() {
+            if usage.constants.contains_key(name) || usage.start.contains_key(name) {
+                continue;
+            }
+            let message = format!(
+                "each maneuver of the job has a value of its own of '{name}' [{}]; say that of this recording in \"constants\", as a number or as a quantity of the recording such as \"recording.mass\", or in \"start\"",
+                parameter.unit
+            );
+            let pointer = format!("/maneuvers/{index}/constants/{}", escape(name));
+            faults.push(Fault::new(pointer, "missing_constant", message));
+        }
+    }
 }
 
 /// The document with shared parameters where the estimate has them.

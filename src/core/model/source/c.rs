@@ -1,6 +1,6 @@
 //! A model in C99.
 
-use super::function::{Dialect, assignments};
+use super::function::{Dialect, assignments, function_name};
 use super::written::Written;
 use crate::model::operation::Operation;
 use crate::model::program::Program;
@@ -23,21 +23,10 @@ impl Dialect for C {
     }
 
     fn call(&self, operation: Operation, a: &str) -> String {
-        let function = match operation {
-            Operation::Sign => return format!("(double)(({a} > 0.0) - ({a} < 0.0))"),
-            Operation::Sin => "sin",
-            Operation::Cos => "cos",
-            Operation::Tan => "tan",
-            Operation::Asin => "asin",
-            Operation::Acos => "acos",
-            Operation::Atan => "atan",
-            Operation::Tanh => "tanh",
-            Operation::Exp => "exp",
-            Operation::Ln => "log",
-            Operation::Sqrt => "sqrt",
-            _ => "fabs",
-        };
-        format!("{function}({a})")
+        match operation {
+            Operation::Sign => format!("(double)(({a} > 0.0) - ({a} < 0.0))"),
+            _ => format!("{}({a})", function_name(operation)),
+        }
     }
 
     fn other(&self, operation: Operation, a: &str, b: &str, c: &str) -> String {
@@ -66,7 +55,7 @@ pub(super) fn file(written: &Written<'_>) -> String {
             .map(|(at, value)| format!("    {result}[{at}] = {value};\n"))
             .collect();
         format!(
-            "void model_{name}(const double *x, const double *u, double t, double *{result}) {{\n    (void)x; (void)u; (void)t;\n{lines}{results}}}\n"
+            "void model_{name}(const double *x, const double *u, double t, double *{result}) {{\n    (void)x; (void)u; (void)t; (void){result};\n{lines}{results}}}\n"
         )
     };
     format!(

@@ -16,6 +16,23 @@ pub(super) trait Dialect {
     fn other(&self, operation: Operation, a: &str, b: &str, c: &str) -> String;
 }
 
+/// The name of a function of one operand, the same in C's `math.h` and in Python's `math`.
+pub(super) fn function_name(operation: Operation) -> &'static str {
+    match operation {
+        Operation::Sin => "sin",
+        Operation::Cos => "cos",
+        Operation::Tan => "tan",
+        Operation::Asin => "asin",
+        Operation::Acos => "acos",
+        Operation::Atan => "atan",
+        Operation::Tanh => "tanh",
+        Operation::Exp => "exp",
+        Operation::Ln => "log",
+        Operation::Sqrt => "sqrt",
+        _ => "fabs",
+    }
+}
+
 /// The assignments of a program, and what its results are then called.
 pub(super) fn assignments(
     program: &Program,

@@ -1,20 +1,20 @@
 //! A model in Python 3, with the standard library alone.
 
-use super::function::{Dialect, assignments};
+use super::function::{Dialect, assignments, function_name};
 use super::written::Written;
 use crate::model::operation::Operation;
 use crate::model::program::Program;
 
 struct Python;
 
-/// Python's functions raise where others give no number.
+/// Python's functions raise where those of C give an infinity or no number.
 const HELPERS: &str = r#"import math
 
 
 def _of(function, *operands):
     try:
         return function(*operands)
-    except (ValueError, OverflowError):
+    except ValueError:
         return math.nan
 
 
@@ -26,6 +26,25 @@ def _divide(a, b):
 
 def _ln(a):
     return -math.inf if a == 0.0 else _of(math.log, a)
+
+
+def _exp(a):
+    try:
+        return math.exp(a)
+    except OverflowError:
+        return math.inf
+
+
+def _power(a, b):
+    try:
+        return math.pow(a, b)
+    except ValueError:
+        if a != 0.0:
+            return math.nan
+    except OverflowError:
+        pass
+    is_odd = abs(math.fmod(b, 2.0)) == 1.0
+    return math.copysign(math.inf, a) if is_odd else math.inf
 "#;
 
 impl Dialect for Python {
@@ -44,26 +63,17 @@ impl Dialect for Python {
     }
 
     fn call(&self, operation: Operation, a: &str) -> String {
-        let function = match operation {
-            Operation::Sign => return format!("float(({a} > 0.0) - ({a} < 0.0))"),
-            Operation::Abs => return format!("abs({a})"),
-            Operation::Ln => return format!("_ln({a})"),
-            Operation::Sin => "sin",
-            Operation::Cos => "cos",
-            Operation::Tan => "tan",
-            Operation::Asin => "asin",
-            Operation::Acos => "acos",
-            Operation::Atan => "atan",
-            Operation::Tanh => "tanh",
-            Operation::Exp => "exp",
-            _ => "sqrt",
-        };
-        format!("_of(math.{function}, {a})")
+        match operation {
+            Operation::Sign => format!("float(({a} > 0.0) - ({a} < 0.0))"),
+            Operation::Ln => format!("_ln({a})"),
+            Operation::Exp => format!("_exp({a})"),
+            _ => format!("_of(math.{}, {a})", function_name(operation)),
+        }
     }
 
     fn other(&self, operation: Operation, a: &str, b: &str, c: &str) -> String {
         match operation {
-            Operation::Power => format!("_of(math.pow, {a}, {b})"),
+            Operation::Power => format!("_power({a}, {b})"),
             Operation::Atan2 => format!("math.atan2({a}, {b})"),
             Operation::Less => format!("float({a} < {b})"),
             Operation::LessOrEqual => format!("float({a} <= {b})"),

@@ -169,9 +169,22 @@ impl InputDesign {
             Self::Multisine { frequencies, .. } if frequencies.is_empty() => {
                 Some("a multisine needs its \"frequencies\"".into())
             }
+            Self::Multisine { frequencies, .. } => too_many("frequencies", frequencies.len()),
+            Self::Pulses { pulses, .. } => too_many("pulses", pulses.len()),
+            Self::Steps { steps } => too_many("steps", steps.len()),
             _ => None,
         }
     }
+}
+
+/// Each is asked at each sample: more than these take longer than anybody waits.
+fn too_many(what: &str, count: usize) -> Option<String> {
+    const MOST: usize = 1000;
+    (count > MOST).then(|| {
+        format!(
+            "{count} {what} are more than {MOST}; give such an input as it was recorded, by its \"time\" and \"values\""
+        )
+    })
 }
 
 /// Linear between samples, held beyond the ends.
@@ -207,6 +220,36 @@ fn pulse(t: f64, pulses: impl Iterator<Item = [f64; 2]>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Each design with a thousand of its parts, and with one more.
+    #[test]
+    fn parts_of_a_design_are_limited() {
+        let designs = |count: usize| {
+            [
+                InputDesign::Multisine {
+                    start: 0.0,
+                    duration: 1.0,
+                    frequencies: vec![1.0; count],
+                    amplitude: 1.0,
+                },
+                InputDesign::Pulses {
+                    start: 0.0,
+                    pulses: vec![[0.1, 1.0]; count],
+                },
+                InputDesign::Steps {
+                    steps: vec![[0.1, 1.0]; count],
+                },
+            ]
+        };
+        assert!(designs(1000).iter().all(|design| design.fault().is_none()));
+        for design in designs(1001) {
+            let fault = design.fault().expect("a fault");
+            assert!(
+                fault.starts_with("1001 ") && fault.contains("more than 1000"),
+                "{fault}"
+            );
+        }
+    }
 
     #[test]
     fn a_3211_is_three_two_one_one() {

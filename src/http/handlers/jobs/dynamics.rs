@@ -202,17 +202,12 @@ fn question(query: FlyingQualityQuery) -> Result<FlyingQualityQuestion, Problem>
         let detail = format!("airspeed: {airspeed} is not above 0; say it in m/s");
         return Err(Problem::new(Code::InvalidQuery, detail));
     }
-    let band = match (query.from, query.to) {
-        (None, None) => None,
-        (Some(from), to) => Some([from, to.unwrap_or(10.0)]),
-        (None, Some(to)) => Some([0.1, to]),
-    };
     Ok(FlyingQualityQuestion {
         segment: query.segment,
         category: query.category,
         class: query.class,
         airspeed: query.airspeed,
-        band,
+        band: [query.from, query.to],
     })
 }
 

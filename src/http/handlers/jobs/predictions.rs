@@ -12,6 +12,7 @@ use super::submit::load;
 use crate::http::answer::format::{Format, choose, plain};
 use crate::http::answer::prediction_table::predictions_as_csv;
 use crate::http::code::Code;
+use crate::http::handlers::flown::with_flown;
 use crate::http::problem::{Problem, ProblemDocument};
 use crate::http::request::json::JsonBody;
 use crate::http::request::query::{JobId, Parameters};
@@ -56,7 +57,9 @@ async fn predict_maneuvers(
     JobId(id): JobId,
     Parameters(query): Parameters<PredictionQuery>,
     headers: HeaderMap,
-    JsonBody { value: wanted, .. }: JsonBody<PredictionSpec>,
+    JsonBody {
+        value: mut wanted, ..
+    }: JsonBody<PredictionSpec>,
 ) -> Result<Response, Problem> {
     let format = choose(query.format, &headers, &[Format::Json, Format::Csv])?;
     let kept = Kept::of(&service, id).await?;
@@ -66,6 +69,8 @@ async fn predict_maneuvers(
         ..kept.spec.clone()
     };
     let maneuvers = load(&service, &spec).await?.map_err(refused)?;
+    let (spec, _) = with_flown(&service, spec, String::new()).await?;
+    wanted.maneuvers = spec.maneuvers;
     let answer = move || {
         let segments = job::predicted(
             &kept.spec,
