@@ -8,7 +8,7 @@ use super::recording::read_recording;
 use super::table::bordered;
 use crate::estimate::five_digits;
 use crate::response::{
-    FrequencyResponse, FrequencyResponses, ResponseOptions, TransferFunctionOrder,
+    RecordedResponse, RecordedResponses, ResponseOptions, TransferFunctionOrder,
     frequency_responses,
 };
 
@@ -74,6 +74,17 @@ impl Response {
             println!("{}", serde_json::to_string_pretty(&found)?);
             return Ok(());
         }
+        if !found.left_out_windows.is_empty() {
+            let lengths: Vec<String> = found
+                .left_out_windows
+                .iter()
+                .map(|s| five_digits(*s))
+                .collect();
+            eprintln!(
+                "windows of these lengths were left out, since too few fit into the recording: {} s",
+                lengths.join(", ")
+            );
+        }
         for response in &found.responses {
             println!("{}", table(&found, response));
         }
@@ -81,7 +92,7 @@ impl Response {
     }
 }
 
-fn table(all: &FrequencyResponses, response: &FrequencyResponse) -> String {
+fn table(all: &RecordedResponses, response: &RecordedResponse) -> String {
     let header = ["Hz", "|H|", "dB", "deg", "coherence", "random error"];
     let number = |value: Option<f64>| value.map_or_else(String::new, five_digits);
     let rows = all.frequency_hz.iter().enumerate().map(|(k, frequency)| {
@@ -102,7 +113,11 @@ fn table(all: &FrequencyResponses, response: &FrequencyResponse) -> String {
     );
     if let Some(bandwidth) = &response.bandwidth {
         text += &format!(
-            "\nphase passes -180 deg at {} rad/s; bandwidth by phase {}, by gain {} rad/s; phase delay {} s",
+            "\n{}phase passes -180 deg at {} rad/s; bandwidth by phase {}, by gain {} rad/s; phase delay {} s",
+            match bandwidth.negative_gain {
+                true => "the gain is negative; of the response times -1 the ",
+                false => "",
+            },
             five_digits(bandwidth.crossing),
             bandwidth.phase.map_or("-".to_string(), five_digits),
             bandwidth.gain.map_or("-".to_string(), five_digits),

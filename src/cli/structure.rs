@@ -10,7 +10,7 @@ use super::table::{self, bordered};
 use super::{Failure, notes};
 use crate::estimate::five_digits;
 use crate::flight::Maneuver;
-use crate::job::{self, JobKind, JobSpec, ModelSource};
+use crate::job::{self, JobKind, JobSpec, ModelSource, StructureProgress};
 use crate::model::{Input, ModelDocument, Output, expression};
 use crate::structure::{Structure, StructureMethod, StructureOptions};
 
@@ -74,7 +74,9 @@ impl StructureCommand {
             .map_err(|faults| Failure::faults("the job cannot start", &faults))?;
         let progress = ProgressLine::new(self.request.tolerance);
         let result = job::run_structure(&plan, &mut |told| {
-            progress.told(told);
+            if let StructureProgress::Estimation(told) = told {
+                progress.told(told);
+            }
             ControlFlow::Continue(())
         })
         .map_err(|faults| Failure::faults("the job failed", &faults))?;

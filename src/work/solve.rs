@@ -11,7 +11,7 @@ use super::maker::this_program;
 use super::stop::Stop;
 use crate::estimate::Outcome;
 use crate::flight::{FindingTally, Maneuver};
-use crate::job::{self, EventBody, Faults, JobKind, JobSpec, StudyProgress};
+use crate::job::{self, EventBody, Faults, JobKind, JobSpec, StructureProgress, StudyProgress};
 use crate::model::ModelDocument;
 use crate::store::{ResultParts, StoreError};
 
@@ -73,9 +73,12 @@ pub(super) fn solve(
     };
     let result = match spec.kind {
         JobKind::Estimate => job::run(&plan, &mut |progress| tell(Some(progress.into()))),
-        JobKind::Structure => {
-            job::run_structure(&plan, &mut |progress| tell(Some(progress.into())))
-        }
+        JobKind::Structure => job::run_structure(&plan, &mut |progress| {
+            tell(match progress {
+                StructureProgress::Estimation(progress) => Some(progress.into()),
+                StructureProgress::Underway => None,
+            })
+        }),
         JobKind::DerivativeStudy => job::run_study(&plan, &ThreadClock::start(), &mut |progress| {
             tell(match progress {
                 StudyProgress::Estimation(progress) => Some(progress.into()),

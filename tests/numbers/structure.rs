@@ -8,10 +8,11 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde_json::{Value, json};
+use trimtab_core::estimate::Outcome;
 use trimtab_core::flight::Maneuver;
 use trimtab_core::job::{self, JobResult};
 use trimtab_core::structure::{
-    Candidates, StructureMethod, StructureOptions, Verdict, orthogonal, stepwise,
+    Candidates, StepVerdict, Structure, StructureMethod, StructureOptions, orthogonal, stepwise,
 };
 
 use crate::common::plans::{recording, try_plan};
@@ -22,6 +23,17 @@ fn options(method: StructureMethod) -> StructureOptions {
     options.method = method;
     options
 }
+
+fn searched(candidates: &Candidates, method: StructureMethod) -> Structure {
+    let mut keep_going = || true;
+    match method {
+        StructureMethod::Stepwise => stepwise(candidates, &options(method), &mut keep_going),
+        StructureMethod::Orthogonal => orthogonal(candidates, &options(method), &mut keep_going),
+    }
+    .expect("a structure")
+}
+
+const METHODS: [StructureMethod; 2] = [StructureMethod::Stepwise, StructureMethod::Orthogonal];
 
 /// Four regressors of 60 samples, made by a formula that any program has: the second nearly depends on the first.
 fn table() -> Candidates {
@@ -45,7 +57,7 @@ fn table() -> Candidates {
 /// squares, and PRESS by leaving out one sample after the other (tests/python/structure.py).
 #[test]
 fn steps_are_those_of_an_independent_computation() {
-    let found = stepwise(&table(), &options(StructureMethod::Stepwise)).expect("a structure");
+    let found = searched(&table(), StructureMethod::Stepwise);
     for step in &found.steps {
         println!("{step:?}");
     }
@@ -65,7 +77,7 @@ fn steps_are_those_of_an_independent_computation() {
             );
         }
     }
-    let ordered = orthogonal(&table(), &options(StructureMethod::Orthogonal)).expect("a structure");
+    let ordered = searched(&table(), StructureMethod::Orthogonal);
     let order: Vec<&str> = ordered.steps[1..]
         .iter()
         .filter_map(|s| s.term.as_deref())
@@ -100,18 +112,137 @@ fn a_term_that_others_make_superfluous_goes_out() {
         response: response + quiet,
         constant: true,
     };
-    let found = stepwise(&candidates, &options(StructureMethod::Stepwise)).expect("a structure");
-    let told: Vec<(Verdict, &str)> = found.steps[1..]
+    let found = searched(&candidates, StructureMethod::Stepwise);
+    let told: Vec<(StepVerdict, &str)> = found.steps[1..]
         .iter()
         .map(|step| (step.verdict, step.term.as_deref().unwrap_or_default()))
         .collect();
-    assert_eq!(told[0], (Verdict::Entered, "sum"));
-    assert!(told.contains(&(Verdict::Removed, "sum")), "{told:?}");
+    assert_eq!(told[0], (StepVerdict::Entered, "sum"));
+    assert!(told.contains(&(StepVerdict::Removed, "sum")), "{told:?}");
     let names: Vec<&str> = found.terms.iter().map(|term| term.term.as_str()).collect();
     assert!(
         names.contains(&"a") && names.contains(&"b") && !names.contains(&"sum"),
         "{names:?}"
     );
+}
+
+/// Under a doublet of two degrees, in radians, de³ is a multiple of de, and alpha + de a sum of two others: whatever the order of rounding, the first is taken
+/// and the others are named.
+#[test]
+fn of_terms_that_are_multiples_of_one_another_the_first_is_taken() {
+    let samples = 300;
+    let size = 2.0_f64.to_radians();
+    let pulse = |k: f64| match (k as usize / 20) % 5 {
+        1 => size,
+        2 => -size,
+        _ => 0.0,
+    };
+    let column = |f: &dyn Fn(f64) -> f64| DVector::from_fn(samples, |k, _| f(k as f64));
+    let alpha = column(&|k| 0.05 * (0.11 * k).sin());
+    let de = column(&pulse);
+    let cubed = column(&|k| pulse(k).powi(3));
+    let sum = &alpha + &de;
+    let noise = normal(3, samples);
+    let response = &alpha * -0.7 - &de * 1.1 + DVector::from_fn(samples, |k, _| 1e-3 * noise[k]);
+    // a scale moves rounding without moving anything else
+    for scale in [1.0, 0.1, 3.0, 7.3, 1e-3, 0.77, 11.0, 123.4] {
+        let columns = [&alpha, &de, &cubed, &sum].map(|column| column * scale);
+        for method in METHODS {
+            let candidates = Candidates {
+                names: ["alpha", "de", "de^3", "alpha + de"]
+                    .map(String::from)
+                    .to_vec(),
+                columns: DMatrix::from_columns(&columns),
+                response: response.clone(),
+                constant: true,
+            };
+            let found = searched(&candidates, method);
+            let names: Vec<&str> = found.terms.iter().map(|t| t.term.as_str()).collect();
+            assert!(!names.contains(&"de^3"), "{method:?}, {scale}: {names:?}");
+            assert_eq!(found.terms.len(), 3, "{method:?}, {scale}: {names:?}");
+            assert_eq!(found.left_out.len(), 2, "{:?}", found.left_out);
+            assert!(found.left_out.contains(&"de^3".to_string()));
+        }
+    }
+}
+
+/// A search of 40 terms ends when it is told to, and one by predicted squared error when that has risen for long.
+#[test]
+fn a_search_can_be_stopped_and_stops_itself() {
+    let samples = 400;
+    let noise = normal(11, 41 * samples);
+    let column = |i: usize| DVector::from_column_slice(&noise[i * samples..(i + 1) * samples]);
+    let columns: Vec<DVector<f64>> = (0..40).map(column).collect();
+    let candidates = Candidates {
+        names: (0..40).map(|i| format!("x{i}")).collect(),
+        response: &columns[5] * 3.0 + &columns[7] * 2.0 + &columns[9] + column(40) * 0.3,
+        columns: DMatrix::from_columns(&columns),
+        constant: true,
+    };
+    let stopping = |method: StructureMethod| {
+        let mut left = 2;
+        let mut keep_going = || {
+            left -= 1;
+            left >= 0
+        };
+        match method {
+            StructureMethod::Stepwise => stepwise(&candidates, &options(method), &mut keep_going),
+            StructureMethod::Orthogonal => {
+                orthogonal(&candidates, &options(method), &mut keep_going)
+            }
+        }
+        .expect("a structure")
+    };
+    for method in METHODS {
+        let found = stopping(method);
+        let names: Vec<&str> = found.terms.iter().map(|t| t.term.as_str()).collect();
+        assert_eq!(names, ["1", "x5", "x7"]);
+        assert!(
+            found.reason.contains("stopped on request"),
+            "{}",
+            found.reason
+        );
+    }
+    let whole = searched(&candidates, StructureMethod::Orthogonal);
+    assert_eq!(whole.kept, 3);
+    assert_eq!(whole.steps.len(), 14, "ten steps behind the least");
+}
+
+/// Of an output that is mostly noise, 40 seeds: what noise brings in is named. Not named are terms in fewer than one of 20 searches, as
+/// the level says, and the true term always.
+#[test]
+fn terms_that_chance_brings_in_are_named() {
+    let (samples, terms, searches) = (300, 20, 40);
+    let (mut kept, mut unnamed) = (0, 0);
+    for seed in 0..searches {
+        let noise = normal(100 + seed, (terms + 1) * samples);
+        let column = |i: usize| DVector::from_column_slice(&noise[i * samples..(i + 1) * samples]);
+        let columns: Vec<DVector<f64>> = (0..terms).map(column).collect();
+        let candidates = Candidates {
+            names: (0..terms).map(|i| format!("x{i}")).collect(),
+            response: &columns[0] * 0.7 + column(terms),
+            columns: DMatrix::from_columns(&columns),
+            constant: true,
+        };
+        let found = searched(&candidates, StructureMethod::Orthogonal);
+        let named: Vec<&str> = found
+            .insignificant()
+            .iter()
+            .map(|t| t.term.as_str())
+            .collect();
+        assert!(!named.contains(&"x0"), "{named:?}");
+        let others = found
+            .terms
+            .iter()
+            .filter(|term| term.term != "1" && term.term != "x0");
+        kept += others.clone().count();
+        unnamed += others
+            .filter(|term| !named.contains(&term.term.as_str()))
+            .count();
+    }
+    println!("{kept} terms of noise kept, {unnamed} of them not named");
+    assert!(kept > 40, "{kept}");
+    assert!(unnamed <= 5, "{unnamed}");
 }
 
 fn normal(seed: u64, count: usize) -> Vec<f64> {
@@ -223,6 +354,59 @@ fn own_terms_and_a_held_out_maneuver() {
     let prediction = &result.estimate.prediction[0];
     assert!(prediction.outputs[0].r_squared > 0.98, "{prediction:?}");
     assert!((prediction.outputs[0].rms / 0.004 - 1.0).abs() < 0.2);
+}
+
+/// A job says so, and can be stopped in the search: what there is then is kept, and called cancelled.
+#[test]
+fn a_job_tells_of_terms_left_out_and_can_be_stopped() {
+    let flown = coefficient(3);
+    let noise = normal(21, flown.len());
+    let de = (0..flown.len()).map(|k| match (k / 25) % 5 {
+        1 => 0.05,
+        2 => -0.05,
+        _ => 0.0,
+    });
+    let de: Vec<f64> = de.collect();
+    let own = |name: &str| flown.channels()[name].values.clone();
+    let alpha = own("alpha");
+    let cm = (0..flown.len()).map(|k| 0.05 - 0.7 * alpha[k] - 1.1 * de[k] + 0.004 * noise[k]);
+    let cm = cm.collect();
+    let time = flown.time().to_vec();
+    let flown = recording(
+        time,
+        &[
+            ("alpha", own("alpha")),
+            ("q", own("q")),
+            ("de", de),
+            ("Cm", cm),
+        ],
+    );
+    let structure = json!({"output": "Cm", "variables": ["de"], "terms": ["alpha"], "order": 3});
+    let codes = |result: &JobResult| -> Vec<String> {
+        let findings = result.estimate.findings.iter();
+        findings.map(|finding| finding.code.clone()).collect()
+    };
+    let result = run(structure.clone(), std::slice::from_ref(&flown));
+    assert!(codes(&result).contains(&"collinear_terms".to_string()));
+    let found = result.structure.expect("a structure");
+    assert_eq!(found.left_out, ["de^3"]);
+    assert!(found.terms.iter().any(|term| term.term == "de"));
+
+    let changes = json!({"kind": "structure", "structure": structure});
+    let plan = try_plan(model(), changes, &[flown]).unwrap_or_else(|faults| panic!("{faults:#?}"));
+    let mut asked = 0;
+    let result = job::run_structure(&plan, &mut |_| {
+        asked += 1;
+        if asked < 2 {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        }
+    })
+    .expect("a result");
+    assert_eq!(result.structure.expect("a structure").terms.len(), 2);
+    assert_eq!(result.estimate.outcome, Outcome::Cancelled);
+    assert!(result.estimate.reason.contains("stopped on request"));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::common::server::Server;
 use serde_json::json;
-use trimtab::structure::{Structure, Verdict};
+use trimtab::structure::{StepVerdict, Structure};
 
 /// Lift over angle of attack, with a term of the second order that is there and elevator that is not.
 fn recording() -> String {
@@ -51,7 +51,7 @@ async fn an_equation_is_found_and_its_steps_are_told() {
     assert_eq!(found.candidates, 5);
     let names: Vec<&str> = found.terms.iter().map(|term| term.term.as_str()).collect();
     assert_eq!(names, ["1", "alpha", "alpha^2"]);
-    assert_eq!(found.steps[0].verdict, Verdict::Start);
+    assert_eq!(found.steps[0].verdict, StepVerdict::Start);
     assert!(
         found
             .terms

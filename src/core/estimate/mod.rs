@@ -69,7 +69,7 @@ pub use evaluation::evaluator::Evaluator;
 pub use evaluation::normal_equations::NormalEquations;
 pub(crate) use filter_error::process_noise_names;
 pub use filter_error::{FilterEquations, FilterEvaluator, filter_error};
-pub(crate) use frequency::band_frequencies;
+pub(crate) use frequency::{band_frequencies, path_ends};
 pub use frequency::{equation_error_frequency, output_error_frequency};
 pub use monte_carlo::{DRAWS, MonteCarlo};
 pub use options::error_bounds::ErrorBoundsKind;

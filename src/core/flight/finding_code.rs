@@ -111,6 +111,10 @@ codes! {
     FewFrequencies "few_frequencies" Warning;
     /// Terms of a structure determination are the same everywhere, or no numbers somewhere, and were left out.
     LeftOutTerms "left_out_terms" Warning;
+    /// The data do not tell terms of a structure that were left out from those that were kept.
+    CollinearTerms "collinear_terms" Warning;
+    /// Terms of a structure are no larger than chance makes the largest of so many candidates: they may be noise.
+    InsignificantTerms "insignificant_terms" Warning;
     /// Integration steps are too long for the accuracy of the estimate: with half their length a parameter would move.
     StepTooLong "step_too_long" Warning;
     /// A motion of the estimate is at the edge of what an integration step can follow.

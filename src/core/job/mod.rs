@@ -38,7 +38,7 @@ pub use predicted::{PredictedOutput, PredictedSegment, PredictionSpec, predicted
 pub use prepare::{MOST_MANEUVERS, prepare};
 pub use provenance::Maker;
 pub use result::JobResult;
-pub use run::{StudyProgress, run, run_diagnosis, run_structure, run_study};
+pub use run::{StructureProgress, StudyProgress, run, run_diagnosis, run_structure, run_study};
 pub use simulation::{NoSimulatedManeuver, SimulationSpec};
 pub use source_code::{NoSourceCode, source_code};
 pub use spec::{

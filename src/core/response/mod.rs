@@ -7,19 +7,23 @@
 //! from cross spectra over windows that overlap by half. Where inputs are correlated, each response is conditioned on all others, and
 //! γ² is its partial coherence; ε is the random error, relative, for n_d windows without overlap (Bendat and Piersol, Random
 //! Data; Tischler and Remple, Aircraft and Rotorcraft System Identification, ch. 7 to 10). Windows of several lengths are put
-//! together, each where its error is small. [`fitted()`] fits a transfer function with delay to a response.
+//! together, each where its error is small; lengths of which too few fit in tell nothing, and are left out. A transfer function with
+//! delay is fitted to a response where that is asked for.
 //!
-//! Invariant: the same recording gives the same numbers to the last bit.
+//! Invariant: the same recording gives the same numbers to the last bit, and what would take too long is refused before it
+//! begins.
 
 mod bandwidth;
 mod conditioned;
+mod cost;
 mod cross_spectra;
 mod measured;
 mod options;
+mod record;
 mod report;
 mod transfer_function;
+mod windows;
 
 pub use measured::frequency_responses;
 pub use options::{ResponseOptions, TransferFunctionOrder};
-pub use report::{Bandwidth, FrequencyResponse, FrequencyResponses, TransferFunction};
-pub use transfer_function::fitted;
+pub use report::{FittedTransferFunction, RecordedBandwidth, RecordedResponse, RecordedResponses};

@@ -5,19 +5,24 @@ use utoipa::ToSchema;
 
 /// The responses of some outputs to some inputs.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
-pub struct FrequencyResponses {
+pub struct RecordedResponses {
     /// Hz.
     pub frequency_hz: Vec<f64>,
     /// Lengths of the windows that were put together, s.
     #[schema(example = json!([20.0, 10.0, 5.0]))]
     pub windows: Vec<f64>,
+    /// Lengths of windows, s, that were not: of which fewer than two more than there are inputs fit in without overlap, or of fewer
+    /// than 8 samples.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(example = json!([60.0]))]
+    pub left_out_windows: Vec<f64>,
     /// By output, then input.
-    pub responses: Vec<FrequencyResponse>,
+    pub responses: Vec<RecordedResponse>,
 }
 
 /// One response, SI; `null` where no window is long enough.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
-pub struct FrequencyResponse {
+pub struct RecordedResponse {
     /// The input, X.
     #[schema(example = "de")]
     pub input: String,
@@ -38,15 +43,18 @@ pub struct FrequencyResponse {
     pub random_error: Vec<Option<f64>>,
     /// As the handling qualities of an attitude response are told; absent where the band does not show it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub bandwidth: Option<Bandwidth>,
+    pub bandwidth: Option<RecordedBandwidth>,
     /// As it was asked for; absent where the response has too few values for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub transfer_function: Option<TransferFunction>,
+    pub transfer_function: Option<FittedTransferFunction>,
 }
 
-/// Bandwidth and phase delay, of a response whose phase passes -180° (ADS-33).
+/// Bandwidth and phase delay, of a response whose phase passes -180° (ADS-33). Phases are counted from that of a positive gain at
+/// the lowest frequency, between 45° and -135°.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
-pub struct Bandwidth {
+pub struct RecordedBandwidth {
+    /// Whether the gain is negative: phases here are those of the response times -1.
+    pub negative_gain: bool,
     /// ω_180, where the phase is -180°, rad/s.
     #[schema(example = 6.1)]
     pub crossing: f64,
@@ -66,7 +74,7 @@ pub struct Bandwidth {
 
 /// A transfer function that was fitted to a response.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
-pub struct TransferFunction {
+pub struct FittedTransferFunction {
     /// b_0, b_1, ..., b_m, SI.
     pub numerator: Vec<f64>,
     /// a_0, a_1, ..., and 1 for s^n.
@@ -74,7 +82,8 @@ pub struct TransferFunction {
     /// τ, s; 0 where none was asked for.
     #[schema(example = 0.07)]
     pub delay: f64,
-    /// Of the b, the a without the 1, and the delay if there is one: s √((JᵀJ)⁻¹_ii), s² the mean square of the weighted errors.
+    /// Of the b, the a without the 1, and the delay if there is one: by the random errors of the response, larger by √χ² where the fit
+    /// is worse than these say. Absent where there are no more independent numbers than unknowns.
     pub standard_errors: Vec<Option<f64>>,
     /// J = 20/n Σ W_γ (W_g (ΔdB)² + W_p (Δ°)²); up to 100 is a usable fit (Tischler and Remple, ch. 11).
     #[schema(example = 34.2)]
@@ -85,6 +94,9 @@ pub struct TransferFunction {
     pub phase_weight: f64,
     /// How many frequencies it was fitted to.
     pub points: usize,
+    /// How many of them are independent: closer ones than 2/T for windows of T seconds tell no more.
+    #[schema(example = 14.2)]
+    pub independent_points: f64,
     /// How many steps it took.
     pub iterations: usize,
 }

@@ -2,13 +2,14 @@
 //!
 //! The cost is J = 20/n Σ W_γ (W_g (20 log |Ĥ|/|H|)² + W_p (∠Ĥ - ∠H)²) with magnitudes in dB, phases in degrees, W_g = 1,
 //! W_p = 0.01745 and W_γ = (1.58 (1 - exp(-γ²)))² (Tischler and Remple, ch. 11). It starts from linear least squares on
-//! H D = N, weighted anew by 1/|D|² (Sanathanan and Koerner 1963), for some delays, and goes down by Levenberg-Marquardt.
+//! H D = N, weighted anew by 1/|D|² (Sanathanan and Koerner 1963), for some delays, and goes down by Levenberg-Marquardt. Errors of
+//! neighbouring frequencies are correlated: accuracy goes by how many are independent.
 
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 
 use super::options::TransferFunctionOrder;
-use super::report::TransferFunction;
+use super::report::FittedTransferFunction;
 
 /// The weights of magnitude and phase.
 const MAGNITUDE: f64 = 1.0;
@@ -20,17 +21,24 @@ const ROUNDS: usize = 10;
 
 /// One point of a response.
 #[derive(Clone, Copy, Debug)]
-pub struct Weighted {
+pub(super) struct Weighted {
     /// rad/s
     pub omega: f64,
     /// H
     pub response: Complex64,
     /// γ²
     pub coherence: f64,
+    /// The random error: of |H| relative to it, and of the phase in radians.
+    pub error: f64,
+    /// By how much of an independent point it counts, at most 1.
+    pub independent: f64,
 }
 
 /// Fits a transfer function; `None` where there are no more numbers than unknowns, or nothing fits.
-pub fn fitted(points: &[Weighted], order: TransferFunctionOrder) -> Option<TransferFunction> {
+pub(super) fn fitted(
+    points: &[Weighted],
+    order: TransferFunctionOrder,
+) -> Option<FittedTransferFunction> {
     let unknowns = order.numerator + 1 + order.denominator + usize::from(order.delay);
     let usable: Vec<Weighted> = points
         .iter()
@@ -208,8 +216,41 @@ impl Problem<'_> {
         (at, MOST_ITERATIONS)
     }
 
+    fn independent(&self) -> f64 {
+        self.points.iter().map(|point| point.independent).sum()
+    }
+
+    /// Of the unknowns: (JᵀJ)⁻¹ Jᵀ Σ J (JᵀJ)⁻¹, with Σ the variances of the weighted errors by the random errors of the points, those of
+    /// neighbours as large as they are correlated. Where the fit is worse than these say, they are larger by χ², of as many numbers as
+    /// are independent. `None` where these are no more than the unknowns.
+    fn variances(&self, at: &DVector<f64>) -> Option<DVector<f64>> {
+        let (slopes, errors) = (self.slopes(at), self.errors(at));
+        let inverse = slopes.tr_mul(&slopes).try_inverse()?;
+        let left = 2.0 * self.independent() - self.unknowns as f64;
+        if left <= 0.0 {
+            return None;
+        }
+        let share = (20.0 / self.points.len() as f64).sqrt();
+        let (mut scatter, mut squares) = (DMatrix::zeros(self.unknowns, self.unknowns), 0.0);
+        for (k, point) in self.points.iter().enumerate() {
+            let weight = share * coherence_weight(point.coherence) * point.error;
+            let decibels = weight * MAGNITUDE.sqrt() * 20.0 / std::f64::consts::LN_10;
+            for (row, deviation) in [
+                (2 * k, decibels),
+                (2 * k + 1, weight * PHASE.sqrt().to_degrees()),
+            ] {
+                let deviation = deviation.max(f64::MIN_POSITIVE);
+                let slope = slopes.row(row) * deviation;
+                scatter += slope.tr_mul(&slope) / point.independent;
+                squares += point.independent * (errors[row] / deviation).powi(2);
+            }
+        }
+        let whole = &inverse * scatter * &inverse;
+        Some(whole.diagonal() * (squares / left).max(1.0))
+    }
+
     /// In seconds again.
-    fn report(&self, at: &DVector<f64>, iterations: usize) -> Option<TransferFunction> {
+    fn report(&self, at: &DVector<f64>, iterations: usize) -> Option<FittedTransferFunction> {
         let cost = self.cost(at);
         if !cost.is_finite() {
             return None;
@@ -229,14 +270,12 @@ impl Problem<'_> {
             .chain(self.order.delay.then(|| self.unit.recip()))
             .collect();
         let values: Vec<f64> = at.iter().zip(&scales).map(|(v, scale)| v * scale).collect();
-        let slopes = self.slopes(at);
-        let left = (2 * self.points.len() - self.unknowns) as f64;
-        let inverse = slopes.tr_mul(&slopes).try_inverse();
+        let variances = self.variances(at);
         let error = |i: usize| {
-            let variance = inverse.as_ref()?[(i, i)] * cost / left;
-            Some(variance.sqrt() * scales[i]).filter(|error| error.is_finite())
+            let error = variances.as_ref()?[i].sqrt() * scales[i];
+            Some(error).filter(|error| error.is_finite())
         };
-        Some(TransferFunction {
+        Some(FittedTransferFunction {
             numerator: values[..b].to_vec(),
             denominator: values[b..b + a].iter().copied().chain([1.0]).collect(),
             delay: values.get(b + a).copied().unwrap_or(0.0),
@@ -245,6 +284,7 @@ impl Problem<'_> {
             magnitude_weight: MAGNITUDE,
             phase_weight: PHASE,
             points: self.points.len(),
+            independent_points: self.independent(),
             iterations,
         })
     }

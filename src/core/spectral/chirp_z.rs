@@ -4,59 +4,65 @@
 //! Rader, Bell System Technical Journal 48, 1969; Bluestein 1970).
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use num_complex::Complex64;
-
-use super::fast_transform::FastTransform;
+use rustfft::{Fft, FftPlanner};
 
 /// Σ_n x_n exp(-2πi (first + k step) n) for n < `samples` and k < `count`.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct ChirpZ {
     samples: usize,
     /// exp(-2πi (first n + step n²/2)) by n.
     into: Vec<Complex64>,
     /// exp(-2πi step k²/2) by k.
     out: Vec<Complex64>,
-    /// The transform of exp(2πi step m²/2) over m from -(samples - 1) to count - 1, wrapped.
+    /// The transform of exp(2πi step m²/2) over m from -(samples - 1) to count - 1, wrapped, over its length.
     kernel: Vec<Complex64>,
-    fast: FastTransform,
+    forward: Arc<dyn Fft<f64>>,
+    inverse: Arc<dyn Fft<f64>>,
 }
 
 impl ChirpZ {
     /// `first` and `step` in cycles per sample.
     pub fn new(samples: usize, first: f64, step: f64, count: usize) -> Self {
-        let fast = FastTransform::at_least(samples + count);
+        let length = (samples + count).next_power_of_two();
+        let mut planner = FftPlanner::new();
+        let forward = planner.plan_fft_forward(length);
         let chirp = |n: usize| turn(step, 0.5 * (n as f64) * (n as f64));
         let into = (0..samples).map(|n| (turn(first, n as f64) * chirp(n)).conj());
-        let mut kernel = vec![Complex64::ZERO; fast.len()];
+        let mut kernel = vec![Complex64::ZERO; length];
         for (m, value) in kernel.iter_mut().take(count).enumerate() {
             *value = chirp(m);
         }
         for m in 1..samples {
-            kernel[fast.len() - m] = chirp(m);
+            kernel[length - m] = chirp(m);
         }
-        fast.forward(&mut kernel);
+        forward.process(&mut kernel);
+        // the inverse transform is not divided by its length
+        kernel.iter_mut().for_each(|value| *value /= length as f64);
         Self {
             samples,
             into: into.collect(),
             out: (0..count).map(|k| chirp(k).conj()).collect(),
             kernel,
-            fast,
+            forward,
+            inverse: planner.plan_fft_inverse(length),
         }
     }
 
     /// Of `samples` values.
     pub fn of(&self, signal: &[f64]) -> Vec<Complex64> {
-        let mut values = vec![Complex64::ZERO; self.fast.len()];
+        let mut values = vec![Complex64::ZERO; self.kernel.len()];
         let turned = signal.iter().take(self.samples).zip(&self.into);
         for (value, (x, chirp)) in values.iter_mut().zip(turned) {
             *value = chirp * x;
         }
-        self.fast.forward(&mut values);
+        self.forward.process(&mut values);
         for (value, kernel) in values.iter_mut().zip(&self.kernel) {
             *value *= kernel;
         }
-        self.fast.inverse(&mut values);
+        self.inverse.process(&mut values);
         let out = self.out.iter().zip(values);
         out.map(|(chirp, value)| chirp * value).collect()
     }

@@ -23,7 +23,7 @@ pub enum Between {
 }
 
 /// ∫_0^T x(t) exp(-iωt) dt at some frequencies, of signals of one length and step.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct FourierIntegral {
     sums: ChirpZ,
     samples: usize,

@@ -18,6 +18,16 @@ pub struct Candidates {
 /// A column that the others explain but for this share of its square is one of them, to rounding.
 pub(super) const DEPENDENT: f64 = 1e-10;
 
+/// Sizes that differ by less than this share are equal: of terms that are multiples of one another, rounding alone would choose.
+const TIE: f64 = 1e-9;
+
+/// The largest of some terms with their sizes; of those that are equal the first.
+pub(super) fn first_of_largest(sizes: &[(usize, f64)]) -> Option<(usize, f64)> {
+    let largest = sizes.iter().map(|(_, size)| size.abs()).fold(0.0, f64::max);
+    let mut equal = sizes.iter().copied();
+    equal.find(|(_, size)| size.abs() >= (1.0 - TIE) * largest)
+}
+
 impl Candidates {
     pub(super) fn samples(&self) -> usize {
         self.response.len()

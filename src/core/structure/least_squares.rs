@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::candidates::Candidates;
+use super::candidates::{Candidates, DEPENDENT};
 use super::report::Term;
 
 /// ŷ = Xθ̂ by QR decomposition.
@@ -53,7 +53,7 @@ impl Fit {
         if upper
             .diagonal()
             .iter()
-            .any(|pivot| pivot.powi(2) < super::candidates::DEPENDENT)
+            .any(|pivot| pivot.powi(2) < DEPENDENT)
         {
             return None;
         }
@@ -109,6 +109,18 @@ impl Fit {
     /// What of a column the terms do not explain already.
     pub(super) fn left_of(&self, column: &DVector<f64>) -> DVector<f64> {
         column - &self.basis * self.basis.tr_mul(column)
+    }
+
+    /// Terms beside the `chosen` that these and the constant are another name for: a search never has them in question.
+    pub(super) fn explained(&self, candidates: &Candidates, chosen: &[usize]) -> Vec<String> {
+        let others = (0..candidates.names.len()).filter(|term| !chosen.contains(term));
+        let explained = others.filter(|&term| {
+            let column = candidates.columns.column(term).into_owned();
+            self.left_of(&column).norm_squared() <= DEPENDENT * column.norm_squared()
+        });
+        explained
+            .map(|term| candidates.names[term].clone())
+            .collect()
     }
 
     /// The terms with their estimates, the constant first.

@@ -8,6 +8,8 @@
 //! to one another, orders them by what each explains, and keeps as many as give the least predicted squared error (PSE). Both
 //! tell each step (Klein and Morelli, Aircraft System Identification, ch. 5; Morelli, J. Aircraft 32, 1995).
 //!
+//! Of terms that are multiples of one another in the data the first is taken, and the others are said to be left out.
+//!
 //! Terms are columns of numbers with names here: where they come from is the matter of a job.
 //!
 //! Invariant: the same columns give the same steps to the last bit, and a structure says why it holds what it holds.
@@ -18,11 +20,12 @@ mod least_squares;
 mod options;
 mod orthogonal;
 mod report;
+mod significance;
 mod stepwise;
 
 pub use candidates::Candidates;
 pub use generated::{MOST_TERMS, polynomials};
 pub use options::{StructureMethod, StructureOptions};
 pub use orthogonal::orthogonal;
-pub use report::{Structure, StructureStep, Term, Verdict};
+pub use report::{StepVerdict, Structure, StructureStep, Term};
 pub use stepwise::stepwise;

@@ -5,6 +5,9 @@ use utoipa::ToSchema;
 
 use super::options::StructureMethod;
 
+/// Why a search ended that was stopped.
+pub(super) const STOPPED: &str = "the search was stopped on request";
+
 /// The terms that an equation needs, and how they were found.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Structure {
@@ -31,7 +34,8 @@ pub struct Structure {
     pub equation: String,
     /// Why there are no more terms and no fewer.
     pub reason: String,
-    /// Terms that others explain, so that they were never in question, and terms that are not numbers everywhere.
+    /// Terms that are not numbers everywhere, or one number, and terms that those kept explain: an equation with them in place of
+    /// these may fit as well.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<String>,
 }
@@ -43,7 +47,7 @@ pub struct StructureStep {
     #[schema(example = 1)]
     pub number: usize,
     /// What was done.
-    pub verdict: Verdict,
+    pub verdict: StepVerdict,
     /// The term that came in or went out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "alpha")]
@@ -74,7 +78,7 @@ pub struct StructureStep {
 /// What was done in a step.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Verdict {
+pub enum StepVerdict {
     /// The model before the first term.
     Start,
     /// A term came in.
@@ -83,7 +87,7 @@ pub enum Verdict {
     Removed,
 }
 
-impl Verdict {
+impl StepVerdict {
     /// As it is written in JSON.
     pub fn name(self) -> &'static str {
         match self {

@@ -4,13 +4,18 @@
 //! output, if its partial F is above the bound; then each term goes out whose partial F has fallen below the other (Klein and
 //! Morelli, sec. 5.3.1; Draper and Smith, Applied Regression Analysis, ch. 15).
 
-use super::candidates::{Candidates, DEPENDENT};
+use super::candidates::{Candidates, DEPENDENT, first_of_largest};
 use super::least_squares::Fit;
 use super::options::{StructureMethod, StructureOptions};
-use super::report::{Structure, StructureStep, Verdict};
+use super::report::{STOPPED, StepVerdict, Structure, StructureStep};
 
-/// Chooses terms; `None` where not even the start can be fitted: no samples.
-pub fn stepwise(candidates: &Candidates, options: &StructureOptions) -> Option<Structure> {
+/// Chooses terms; `None` where not even the start can be fitted: no samples. `keep_going` is asked before each step; with `false`
+/// the search ends with the terms that it has.
+pub fn stepwise(
+    candidates: &Candidates,
+    options: &StructureOptions,
+    keep_going: &mut dyn FnMut() -> bool,
+) -> Option<Structure> {
     let variation = candidates.variation();
     let mut search = Search {
         candidates,
@@ -20,8 +25,11 @@ pub fn stepwise(candidates: &Candidates, options: &StructureOptions) -> Option<S
         steps: Vec::new(),
     };
     let mut fit = Fit::of(candidates, &[])?;
-    search.tell(&fit, Verdict::Start, None);
+    search.tell(&fit, StepVerdict::Start, None);
     let reason = loop {
+        if !keep_going() {
+            break STOPPED.to_string();
+        }
         let most = options.most_terms.unwrap_or(usize::MAX);
         if search.chosen.len() >= most {
             break format!("{most} terms are as many as were allowed");
@@ -31,7 +39,7 @@ pub fn stepwise(candidates: &Candidates, options: &StructureOptions) -> Option<S
             Err(reason) => break reason,
         };
         fit = next;
-        search.tell(&fit, Verdict::Entered, Some(entered));
+        search.tell(&fit, StepVerdict::Entered, Some(entered));
         match search.remove(fit, entered.term) {
             Removed::Settled(next) => fit = next,
             Removed::Circle(next, term) => {
@@ -44,6 +52,7 @@ pub fn stepwise(candidates: &Candidates, options: &StructureOptions) -> Option<S
         }
     };
     let terms = fit.terms(candidates, &search.chosen);
+    let left_out = fit.explained(candidates, &search.chosen);
     Some(Structure {
         output: options.output.clone(),
         method: StructureMethod::Stepwise,
@@ -54,7 +63,7 @@ pub fn stepwise(candidates: &Candidates, options: &StructureOptions) -> Option<S
         terms,
         equation: String::new(),
         reason,
-        left_out: Vec::new(),
+        left_out,
     })
 }
 
@@ -83,7 +92,7 @@ enum Removed {
 }
 
 impl Search<'_> {
-    fn tell(&mut self, fit: &Fit, verdict: Verdict, moved: Option<Moved>) {
+    fn tell(&mut self, fit: &Fit, verdict: StepVerdict, moved: Option<Moved>) {
         let samples = self.candidates.samples() as f64;
         let step = StructureStep {
             number: self.steps.len(),
@@ -112,8 +121,8 @@ impl Search<'_> {
             let correlation = left.dot(&fit.residual) / (length * fit.squares).sqrt();
             (is_own && correlation.is_finite()).then_some((term, correlation))
         });
-        let best = correlated.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-        let Some((term, correlation)) = best else {
+        let correlated: Vec<(usize, f64)> = correlated.collect();
+        let Some((term, correlation)) = first_of_largest(&correlated) else {
             return Err("no term is left that the others do not explain".to_string());
         };
         let name = &self.candidates.names[term];
@@ -172,7 +181,7 @@ impl Search<'_> {
                 partial_f,
                 correlation: None,
             };
-            self.tell(&fit, Verdict::Removed, Some(moved));
+            self.tell(&fit, StepVerdict::Removed, Some(moved));
             if term == entered {
                 return Removed::Circle(fit, term);
             }

@@ -10,7 +10,7 @@ use crate::http::problem::{Problem, ProblemDocument};
 use crate::http::request::json::JsonBody;
 use crate::http::request::query::Id;
 use crate::http::service::{Server, Service};
-use crate::response::{FrequencyResponses, ResponseOptions, frequency_responses};
+use crate::response::{RecordedResponses, ResponseOptions, frequency_responses};
 
 pub(crate) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(get_frequency_responses))
@@ -25,7 +25,7 @@ pub(crate) fn router() -> OpenApiRouter<Server> {
     params(("id" = String, Path)),
     request_body = ResponseOptions,
     responses(
-        (status = 200, description = "The responses, SI.", body = FrequencyResponses),
+        (status = 200, description = "The responses, SI.", body = RecordedResponses),
         (status = 404, description = "`unknown_maneuver`", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 422, description = "`wrong_shape`, `invalid_response`: `errors` lists the faults by JSON pointer.", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
@@ -33,7 +33,7 @@ async fn get_frequency_responses(
     service: Service,
     Id(id): Id,
     JsonBody { value: options, .. }: JsonBody<ResponseOptions>,
-) -> Result<Json<FrequencyResponses>, Problem> {
+) -> Result<Json<RecordedResponses>, Problem> {
     let found = service.store.maneuver_data(&id).await?;
     let maneuver = found.ok_or_else(|| unknown_maneuver(&id))?;
     let work = move || frequency_responses(&maneuver, &options);

@@ -205,6 +205,50 @@ fn the_core_brings_no_server_and_no_database() {
     assert!(foreign.is_empty(), "in the core: {foreign:?}");
 }
 
+/// Schemas of the API document are known by name: of two types of one name the one that is met last takes the other's place.
+#[test]
+fn no_two_schemas_have_one_name() {
+    let mut files: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for (file, text) in sources() {
+        for name in schemas(&text) {
+            files.entry(name).or_default().push(file.clone());
+        }
+    }
+    assert!(files.len() > 100, "{} schemas", files.len());
+    let twice = files.into_iter().filter(|(_, files)| files.len() > 1);
+    let faults: Vec<String> = twice
+        .map(|(name, files)| format!("schema {name}: in {}; rename one", files.join(" and ")))
+        .collect();
+    fail_if_any(&faults);
+    let planted = "#[derive(\n    Debug,\n    ToSchema,\n)]\n/// A struct.\npub struct Planted {}\n#[derive(Debug)]\nenum Other {}";
+    assert_eq!(schemas(planted), ["Planted"]);
+}
+
+/// Types of a file that derive `ToSchema`.
+fn schemas(text: &str) -> Vec<String> {
+    let mut names = Vec::new();
+    for part in text.split("#[derive(").skip(1) {
+        let (derived, rest) = part.split_once(")]").unwrap_or_default();
+        if !derived
+            .split([',', ' ', '\n', ':'])
+            .any(|word| word == "ToSchema")
+        {
+            continue;
+        }
+        let lines = rest.lines().map(str::trim_start);
+        let mut declared = lines.filter_map(|line| {
+            let words = line
+                .split_once("struct ")
+                .or_else(|| line.split_once("enum "));
+            let (_, name) =
+                words.filter(|(before, _)| before.is_empty() || before.starts_with("pub"))?;
+            name.split([' ', '<', '(', ';', '{']).next()
+        });
+        names.extend(declared.next().map(String::from));
+    }
+    names
+}
+
 #[test]
 fn files_are_of_a_size_to_be_read() {
     let too_long: Vec<String> = sources()

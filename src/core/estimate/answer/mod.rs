@@ -191,7 +191,7 @@ impl Ending<'_> {
 
 impl Asked<'_> {
     /// Errors of unknowns that were not solved for are correlated with no others.
-    fn correlation(&self, solved: &Problem, bounds: &ErrorBounds) -> Vec<Vec<f64>> {
+    pub(crate) fn correlation(&self, solved: &Problem, bounds: &ErrorBounds) -> Vec<Vec<f64>> {
         if bounds.correlation.is_empty() && !solved.unknowns.is_empty() {
             return Vec::new();
         }

@@ -6,7 +6,7 @@ use crate::estimate::accuracy::coloured_residuals::Colour;
 use crate::estimate::accuracy::fit::histories_of;
 use crate::estimate::accuracy::identifiability::data_information;
 use crate::estimate::answer::table::{Accuracy, table};
-use crate::estimate::answer::{Ending, Solution};
+use crate::estimate::answer::{Asked, Ending, Solution};
 use crate::estimate::descent::Descent;
 use crate::estimate::descent::iterate::Iterate;
 use crate::estimate::evaluation::evaluate::Evaluate;
@@ -18,22 +18,13 @@ use crate::estimate::report::history::TimeHistory;
 use crate::estimate::report::identifiability::Identifiability;
 use crate::spectral::Frequencies;
 
-/// Whose parameters an answer is about, and what is shown of it in the time domain.
-pub(super) struct Shown<'a> {
-    pub asked: &'a Problem,
-    /// Its θ.
-    pub theta: Vec<f64>,
-    /// By place of this: the place in the θ of the problem that was transformed.
-    pub place: &'a dyn Fn(usize) -> Option<usize>,
-    /// Those of the problem that was transformed.
-    pub histories: Vec<TimeHistory>,
-}
-
-/// At the end of a descent.
+/// At the end of a descent in what was transformed of `base`: `asked` gives places in this, and `shown` is what is seen of it in the
+/// time domain.
 pub(super) fn answer(
     base: &Problem,
     descent: Descent<FrequencyEvaluator<'_>>,
-    shown: Shown<'_>,
+    asked: Asked<'_>,
+    shown: Vec<TimeHistory>,
 ) -> Solution {
     let Descent {
         mut evaluator,
@@ -71,13 +62,17 @@ pub(super) fn answer(
         .and_then(|first| data(&first));
     let estimates = base.options.max_iterations > 0;
     let accuracy = Accuracy::new(&seen.unknowns, &information, held, &bounds);
-    let solved = |place: usize| (shown.place)(place).and_then(|of| transformed.place(of));
-    let accuracy = accuracy.seen_from(shown.theta.len(), solved);
+    let of_base = asked.solved;
+    let asked = Asked {
+        solved: &|place: usize| of_base(place).and_then(|of| transformed.place(of)),
+        ..asked
+    };
+    let accuracy = accuracy.seen_from(asked.theta.len(), asked.solved);
     // what no simulation follows, as an unstable aircraft, has no time histories
-    let is_shown = (shown.histories.iter().flat_map(|history| &history.outputs))
+    let is_shown = (shown.iter().flat_map(|history| &history.outputs))
         .all(|output| output.model.iter().all(|y| y.is_finite()));
     let fitted = match is_shown {
-        true => shown.histories.clone(),
+        true => shown,
         false => histories_of(base, |_, segment| segment.measured.clone()),
     };
     let ending = Ending {
@@ -94,8 +89,8 @@ pub(super) fn answer(
         colour: &Colour::of(&fitted),
     };
     let mut estimate = Estimate {
-        parameters: table(shown.asked, &shown.theta, &accuracy),
-        correlation: correlation(&shown, &bounds.correlation, solved),
+        parameters: table(asked.problem, &asked.theta, &accuracy),
+        correlation: asked.correlation(&seen, &bounds),
         identifiability: before.map(|before| Identifiability {
             before,
             after: estimates.then(|| data(&information)).flatten(),
@@ -109,28 +104,10 @@ pub(super) fn answer(
     }
     Solution {
         covariance: at.weighting.covariance.clone(),
-        theta: shown.theta,
+        theta: asked.theta,
         histories: if is_shown { fitted } else { Vec::new() },
         estimate,
     }
-}
-
-/// Errors of unknowns that were not solved for are correlated with no others.
-fn correlation(
-    shown: &Shown<'_>,
-    own: &[Vec<f64>],
-    solved: impl Fn(usize) -> Option<usize>,
-) -> Vec<Vec<f64>> {
-    if own.is_empty() {
-        return Vec::new();
-    }
-    let entry = |a: usize, b: usize| match (solved(a), solved(b)) {
-        (Some(a), Some(b)) => own[a][b],
-        _ => f64::from(u8::from(a == b)),
-    };
-    let places = 0..shown.theta.len();
-    let row = |a: usize| places.clone().map(|b| entry(a, b)).collect();
-    places.clone().map(row).collect()
 }
 
 /// What was compared, and how well it is reproduced.

@@ -7,7 +7,7 @@
 //! over a band of M frequencies (Klein, J. Aircraft 17, 1980; Morelli and Klein, Aircraft System Identification, ch. 7): the
 //! likelihood of complex normal residuals, whose real and imaginary parts count as two samples of the variance R. With
 //! equation error z is iω times the transform of a measured state. A transform over a finite time also depends on the states
-//! at its ends and on drifts; both are linear unknowns of each segment, estimated along with θ (`spectra`) and taken out of
+//! at its ends and on drifts; both are linear unknowns of each segment, estimated along with θ (`ends`) and taken out of
 //! its information (`reduced`).
 //!
 //! Biases, trim values and initial states do not show in a band without zero. So that there are time histories to look at,
@@ -15,6 +15,7 @@
 
 mod answer;
 mod columns;
+mod ends;
 mod evaluator;
 mod left_out;
 mod linear;
@@ -29,7 +30,7 @@ mod transformed;
 use std::ops::ControlFlow;
 
 use crate::estimate::accuracy::fit::histories;
-use crate::estimate::answer::Solution;
+use crate::estimate::answer::{Asked, Solution};
 use crate::estimate::descent::Descent;
 use crate::estimate::descent::gauss_newton::descend_with;
 use crate::estimate::evaluation::evaluate::Evaluate;
@@ -41,7 +42,8 @@ use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::regression::Regression;
 use crate::estimate::report::iteration::{Iteration, Outcome};
 use crate::estimate::report::progress::{Observer, unobserved};
-use answer::{Shown, answer};
+use answer::answer;
+pub(crate) use ends::path_ends;
 use evaluator::FrequencyEvaluator;
 use left_out::with_left_out;
 pub(crate) use spectra::band_frequencies;
@@ -63,13 +65,13 @@ pub fn output_error_frequency(
     let theta = of_base(problem, &transformed, &descent.last.theta);
     let is_seen = |place: usize| transformed.place(place).is_some();
     let theta = with_left_out(problem, theta, is_seen);
-    let shown = Shown {
-        asked: problem,
-        histories: histories(problem, &theta),
+    let shown = histories(problem, &theta);
+    let asked = Asked {
+        problem,
         theta,
-        place: &of_asked,
+        solved: &of_asked,
     };
-    let mut solution = answer(problem, descent, shown);
+    let mut solution = answer(problem, descent, asked, shown);
     let reason = reason("output error", problem, is_seen, &solution);
     solution.estimate.reason = reason;
     Ok(solution)
@@ -98,13 +100,13 @@ pub fn equation_error_frequency(
     // in the time domain the same regression is one of smoothed signals
     let smoothed = Regression::new(problem).ok_or(Unusable::NoMeasuredState)?;
     let found = with_left_out(&smoothed.problem, found, is_seen);
-    let shown = Shown {
-        asked: problem,
+    let asked = Asked {
+        problem,
         theta: smoothed.theta(&found),
-        place: &of_asked,
-        histories: histories(&smoothed.problem, &found),
+        solved: &of_asked,
     };
-    let mut solution = answer(base, descent, shown);
+    let shown = histories(&smoothed.problem, &found);
+    let mut solution = answer(base, descent, asked, shown);
     let is_seen = |place: usize| regression.place(place).is_some_and(is_seen);
     let mut reason = reason("equation error", problem, is_seen, &solution);
     if !regression.integrated.is_empty() {

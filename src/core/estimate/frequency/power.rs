@@ -2,7 +2,8 @@
 //!
 //! An average over neighbours, of residuals that were divided by what the power of each output does over the whole band: it grows
 //! with ω² where a state that is measured with noise was differentiated. For periodogram ordinates of mean p = c₀ + c₂ ω² the
-//! likelihood is Σ |e|²/p + ln p (Whittle 1953), found by least squares with weights 1/p².
+//! likelihood is Σ |e|²/p + ln p (Whittle 1953), found by least squares with weights 1/p². Of white residuals c₂ would be above zero
+//! by chance half of the time, and the power at low frequencies told too small: it is taken only where it shows.
 
 use nalgebra::DMatrix;
 use num_complex::Complex64;
@@ -28,7 +29,7 @@ impl Power {
     pub(super) fn of(omega: &[f64], residuals: &[Vec<Complex64>], close: f64) -> Self {
         let outputs = residuals.first().map_or(0, Vec::len);
         let trends: Vec<Vec<f64>> = (0..outputs)
-            .map(|output| trend(omega, residuals, output))
+            .map(|output| trend(omega, residuals, output, close))
             .collect();
         let root = |k: usize| trends.iter().map(|trend| trend[k].sqrt()).collect();
         let roots: Vec<Vec<f64>> = (0..omega.len()).map(root).collect();
@@ -68,8 +69,11 @@ impl Power {
     }
 }
 
-/// p = c₀ + c₂ ω² of an output, by frequency.
-fn trend(omega: &[f64], residuals: &[Vec<Complex64>], output: usize) -> Vec<f64> {
+/// Twice the gain in the logarithm of the likelihood above which the power grows: two standard deviations.
+const SHOWS: f64 = 4.0;
+
+/// p = c₀ + c₂ ω² of an output, by frequency, or their mean; each frequency counts by the share `close`.
+fn trend(omega: &[f64], residuals: &[Vec<Complex64>], output: usize, close: f64) -> Vec<f64> {
     let power: Vec<f64> = residuals.iter().map(|e| e[output].norm_sqr()).collect();
     let mean = power.iter().sum::<f64>() / power.len().max(1) as f64;
     let mut trend = vec![mean; power.len()];
@@ -100,16 +104,49 @@ fn trend(omega: &[f64], residuals: &[Vec<Complex64>], output: usize) -> Vec<f64>
             *p = constant + growth * omega * omega;
         }
     }
-    if trend.iter().all(|p| p.is_finite() && *p > 0.0) {
+    let flat = vec![mean; power.len()];
+    let gain = likelihood(&flat, &power) - likelihood(&trend, &power);
+    // not where the trend is no power
+    if 2.0 * close * gain > SHOWS {
         trend
     } else {
-        vec![mean; power.len()]
+        flat
     }
+}
+
+/// -ln L = Σ |e|²/p + ln p; NaN where a power is not above zero.
+fn likelihood(trend: &[f64], power: &[f64]) -> f64 {
+    let both = trend.iter().zip(power);
+    let each = both.map(|(p, power)| match *p > 0.0 {
+        true => power / p + p.ln(),
+        false => f64::NAN,
+    });
+    each.sum()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Of white noise the power is the same everywhere, although the trend that fits it best may grow.
+    #[test]
+    fn a_power_that_does_not_grow_is_one_everywhere() {
+        let omega: Vec<f64> = (1..=60).map(|k| f64::from(k) * 0.2).collect();
+        let power_of = |seed: f64| {
+            let size = |k: usize| {
+                let uniform = ((k as f64 + 0.5) * 0.618_033_988_75 + seed).fract();
+                -uniform.ln()
+            };
+            let residuals: Vec<Vec<Complex64>> = (0..omega.len())
+                .map(|k| vec![Complex64::from(size(k).sqrt())])
+                .collect();
+            trend(&omega, &residuals, 0, 1.0)
+        };
+        for seed in 0..20 {
+            let trend = power_of(f64::from(seed) * 0.05);
+            assert!(trend.iter().all(|p| *p == trend[0]), "{seed}: {trend:?}");
+        }
+    }
 
     /// Pseudo-random phases and sizes of a power that grows with ω².
     #[test]

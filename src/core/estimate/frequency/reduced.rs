@@ -3,7 +3,7 @@
 //! With F in blocks of the parameters (p) and the others (e), the information on the parameters is F_pp - F_pe F_ee⁻¹ F_ep. Its
 //! inverse is their block of F⁻¹.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 
 use super::columns::Columns;
@@ -71,9 +71,28 @@ fn absorbed(problem: &Problem) -> f64 {
     values as f64 / left as f64
 }
 
+/// A larger leverage is taken for this: what it leaves of a residual is next to nothing.
+const MOST_LEVERAGE: f64 = 0.9;
+
+/// Of a residual of the variance `variance`, real and imaginary part each: which share of its square the fit absorbs, the diagonal
+/// of the hat matrix ½ Re(s F⁻¹ sᴴ)/R. It differs much over a band: most of it is where the motion is.
+fn leverage(row: &[Complex64], inverse: &DMatrix<f64>, variance: f64) -> f64 {
+    let square = |part: fn(&Complex64) -> f64| {
+        let part = DVector::from_iterator(row.len(), row.iter().map(part));
+        part.dot(&(inverse * &part))
+    };
+    let leverage = 0.5 * (square(|s| s.re) + square(|s| s.im)) / variance;
+    // an output that is reproduced exactly has no variance
+    if leverage.is_finite() {
+        leverage.clamp(0.0, MOST_LEVERAGE)
+    } else {
+        0.0
+    }
+}
+
 /// How much the gradient scatters where the power of the noise differs from frequency to frequency:
-/// Σ_k ½ Re(S_kᴴ R⁻¹ E_k R⁻¹ S_k), E_k the residuals' power averaged over the frequencies next to k, made larger by what the fit
-/// has absorbed of it. Real and imaginary parts of noise have the same power, and different frequencies are independent.
+/// Σ_k ½ Re(S_kᴴ R⁻¹ E_k R⁻¹ S_k), E_k the power of residuals, each over √(1 - h) of its leverage h, averaged over the frequencies
+/// next to k. Real and imaginary parts of noise have the same power, and different frequencies are independent.
 fn gradient_covariance(
     evaluator: &mut FrequencyEvaluator<'_>,
     at: &Iterate,
@@ -82,22 +101,31 @@ fn gradient_covariance(
     let problem = &transformed.problem;
     let (outputs, unknowns) = (problem.model.outputs.len(), at.theta.len());
     let mut covariance = DMatrix::zeros(unknowns, unknowns);
-    let absorbed = absorbed(problem);
+    let inverse = Spectrum::of(&at.information, &at.information.diagonal());
+    let inverse = inverse.map_or_else(|| DMatrix::zeros(unknowns, unknowns), |all| all.inverse());
     for segment in 0..problem.segments.len() {
         let columns = Columns::of(problem, segment);
-        let (mut residuals, mut rows) = (Vec::new(), Vec::new());
-        evaluator.sweep(segment, &at.theta, Some(&columns), |at| {
-            residuals.push(at.residuals.to_vec());
-            rows.push(at.rows.to_vec());
-        })?;
         let width = columns.places.len();
+        // residuals are scaled by the root of the share by which their frequency counts
+        let spectra = &transformed.spectra[segment];
+        let close = spectra.independent as f64 / spectra.omega.len().max(1) as f64;
+        let own = DMatrix::from_fn(width, width, |a, b| {
+            inverse[(columns.places[a], columns.places[b])]
+        });
+        let (mut residuals, mut rows) = (Vec::new(), Vec::new());
+        evaluator.sweep(segment, &at.theta, Some(&columns), |look| {
+            let whole = |(i, e): (usize, &Complex64)| {
+                let row = &look.rows[i * width..(i + 1) * width];
+                let variance = at.weighting.covariance[(i, i)] * close;
+                e / (1.0 - leverage(row, &own, variance)).sqrt()
+            };
+            residuals.push(look.residuals.iter().enumerate().map(whole).collect());
+            rows.push(look.rows.to_vec());
+        })?;
         let weight = at.weighting.inverse.map(Complex64::from);
         // closer than independent frequencies, as many of them as are between two of those
-        let spectra = &transformed.spectra[segment];
-        let close = spectra.independent as f64 / residuals.len().max(1) as f64;
         let power = Power::of(&spectra.omega, &residuals, close);
-        // residuals are scaled by the root of the share by which their frequency counts
-        let whole = Complex64::from(absorbed / close);
+        let whole = Complex64::from(close.recip());
         for k in 0..rows.len() {
             let power = power.at(k) * whole;
             let power = &weight * power * &weight;

@@ -6,12 +6,13 @@
 use num_complex::Complex64;
 
 use super::columns::Columns;
+use super::ends::{POWERS, Target};
 use super::linear::Linear;
 use super::path::{Passed, passed};
-use super::spectra::{Spectra, Target};
+use super::spectra::Spectra;
 use crate::estimate::problem::Problem;
 use crate::model::{Element, PathElement};
-use crate::spectral::invert;
+use crate::spectral::{invert, power_integrals};
 
 /// The sizes of the elements of all paths, and their derivatives.
 pub(super) struct Sizes {
@@ -32,8 +33,12 @@ pub(super) struct Room {
     input_slopes: Vec<Complex64>,
     /// By element of an output: its factor, and the derivative of the product of all factors of its output by ψ.
     output_slopes: Vec<Complex64>,
+    /// By input: the factor of its lag.
+    lags: Vec<Complex64>,
     /// By output: the product of its factors.
     factors: Vec<Complex64>,
+    /// By output: ∫ s^p exp(-iωs) ds over its delay, by p; and the size of that.
+    pulses: Vec<([Complex64; POWERS], f64)>,
     pub residuals: Vec<Complex64>,
     /// By output, before its path.
     before: Vec<Complex64>,
@@ -82,7 +87,9 @@ impl Response<'_> {
             signals: zeros(states + inputs),
             input_slopes: zeros(model.paths.of_inputs().len()),
             output_slopes: zeros(model.paths.of_outputs().len()),
+            lags: zeros(inputs),
             factors: zeros(outputs),
+            pulses: vec![([Complex64::ZERO; POWERS], 0.0); outputs],
             residuals: zeros(outputs),
             before: zeros(outputs),
             rows: zeros(outputs * width),
@@ -132,6 +139,13 @@ impl Response<'_> {
                 (*signal, room.input_slopes[place]) = (delayed.factor, delayed.slope);
             }
         }
+        // the ends of lags
+        for (term, size) in self.spectra.terms.iter().zip(self.ends) {
+            if let Target::LaggedInput(input) = term.target {
+                room.signals[states + input] += term.transform[k] * size;
+            }
+        }
+        room.lags.fill(Complex64::ONE);
         for (place, at) in elements
             .clone()
             .filter(|(_, at)| at.element == Element::Lag)
@@ -146,6 +160,7 @@ impl Response<'_> {
             let signal = &mut room.signals[states + at.signal];
             room.input_slopes[place] = *signal * slope;
             *signal *= factor;
+            room.lags[at.signal] *= factor;
         }
     }
 
@@ -187,8 +202,11 @@ impl Response<'_> {
         let first = paths.of_inputs().len();
         let elements: &[PathElement] = paths.of_outputs();
         for (place, at) in elements.iter().enumerate() {
-            let Passed { factor, slope } =
-                passed(at.element, self.sizes.values[first + place], omega);
+            let size = self.sizes.values[first + place];
+            let Passed { factor, slope } = passed(at.element, size, omega);
+            if at.element == Element::Delay {
+                room.pulses[at.signal] = (power_integrals(omega, size), size);
+            }
             for (before, other) in elements[..place].iter().enumerate() {
                 if other.signal == at.signal {
                     room.output_slopes[before] *= factor;
@@ -204,14 +222,26 @@ impl Response<'_> {
         let width = room.signals.len();
         for output in 0..room.residuals.len() {
             let row = &self.linear.observation.values[output * width..(output + 1) * width];
-            let before: Complex64 = row.iter().zip(&room.signals).map(|(c, w)| w * c).sum();
-            room.before[output] = before;
-            room.residuals[output] =
-                self.spectra.outputs[output][k] - before * room.factors[output];
+            room.before[output] = row.iter().zip(&room.signals).map(|(c, w)| w * c).sum();
         }
-        for (term, size) in self.spectra.terms.iter().zip(self.ends) {
-            if let Target::Output(output) = term.target {
-                room.residuals[output] -= term.transform[k] * size;
+        let terms = || self.spectra.terms.iter().zip(self.ends);
+        for (term, size) in terms() {
+            if let Target::LaggedOutput(output) = term.target {
+                room.before[output] += term.transform[k] * size;
+            }
+        }
+        for output in 0..room.residuals.len() {
+            room.residuals[output] =
+                self.spectra.outputs[output][k] - room.before[output] * room.factors[output];
+        }
+        for (term, size) in terms() {
+            match term.target {
+                Target::Output(output) => room.residuals[output] -= term.transform[k] * size,
+                Target::Delayed(output, power) => {
+                    let pulse = room.pulses[output].0[power];
+                    room.residuals[output] -= term.transform[k] * pulse * size;
+                }
+                Target::State(_) | Target::LaggedInput(_) | Target::LaggedOutput(_) => {}
             }
         }
     }
@@ -225,7 +255,7 @@ impl Response<'_> {
         for (rows, factor) in room.rows.chunks_exact_mut(width.max(1)).zip(&room.factors) {
             rows.iter_mut().for_each(|entry| *entry *= factor);
         }
-        self.by_output_paths(columns, room);
+        self.by_output_paths(k, columns, room);
         self.by_terms(k, columns, room);
     }
 
@@ -279,8 +309,8 @@ impl Response<'_> {
         via + self.linear.observation.values[output * width + entry]
     }
 
-    /// What lags and delays of outputs do to their own factors.
-    fn by_output_paths(&self, columns: &Columns, room: &mut Room) {
+    /// What lags and delays of outputs do to their own factors, and to what is estimated of their ends.
+    fn by_output_paths(&self, k: usize, columns: &Columns, room: &mut Room) {
         let paths = &self.problem.model.paths;
         let width = columns.places.len();
         for &(place, parameter, by) in &self.sizes.slopes {
@@ -288,10 +318,26 @@ impl Response<'_> {
             let (Some(place), Some(column)) = (place, columns.of[parameter]) else {
                 continue;
             };
-            let output = paths.of_outputs()[place].signal;
-            let change = room.output_slopes[place] * room.before[output] * by;
-            room.rows[output * width + column] += change;
+            let at = &paths.of_outputs()[place];
+            let mut change = room.output_slopes[place] * room.before[at.signal];
+            if at.element == Element::Delay {
+                change += self.by_delay(k, at.signal, room.pulses[at.signal].1);
+            }
+            room.rows[at.signal * width + column] += change * by;
         }
+    }
+
+    /// The derivative of what the end of a delayed output adds, by the delay: the upper limit of the integrals.
+    fn by_delay(&self, k: usize, output: usize, delay: f64) -> Complex64 {
+        let terms = self.spectra.terms.iter().zip(self.ends);
+        let own = terms.filter_map(|(term, size)| match term.target {
+            Target::Delayed(of, power) if of == output => {
+                Some(term.transform[k] * (size * delay.powi(power as i32)))
+            }
+            _ => None,
+        });
+        let sum: Complex64 = own.sum();
+        sum * Complex64::from_polar(1.0, -self.spectra.omega[k] * delay)
     }
 
     /// What is estimated of ends and trends is linear in the outputs.
@@ -306,6 +352,19 @@ impl Response<'_> {
             let added = term.transform[k];
             match term.target {
                 Target::Output(output) => room.rows[output * width + column] += added,
+                Target::LaggedOutput(output) => {
+                    room.rows[output * width + column] += added * room.factors[output];
+                }
+                Target::Delayed(output, power) => {
+                    room.rows[output * width + column] += added * room.pulses[output].0[power];
+                }
+                Target::LaggedInput(input) => {
+                    for output in 0..room.factors.len() {
+                        let whole = self.transfer(output, states + input, room) * room.lags[input];
+                        let factor = room.factors[output];
+                        room.rows[output * width + column] += whole * added * factor;
+                    }
+                }
                 Target::State(state) => {
                     for (output, factor) in room.factors.iter().enumerate() {
                         let through = room.through[output * states + state];

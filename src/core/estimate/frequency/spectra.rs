@@ -6,21 +6,13 @@
 
 use num_complex::Complex64;
 
+use super::ends::{End, Target};
 use super::path::Window;
 use crate::estimate::options::frequency::{Ends, FrequencyOptions, Trend};
 use crate::simulate::{InputInterpolation, Segment, Steps};
 use crate::spectral::{Between, FourierIntegral, Frequencies};
 
-/// What a quantity that is estimated of the ends or the trend of a segment adds to.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Target {
-    /// The right side of a state equation.
-    State(usize),
-    /// An output, as it is recorded.
-    Output(usize),
-}
-
-/// One such quantity: where it acts, and its transform.
+/// A quantity that is estimated of the ends or the trend: where it acts, and its transform.
 #[derive(Clone, Debug)]
 pub(super) struct Term {
     pub target: Target,
@@ -57,6 +49,8 @@ pub(super) struct Transform<'a> {
     pub states: usize,
     /// By input, whether it has a delay.
     pub delayed: &'a [bool],
+    /// What is estimated of the ends of lags and delays.
+    pub paths: &'a [(Target, End)],
 }
 
 /// The frequencies at which a segment is looked at.
@@ -152,6 +146,13 @@ impl Transform<'_> {
                     add(target, end.clone());
                 }
             }
+        }
+        for (target, at) in self.paths {
+            let ends = match at {
+                End::First => &start,
+                End::Last => &end,
+            };
+            add(*target, ends.clone());
         }
         let omega = integral.omega();
         let duration = integral.duration();

@@ -1,9 +1,10 @@
 //! A problem in the frequency domain: made of one in the time domain, whose parameters it has, and behind them what is
 //! estimated of the ends and trends of each segment.
 
+use super::ends::{Target, of_paths};
 use super::linear::{Linear, Linearisation, Point};
 use super::path::passed;
-use super::spectra::{Spectra, Target, Transform};
+use super::spectra::{Spectra, Transform};
 use crate::estimate::options::Options;
 use crate::estimate::options::frequency::FrequencyOptions;
 use crate::estimate::problem::Problem;
@@ -44,6 +45,7 @@ impl Transformed {
             measured: derivatives,
             states: model.states.len(),
             delayed: &delayed,
+            paths: &of_paths(model, options),
         };
         let spectra: Vec<Spectra> = (base.segments.iter())
             .map(|segment| transform.of(segment))
@@ -78,7 +80,10 @@ impl Transformed {
             .parameters
             .extend(targets.iter().map(|target| match *target {
                 Target::State(i) => nuisance(&model.states[i].name, model.states[i].unit),
-                Target::Output(i) => nuisance(&model.outputs[i].name, model.outputs[i].unit),
+                Target::LaggedInput(i) => nuisance(&model.inputs[i].name, model.inputs[i].unit),
+                Target::Output(i) | Target::LaggedOutput(i) | Target::Delayed(i, _) => {
+                    nuisance(&model.outputs[i].name, model.outputs[i].unit)
+                }
             }));
         let problem = Problem {
             segments: base.segments.clone(),

@@ -29,7 +29,8 @@ pub struct FrequencyOptions {
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Ends {
-    /// Unknown: estimated for each segment along with the parameters, whose error bounds take account of it.
+    /// Unknown: estimated for each segment along with the parameters, whose error bounds take account of it; so is what lags, and
+    /// delays of outputs, have in them at the ends.
     #[default]
     Estimated,
     /// The maneuver ends in the steady state in which it begins, so that nothing is to be estimated of them.

@@ -3,7 +3,7 @@
 use super::bounds::JOB_TOO_LARGE;
 use crate::estimate::{
     Derivatives, Ends, Estimator, Noise, Options, StartMethod, StepsPerSample, Trend, Unknowns,
-    band_frequencies,
+    band_frequencies, path_ends,
 };
 use crate::flight::{Fault, Finding, FindingCode, escape};
 use crate::job::no_start::no_band;
@@ -167,7 +167,7 @@ pub(super) fn check_data(
     } else {
         0
     };
-    let count = unknowns.len() + segments.len() * (lines + ends);
+    let count = unknowns.len() + segments.len() * (lines + ends + path_ends(model, &frequency));
     let work = independent as f64
         * (states.pow(3) + outputs * (states.pow(2) + count * (states + count / 2))) as f64;
     let solve = (count as f64).powi(3);

@@ -6,7 +6,7 @@ mod structure;
 mod study;
 
 pub use diagnosis::run_diagnosis;
-pub use structure::run_structure;
+pub use structure::{StructureProgress, run_structure};
 pub use study::{StudyProgress, run_study};
 
 use std::ops::ControlFlow;

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use super::finish::finish;
 use super::predicted;
 use crate::estimate::{self, Problem, Solution, Unknowns, Validation, estimate};
-use crate::flight::{Dimension, Fault, Faults};
+use crate::flight::{Dimension, Fault, Faults, Finding, FindingCode};
 use crate::job::no_start::no_start;
 use crate::job::plan::Plan;
 use crate::job::result::JobResult;
@@ -13,27 +13,43 @@ use crate::job::term_search::TermSearch;
 use crate::model::{Model, ModelDocument, Parameter, Per, Start};
 use crate::structure::{Structure, StructureMethod, Term, orthogonal, stepwise};
 
-/// Runs the plan of a structure determination; `watcher` is told of the estimation and may stop it.
+/// What a structure determination tells as it goes.
+#[derive(Clone, Copy, Debug)]
+pub enum StructureProgress<'a> {
+    /// The search for terms: nothing new, but an occasion to stop it.
+    Underway,
+    /// The estimation of their parameters got on.
+    Estimation(estimate::Progress<'a>),
+}
+
+/// Runs the plan of a structure determination; `watcher` may stop it. What there is of a structure and of an estimate is then kept.
 ///
 /// # Errors
 /// The model with the equation cannot be compiled or fitted. A finding that a strict job refuses.
 pub fn run_structure(
     plan: &Plan,
-    watcher: &mut dyn FnMut(estimate::Progress<'_>) -> ControlFlow<()>,
+    watcher: &mut dyn FnMut(StructureProgress<'_>) -> ControlFlow<()>,
 ) -> Result<JobResult, Faults> {
     let Some(search) = &plan.terms else {
         let message = "the job was not prepared as a structure determination";
         return Err(Fault::new("/kind", "bad_option", message).into());
     };
-    let chosen = match search.options.method {
-        StructureMethod::Stepwise => stepwise(&search.candidates, &search.options),
-        StructureMethod::Orthogonal => orthogonal(&search.candidates, &search.options),
+    let mut stopped = false;
+    let mut keep_going = || {
+        stopped = watcher(StructureProgress::Underway).is_break();
+        !stopped
+    };
+    let (candidates, options) = (&search.candidates, &search.options);
+    let chosen = match options.method {
+        StructureMethod::Stepwise => stepwise(candidates, options, &mut keep_going),
+        StructureMethod::Orthogonal => orthogonal(candidates, options, &mut keep_going),
     };
     let Some(mut structure) = chosen else {
         let message = "there are fewer samples than it takes to tell a variance";
         return Err(Fault::new("/maneuvers", "too_few_samples", message).into());
     };
-    structure.left_out.clone_from(&search.left_out);
+    let remarks = remarks(&structure);
+    structure.left_out.splice(0..0, search.left_out.clone());
     let document = written(&plan.model, search, &mut structure);
     let model = Model::compile(&document)?;
     let problem = with_model(&plan.problem, model, &structure);
@@ -42,7 +58,12 @@ pub fn run_structure(
         covariance,
         estimate: mut result,
         mut histories,
-    } = estimate(&problem, watcher).map_err(|why| no_start(&problem, why))?;
+    } = estimate(&problem, &mut |progress| match stopped {
+        true => ControlFlow::Break(()),
+        false => watcher(StructureProgress::Estimation(progress)),
+    })
+    .map_err(|why| no_start(&problem, why))?;
+    result.findings.splice(0..0, remarks);
     let validation = plan.validation.iter().map(|validation| Validation {
         segment: validation.segment.clone(),
         unknowns: unknowns(&problem.model, 1, &structure, |parameter, _| {
@@ -85,6 +106,35 @@ pub fn run_structure(
             structure: Some(structure),
         },
     )
+}
+
+/// What is doubtful about the terms that were kept.
+fn remarks(structure: &Structure) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    if !structure.left_out.is_empty() {
+        let message = format!(
+            "these data do not tell terms that were left out from those that were kept: {}; an equation with them may fit as well",
+            structure.left_out.join(", ")
+        );
+        let remedy = "choose by what is known of the aircraft, with \"terms\"; or fly maneuvers that move the variables by more than a few sizes, and not together";
+        let finding = Finding::new(FindingCode::CollinearTerms, message, remedy);
+        findings.push(finding.at("/structure/terms"));
+    }
+    let by_chance = structure.insignificant();
+    if !by_chance.is_empty() {
+        let terms: Vec<String> = (by_chance.iter())
+            .map(|term| format!("{} (F = {:.1})", term.term, term.partial_f))
+            .collect();
+        let message = format!(
+            "terms of pure noise reach the partial F of these in more than one of 20 searches among {} candidates: {}",
+            structure.candidates,
+            terms.join(", ")
+        );
+        let remedy = "leave them out, with \"most_terms\" or a larger \"f_to_enter\", unless maneuvers of the role \"validation\" are predicted better with them";
+        let finding = Finding::new(FindingCode::InsignificantTerms, message, remedy);
+        findings.push(finding.at("/structure"));
+    }
+    findings
 }
 
 /// The document with the terms in the equation of the output, each with a parameter of its own.
