@@ -68,20 +68,28 @@ fn are_axes(one: PhysicalQuantity, other: PhysicalQuantity) -> bool {
 
 /// Each pair of outputs that could be taken for each other.
 fn swapped(subject: &Subject<'_>, sensors: &[Recorded<'_>]) -> Vec<Effect> {
-    let measures = |sensor: &Recorded<'_>| -> Option<Dimension> {
-        let output = subject.document.outputs.get(sensor.name)?;
-        Some(Unit::parse(&output.unit).ok()?.dimension)
-    };
     let mut effects = Vec::new();
     for (place, one) in sensors.iter().enumerate() {
         for other in &sensors[place + 1..] {
-            let alike = (measures(one).zip(measures(other)))
-                .is_some_and(|(one, other)| one.over(other).is_of_time());
-            if alike && one.quantity.is_motion() && other.quantity.is_motion() {
+            if are_alike(subject, one, other) {
                 let pair = format!("{}+{}", one.name, other.name);
                 effects.extend(subject.fit(Edit::new(EditKind::SwappedChannels, pair)));
             }
         }
     }
     effects
+}
+
+/// Two of one dimension, or an angle and a rate of one motion.
+fn are_alike(subject: &Subject<'_>, one: &Recorded<'_>, other: &Recorded<'_>) -> bool {
+    let measures = |sensor: &Recorded<'_>| -> Option<Dimension> {
+        let output = subject.document.outputs.get(sensor.name)?;
+        Some(Unit::parse(&output.unit).ok()?.dimension)
+    };
+    let Some(ratio) = measures(one).zip(measures(other)).map(|(a, b)| a.over(b)) else {
+        return false;
+    };
+    let are_motion = one.quantity.is_motion() && other.quantity.is_motion();
+    let of_one = one.quantity.motion() == other.quantity.motion();
+    are_motion && (ratio.is_none() || (ratio.is_of_time() && of_one))
 }
