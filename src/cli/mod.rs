@@ -8,6 +8,7 @@ mod changes;
 mod client;
 mod demo;
 mod derivatives;
+mod describe;
 mod diagnose;
 mod failure;
 mod figures;

@@ -115,22 +115,12 @@ fn findings(findings: &[Finding]) -> Markup {
 
 /// What was flown, as far as it was said.
 fn flown(flown: &Flown) -> Markup {
-    let texts = [
-        ("aircraft", &flown.aircraft),
-        ("registration", &flown.registration),
-        ("flight", &flown.flight),
-        ("test point", &flown.test_point),
-        ("date", &flown.date),
-        ("configuration", &flown.configuration),
-        ("gear", &flown.gear),
-        ("flaps", &flown.flaps),
-    ];
     html! {
         @if !flown.is_empty() {
             h2 { "What was flown" }
             dl.facts {
-                @for (name, text) in texts {
-                    @if let Some(text) = text { dt { (name) } dd { (text) } }
+                @for (name, text) in flown.texts().filter(|(name, _)| *name != "notes") {
+                    dt { (name.replace('_', " ")) } dd { (text) }
                 }
                 @for (name, quantity) in flown.quantities() {
                     dt { (called(&name)) } dd { (number(quantity.value)) " " (quantity.unit) }

@@ -94,6 +94,8 @@ codes! {
     AlreadyOver "already_over" CONFLICT "The job is already over";
     /// The project has as many webhooks as it may. Delete one first.
     TooManyWebhooks "too_many_webhooks" CONFLICT "There are too many webhooks";
+    /// It is no longer as the `ETag` in `If-Match` says: somebody changed it. Get it anew, and change what is there now.
+    PreconditionFailed "precondition_failed" PRECONDITION_FAILED "It was changed in the meantime";
     /// Something else goes by this name. Take another.
     NameTaken "name_taken" CONFLICT "The name is taken";
     /// There are no keys yet. The first is made where the database is, with `trimtab key new`.

@@ -8,7 +8,7 @@ use super::{BadCursor, Page, Project, StoreError};
 use crate::flight::Flown;
 
 impl Project {
-    /// Changes the name of a maneuver, and what is said of it: `change` has both as they are, and answers with both as they
+    /// Changes the name of a maneuver, and what is said of it: `change` has the maneuver as it is, and answers with both as they
     /// shall be, or with why they stay. Changes at one time come one after the other. `None`: there is no such maneuver.
     ///
     /// # Errors
@@ -16,7 +16,7 @@ impl Project {
     pub async fn change_maneuver<E>(
         &self,
         id: &str,
-        change: impl FnOnce(&str, &Flown) -> Result<(String, Flown), E>,
+        change: impl FnOnce(&ManeuverRecord) -> Result<(String, Flown), E>,
     ) -> Result<Option<Result<ManeuverRecord, E>>, StoreError> {
         let mut writing = self.store.begin().await?;
         // safe: put together from constants
@@ -31,7 +31,7 @@ impl Project {
             .await?;
         let Some(row) = row else { return Ok(None) };
         let mut record = read_record(&row)?;
-        match change(&record.name, &record.flown) {
+        match change(&record) {
             Ok((name, flown)) => (record.name, record.flown) = (name, flown),
             Err(why) => return Ok(Some(Err(why))),
         }
@@ -144,17 +144,12 @@ impl Project {
     }
 }
 
+/// Texts by which a recording is found, beside its tags.
+const MARKS: [&str; 4] = ["aircraft", "registration", "flight", "test_point"];
+
 /// By what a recording is found.
-fn marks(flown: &Flown) -> Vec<(&'static str, &String)> {
-    let one = [
-        ("aircraft", &flown.aircraft),
-        ("registration", &flown.registration),
-        ("flight", &flown.flight),
-        ("test_point", &flown.test_point),
-    ];
-    let one = one
-        .into_iter()
-        .filter_map(|(mark, value)| Some((mark, value.as_ref()?)));
-    one.chain(flown.tags.iter().map(|tag| ("tag", tag)))
-        .collect()
+fn marks(flown: &Flown) -> Vec<(&'static str, &str)> {
+    let texts = flown.texts().filter(|(name, _)| MARKS.contains(name));
+    let tags = flown.tags.iter().map(|tag| ("tag", tag.as_str()));
+    texts.chain(tags).collect()
 }

@@ -28,10 +28,7 @@ const LOG_CAPACITY: usize = 256;
 pub(super) async fn run_job(store: &Store, claim: Claim, shutdown: &CancellationToken) {
     let claim = Arc::new(claim);
     let written = match work_on(store, &claim, shutdown).await {
-        Settled::Ended(ending) => tokio::select! {
-            written = end(store, &claim, ending) => written,
-            () = last_chance(shutdown) => Err(StoreError::Database(sqlx::Error::PoolTimedOut)),
-        },
+        Settled::Ended(ending) => end(store, &claim, ending).await,
         Settled::Released => {
             let release = || store.release(&claim, "the server is shutting down");
             persist("release", release).await
@@ -46,12 +43,6 @@ pub(super) async fn run_job(store: &Store, claim: Claim, shutdown: &Cancellation
         // the lease runs out, and the next worker starts the job anew
         Err(error) => tracing::error!(job = %claim.job, %error, "the job's end was not written"),
     }
-}
-
-/// A process that is to end does not wait as long for its database as another.
-async fn last_chance(shutdown: &CancellationToken) {
-    shutdown.cancelled().await;
-    sleep(LEASE).await;
 }
 
 enum Settled {

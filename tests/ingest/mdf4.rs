@@ -123,6 +123,37 @@ fn a_file_that_is_cut_off_has_what_is_there() {
     assert_eq!(cut_off(&whole), None);
 }
 
+/// Records of several kinds between each other: how many there are is known only when they are read.
+#[test]
+fn an_unsorted_file_that_is_cut_off_says_so_with_a_mapping_too() {
+    let mut bytes = bytes("unsorted");
+    let groups: Vec<usize> = (0..bytes.len())
+        .filter(|&at| bytes[at..].starts_with(b"##CG"))
+        .collect();
+    let count = |of: &usize| of + 24 + 6 * 8 + 8;
+    let of_five = groups.iter().map(count).find(|&at| bytes[at] == 5);
+    let of_five = of_five.expect("a group of five records");
+    assert_eq!(bytes[of_five..of_five + 8], 5u64.to_le_bytes());
+    bytes[of_five] = 50;
+    let cut_off = |mapping: Option<&Mapping>| {
+        let Reading { findings, .. } = read(&bytes, mapping).unwrap();
+        let found = findings
+            .into_iter()
+            .find(|finding| finding.code == "cut_off");
+        found.map(|finding| finding.message)
+    };
+    let told = cut_off(None).expect("it is told");
+    assert!(told.contains("has 5 of 50 samples"), "{told}");
+    let text = r#"{"channels": {"rate": {"from": "q", "unit": "rad/s"}}}"#;
+    assert_eq!(
+        cut_off(Some(&Mapping::from_json(text).unwrap())),
+        Some(told)
+    );
+    // what is not asked for is not looked at
+    let text = r#"{"channels": {"m": {"from": "Fuel.mass", "unit": "kg"}}}"#;
+    assert_eq!(cut_off(Some(&Mapping::from_json(text).unwrap())), None);
+}
+
 fn memmem(bytes: &[u8], part: &[u8]) -> usize {
     let mut windows = bytes.windows(part.len());
     windows

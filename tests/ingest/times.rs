@@ -68,11 +68,32 @@ fn a_mapping_names_the_parts() {
     );
     let without = parts.replace(", unit = \"us\"", "");
     assert!(mapped(&without, text).unwrap_err().contains("/time/unit"));
+    // beside hours alone: minutes where the title or the mapping says so, and else a question
+    let text = "hour,min,x,a\n10,59.5,3570,1\n11,0.0,0,2\n11,0.25,15,3\n";
+    let hours = |from: &str| {
+        format!(
+            "time = {{hour = \"hour\", {from}}}\n[channels]\nalpha = {{from = \"a\", unit = \"deg\"}}\n"
+        )
+    };
+    for from in [
+        "from = \"min\"",
+        "from = \"min\", unit = \"min\"",
+        "from = \"x\", unit = \"s\"",
+    ] {
+        assert_eq!(told(mapped(&hours(from), text)).0, [0.0, 30.0, 45.0]);
+    }
+    let open = mapped(&hours("from = \"x\""), text).unwrap_err();
+    assert!(
+        open.contains("/time/unit") && open.contains("unit = \"min\""),
+        "{open}"
+    );
     // seconds and nanoseconds since 1970, as ROS has them
     let text = "secs,nsecs,a\n1795255200,999999999,1\n1795255201,9,2\n";
     let parts = "time = {second = \"secs\", from = \"nsecs\", unit = \"ns\"}\n\
                  [channels]\nalpha = {from = \"a\", unit = \"deg\"}\n";
     assert_eq!(told(mapped(parts, text)).0, [0.0, 1e-8]);
+    let by_title = parts.replace(", unit = \"ns\"", "");
+    assert_eq!(told(mapped(&by_title, text)).0, [0.0, 1e-8]);
     for (wrong, expected) in [
         ("time = {hour = \"h\"}\n", "\"from\" for the finest"),
         (

@@ -190,6 +190,124 @@ fn noise_does_not_move_and_ramps_are_slow() {
     assert_near(told[1].2, 70.0, 0.3);
 }
 
+fn flight(time: Vec<f64>, values: Vec<f64>) -> Maneuver {
+    let deg = trimtab_core::flight::Unit::parse("deg").unwrap();
+    let channels = [("de".to_string(), Channel::from_recorded("deg", deg, values))];
+    Maneuver::new(time, channels.into()).unwrap()
+}
+
+/// A step between two samples is a motion from the one to the other, whatever lies around it.
+#[test]
+fn a_step_between_two_samples_is_a_segment() {
+    let step = |at: usize| move |k: usize| if k < at { 0.0 } else { 2.0 };
+    let time = |k: usize| k as f64 * 0.04;
+    let bare = Wanted {
+        quiet: 0.0,
+        lead: 0.0,
+        response: 0.0,
+        ..Wanted::default()
+    };
+    for at in [250, 251, 500] {
+        let maneuver = flight(
+            (0..1000).map(time).collect(),
+            (0..1000).map(step(at)).collect(),
+        );
+        let found = proposed(&maneuver, &bare);
+        let segment = &found[1];
+        assert_eq!(segment.name, "elevator 1");
+        // rows count from 1
+        assert_eq!(segment.rows, [at, at + 1], "{segment:?}");
+        assert_eq!(segment.seconds, [time(at - 1), time(at)]);
+        assert!((segment.moves[0].excursion.to_degrees() - 2.0).abs() < 1e-12);
+    }
+    // over a gap of 0.4 s nothing is seen to move
+    let late = |k: usize| time(k) + if k < 500 { 0.0 } else { 0.4 };
+    let maneuver = flight(
+        (0..1000).map(late).collect(),
+        (0..1000).map(step(500)).collect(),
+    );
+    assert_eq!(maneuver.sampling().gaps.len(), 1);
+    let names: Vec<String> = (proposed(&maneuver, &Wanted::default()).into_iter())
+        .map(|segment| segment.name)
+        .collect();
+    assert_eq!(names, ["trim 1", "trim 2"]);
+}
+
+/// Inputs that jump, ramp and pause at random: a proposal is in order, and says of each maneuver what moves.
+#[test]
+fn every_proposal_is_in_order_and_has_names() {
+    let mut state = 1u64;
+    let mut random = move || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 33) as f64 / f64::from(1u32 << 31)
+    };
+    for case in 0..300 {
+        let (mut now, mut value, mut rate) = (0.0, 0.0, 0.0);
+        let (mut time, mut values) = (Vec::new(), Vec::new());
+        for _ in 0..400 {
+            now += if random() < 0.01 {
+                3.0 * random()
+            } else {
+                0.02 + 0.02 * random()
+            };
+            if random() < 0.03 {
+                rate = if random() < 0.6 {
+                    0.0
+                } else {
+                    4.0 * random() - 2.0
+                };
+            }
+            if random() < 0.02 {
+                value += 4.0 * random() - 2.0;
+            }
+            value += 0.04 * rate;
+            time.push(now);
+            values.push(value);
+        }
+        let maneuver = flight(time, values);
+        let wanted = Wanted {
+            quiet: [0.0, 0.3, 2.0][case % 3],
+            lead: [0.0, 0.0, 1.0, 2.0][case % 4],
+            response: [0.0, 1.0, 10.0, 0.0, 3.0][case % 5],
+            ..Wanted::default()
+        };
+        let found = proposed(&maneuver, &wanted);
+        for segment in &found {
+            let [from, to] = segment.seconds;
+            let [first, last] = segment.rows;
+            let are_of_rows = maneuver.time()[first - 1] == from && maneuver.time()[last - 1] == to;
+            assert!(from < to && are_of_rows, "{case}: {segment:?}");
+            if segment.kind == SegmentKind::Maneuver {
+                assert!(segment.name.starts_with("elevator "), "{case}: {segment:?}");
+                assert!(!segment.moves.is_empty(), "{case}: {segment:?}");
+            }
+            let is_across =
+                |gap: &trimtab_core::flight::Gap| first <= gap.before && gap.before < last;
+            assert!(
+                !maneuver.sampling().gaps.iter().any(is_across),
+                "{case}: {segment:?}"
+            );
+        }
+        for pair in found.windows(2) {
+            assert!(pair[0].seconds[1] <= pair[1].seconds[0], "{case}: {pair:?}");
+        }
+    }
+}
+
+#[test]
+fn a_name_given_twice_is_watched_once() {
+    let maneuver = bundled("elevator");
+    let wanted = |inputs: Vec<String>| Wanted {
+        inputs,
+        ..Wanted::default()
+    };
+    let once = segments(&maneuver, &wanted(vec!["de".to_string()])).unwrap();
+    let often = segments(&maneuver, &wanted(vec!["de".to_string(); 20_000])).unwrap();
+    assert_eq!(once, often);
+}
+
 /// Recorded flights, with trims between them that are their own quiet beginnings, there and back.
 #[test]
 fn recorded_flights_are_found_between_trims() {

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use crate::common::recordings::elevator;
+use crate::common::recordings::{elevator, elevator_of};
 use crate::common::server::{Answer, Server, send};
 use reqwest::Method;
 use serde_json::{Value, json};
@@ -125,6 +125,86 @@ async fn what_cannot_be_said_names_its_place() {
         .problem(415, "unsupported_media_type");
 }
 
+/// RFC 7396: a member that is `null` goes, one that is absent stays.
+#[tokio::test]
+async fn null_takes_away_and_an_empty_group_says_nothing() {
+    let server = Server::start_with(Config::default(), 0).await;
+    let id = server.upload(&elevator()).await;
+    let flown = async |change: Value| {
+        let changed = patch(&server, &id, &change).await;
+        assert_eq!(changed.status, 200, "{}", changed.text());
+        let changed = changed.json();
+        (changed["name"].clone(), changed["flown"].clone())
+    };
+    let (name, said) = flown(json!({"name": "run 1", "flown": attas()["flown"]})).await;
+    assert_eq!((&name, &said), (&json!("run 1"), &attas()["flown"]));
+    assert_eq!(flown(json!({})).await, (name.clone(), said.clone()));
+    assert_eq!(flown(json!({"flown": {}})).await, (name.clone(), said));
+    let nothing = json!({});
+    assert_eq!(flown(json!({"flown": null})).await, (name, nothing.clone()));
+    let metre = json!({"value": 1.0, "unit": "m"});
+    let x = json!({"flown": {"centre_of_gravity": {"x": metre}}});
+    assert_eq!(flown(x.clone()).await.1, x["flown"]);
+    // what is in a group may be changed, too
+    let feet = json!({"flown": {"centre_of_gravity": {"x": {"unit": "ft"}}}});
+    let expected = json!({"centre_of_gravity": {"x": {"value": 1.0, "unit": "ft"}}});
+    assert_eq!(flown(feet).await.1, expected);
+    for empty in [
+        json!({"flown": {"centre_of_gravity": {"x": null}}}),
+        json!({"flown": {"inertia": {"Iy": null}}}),
+        json!({"flown": {"inertia": {}, "quantities": {}, "tags": []}}),
+    ] {
+        assert_eq!(flown(empty).await.1, nothing);
+    }
+    let (name, _) = flown(json!({"name": null})).await;
+    assert_eq!(name, "");
+}
+
+#[tokio::test]
+async fn a_change_of_what_was_changed_meanwhile_is_refused() {
+    let server = Server::start_with(Config::default(), 0).await;
+    let id = server.upload(&elevator()).await;
+    let path = format!("/v1/maneuvers/{id}");
+    let change = async |flight: &str, etag: &str| {
+        let request = server.request(Method::PATCH, &path);
+        let body = json!({"flown": {"flight": flight}}).to_string();
+        let request = request
+            .header("content-type", "application/json")
+            .body(body);
+        send(request.header("if-match", etag)).await
+    };
+    let etag = |answer: &Answer| answer.headers["etag"].to_str().unwrap().to_string();
+    let first = etag(&server.get(&path).await);
+    let changed = change("F1", &first).await;
+    assert_eq!(changed.status, 200, "{}", changed.text());
+    let second = etag(&changed);
+    assert_ne!(first, second);
+    assert_eq!(etag(&server.get(&path).await), second);
+    for stale in [first.as_str(), "\"nonsense\"", "nonsense"] {
+        let refused = change("F2", stale).await;
+        refused.problem(412, "precondition_failed");
+    }
+    let flight = server.get(&path).await.json()["flown"]["flight"].clone();
+    assert_eq!(flight, "F1");
+    for good in [second.as_str(), "*"] {
+        assert_eq!(change("F1", good).await.status, 200);
+    }
+}
+
+/// Of many faults as many are told as a message can hold.
+#[tokio::test]
+async fn what_is_wrong_a_thousand_times_is_told_in_short() {
+    let server = Server::start_with(Config::default(), 0).await;
+    let id = server.upload(&elevator()).await;
+    let many = (0..20_000).map(|k| (format!("k{k} "), json!({"value": 1.0, "unit": "warp"})));
+    let many: serde_json::Map<String, Value> = many.collect();
+    let refused = patch(&server, &id, &json!({"flown": {"quantities": many}})).await;
+    let length = refused.text().len();
+    assert!(length < 200_000, "{length} bytes");
+    let faults = refused.problem(422, "invalid_flown");
+    assert!(faults.iter().any(|(place, _)| place == "/flown/quantities"));
+}
+
 /// y = m a u, of which the job says that m is the recording's mass.
 fn job(id: &str) -> Value {
     json!({
@@ -178,6 +258,20 @@ async fn constants_of_a_job_come_from_its_recordings() {
         (product[0] - product[1]).abs() < 1e-9 * product[0].abs(),
         "{product:?}"
     );
+    // what a maneuver says itself is not asked of its recording
+    let without = server.upload(&elevator_of(20.0, 7)).await;
+    let mut own = job(&id);
+    own["maneuvers"] =
+        json!([{"id": id, "constants": {"m": 2.0}}, {"id": without, "constants": {"m": 3.0}}]);
+    let accepted = server.post_json("/v1/jobs", &own).await;
+    assert_eq!(accepted.status, 202, "{}", accepted.text());
+    own["maneuvers"][0]["constants"] = json!({});
+    let accepted = server.post_json("/v1/jobs", &own).await;
+    assert_eq!(accepted.status, 202, "{}", accepted.text());
+    own["maneuvers"][1]["constants"] = json!({});
+    let faults = server.post_json("/v1/jobs", &own).await;
+    let expected = ("/constants/m".to_string(), "unknown_quantity".to_string());
+    assert_eq!(faults.problem(422, "invalid_job"), [expected]);
     let change =
         json!({"flown": {"mass": null, "quantities": {"span": {"value": 2, "unit": "m"}}}});
     patch(&server, &id, &change).await;
@@ -272,14 +366,16 @@ async fn the_command_line_says_and_shows_it() {
         "fuel=1200 kg",
     ]);
     assert!(is_done, "{error}");
-    for line in [
-        "registration    D-ADAM",
-        "recording.mass  38801 lb",
-        "recording.centre_of_gravity.x3.1 m",
-        "recording.quantities.fuel1200 kg",
+    // names and values stand in two columns
+    for (name, value) in [
+        ("registration", "D-ADAM"),
+        ("recording.mass", "38801 lb"),
+        ("recording.centre_of_gravity.x", "3.1 m"),
+        ("recording.quantities.fuel", "1200 kg"),
     ] {
-        let [shown, line] = [&shown, line].map(|text: &str| text.replace(' ', ""));
-        assert!(shown.contains(&line), "{shown}");
+        let width = "recording.centre_of_gravity.x".len() + 2;
+        let line = format!("{name:<width$}{value}");
+        assert!(shown.lines().any(|shown| shown == line), "{shown}");
     }
     let (is_done, _, _) = run(&[
         "maneuver",

@@ -5,7 +5,7 @@ use std::time::Duration;
 use crate::bench::{Bench, on_both};
 use crate::common::recordings::{elevator, maneuver};
 use trimtab::flight::{Flown, Quantity};
-use trimtab::store::{ManeuverFilter, Rule, Uploaded};
+use trimtab::store::{ManeuverFilter, ManeuverRecord, Rule, Uploaded};
 
 on_both! {
     what_is_said_is_kept_and_found_by,
@@ -53,7 +53,7 @@ async fn what_is_said_is_kept_and_found_by(bench: Bench) {
             .flown
             .is_empty()
     );
-    let said = |_: &str, _: &Flown| Ok::<_, ()>(("named".to_string(), flight("F 12")));
+    let said = |_: &ManeuverRecord| Ok::<_, ()>(("named".to_string(), flight("F 12")));
     let changed = project
         .change_maneuver(&id, said)
         .await
@@ -89,17 +89,11 @@ async fn what_is_said_is_kept_and_found_by(bench: Bench) {
     ] {
         assert_eq!(found(&bench, &filter).await, expected, "{filter:?}");
     }
-    let refused = project
-        .change_maneuver(&id, |_, _| Err("no"))
-        .await
-        .unwrap();
+    let refused = project.change_maneuver(&id, |_| Err("no")).await.unwrap();
     assert_eq!(refused, Some(Err("no")));
-    let none = project
-        .change_maneuver("x", |_, _| Err("no"))
-        .await
-        .unwrap();
+    let none = project.change_maneuver("x", |_| Err("no")).await.unwrap();
     assert_eq!(none, None);
-    let again = |name: &str, _: &Flown| Ok::<_, ()>((name.to_string(), flight("F 13")));
+    let again = |now: &ManeuverRecord| Ok::<_, ()>((now.name.clone(), flight("F 13")));
     project
         .change_maneuver(&id, again)
         .await
@@ -110,7 +104,7 @@ async fn what_is_said_is_kept_and_found_by(bench: Bench) {
     assert_eq!(found(&bench, &by("F 13", "two")).await, 1);
     let other = bench.store.project("other", "");
     assert_eq!(
-        other.change_maneuver(&id, |_, _| Err("no")).await.unwrap(),
+        other.change_maneuver(&id, |_| Err("no")).await.unwrap(),
         None
     );
     let page = other.maneuvers(&by("F 13", "two"), None, 10).await;
@@ -123,10 +117,10 @@ async fn changes_come_one_after_the_other(bench: Bench) {
         .map(|number| {
             let (project, id) = (bench.project(), id.clone());
             tokio::spawn(async move {
-                let add = |name: &str, flown: &Flown| {
-                    let mut flown = flown.clone();
+                let add = |now: &ManeuverRecord| {
+                    let mut flown = now.flown.clone();
                     flown.tags.push(format!("{number}"));
-                    Ok::<_, ()>((name.to_string(), flown))
+                    Ok::<_, ()>((now.name.clone(), flown))
                 };
                 project
                     .change_maneuver(&id, add)
@@ -146,7 +140,7 @@ async fn changes_come_one_after_the_other(bench: Bench) {
 
 async fn what_was_said_goes_with_its_recording(bench: Bench) {
     let id = uploaded(&bench).await;
-    let said = |name: &str, _: &Flown| Ok::<_, ()>((name.to_string(), flight("F 12")));
+    let said = |now: &ManeuverRecord| Ok::<_, ()>((now.name.clone(), flight("F 12")));
     bench
         .project()
         .change_maneuver(&id, said)

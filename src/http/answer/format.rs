@@ -1,6 +1,6 @@
 //! In which form an answer is given, and how it is cached.
 
-use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
@@ -136,16 +136,8 @@ pub(crate) fn cacheable_as(
     body: impl Into<Vec<u8>>,
 ) -> Response {
     let body = body.into();
-    let digest = hex::encode(&Sha256::digest(&body)[..16]);
-    // weak: the same content goes out compressed or not
-    let etag = format!("W/\"{digest}\"");
-    let known = request
-        .get_all(header::IF_NONE_MATCH)
-        .iter()
-        .filter_map(|value| value.to_str().ok())
-        .flat_map(|value| value.split(','))
-        .any(|tag| tag.trim() == "*" || tag.trim().trim_start_matches("W/") == &etag[2..]);
-    let mut response = if known {
+    let etag = etag(&body);
+    let mut response = if names(request, header::IF_NONE_MATCH, &etag) {
         StatusCode::NOT_MODIFIED.into_response()
     } else {
         let mut response = body.into_response();
@@ -164,6 +156,34 @@ pub(crate) fn cacheable_as(
     );
     headers.insert(header::VARY, HeaderValue::from_static("accept"));
     response
+}
+
+/// Of some content: weak, as the same content goes out compressed or not.
+fn etag(body: &[u8]) -> String {
+    let digest = hex::encode(&Sha256::digest(body)[..16]);
+    format!("W/\"{digest}\"")
+}
+
+/// Whether a header names an `ETag` of ours, or `*`.
+fn names(request: &HeaderMap, header: HeaderName, etag: &str) -> bool {
+    let values = request.get_all(header).into_iter();
+    let tags = values
+        .filter_map(|value| value.to_str().ok())
+        .flat_map(|value| value.split(','));
+    tags.map(str::trim)
+        .any(|tag| tag == "*" || tag.trim_start_matches("W/") == etag.trim_start_matches("W/"))
+}
+
+/// # Errors
+/// `If-Match` is there and names another than the resource as it is now. Our `ETag`s are weak only because of compression: one
+/// is of one content, and is taken here as RFC 9110 (13.1.1) has it for strong ones.
+pub(crate) fn check_if_match(request: &HeaderMap, now: &[u8]) -> Result<(), Problem> {
+    if !request.contains_key(header::IF_MATCH) || names(request, header::IF_MATCH, &etag(now)) {
+        return Ok(());
+    }
+    let detail =
+        "If-Match names another ETag than it has now; get it anew, and change what is there now";
+    Err(Problem::new(Code::PreconditionFailed, detail))
 }
 
 #[cfg(test)]
@@ -199,5 +219,20 @@ mod tests {
         };
         assert_eq!(again(etag), StatusCode::NOT_MODIFIED);
         assert_eq!(again(HeaderValue::from_static("\"other\"")), StatusCode::OK);
+    }
+
+    #[test]
+    fn if_match_is_of_what_is_there_now() {
+        let first = cacheable(&HeaderMap::new(), Format::Json, "{}");
+        let etag = first.headers()[header::ETAG].to_str().unwrap();
+        let checked = |value: &str, now: &[u8]| {
+            let value = HeaderValue::from_str(value).unwrap();
+            let headers = [(header::IF_MATCH, value)].into_iter().collect();
+            check_if_match(&headers, now).is_ok()
+        };
+        assert!(checked(etag, b"{}") && checked("*", b"{}"));
+        assert!(checked(&format!("\"a\", {etag}"), b"{}"));
+        assert!(!checked(etag, b"{ }") && !checked("\"a\"", b"{}") && !checked("", b"{}"));
+        assert!(check_if_match(&HeaderMap::new(), b"{}").is_ok());
     }
 }

@@ -1,9 +1,9 @@
 //! `PATCH /v1/maneuvers/{id}`: what was flown, said of a recording at any time.
 
-use axum::Json;
 use axum::body::Body;
 use axum::http::HeaderMap;
-use serde::Deserialize;
+use axum::response::Response;
+use serde::{Deserialize, Deserializer};
 use serde_json::{Map, Value, json};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
@@ -11,12 +11,14 @@ use utoipa_axum::routes;
 
 use super::maneuvers::{LONGEST_NAME, ManeuverResource, unknown_maneuver};
 use crate::flight::{Fault, Flown};
+use crate::http::answer::format::{Format, cacheable, check_if_match};
 use crate::http::code::Code;
 use crate::http::problem::{Problem, ProblemDocument};
 use crate::http::request::query::Id;
 use crate::http::request::{body, json};
 use crate::http::service::{Server, Service};
 use crate::job::JobSpec;
+use crate::store::ManeuverRecord;
 
 pub(crate) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(update_maneuver))
@@ -29,27 +31,38 @@ const MERGE_PATCH: &str = "application/merge-patch+json";
 #[serde(deny_unknown_fields)]
 struct ManeuverChange {
     /// For people; at most 200 characters.
-    #[schema(example = "ATTAS elevator 3-2-1-1")]
-    name: Option<String>,
-    /// Members of what was flown.
+    #[serde(default, deserialize_with = "named")]
+    #[schema(value_type = Option<String>, example = "ATTAS elevator 3-2-1-1")]
+    name: Option<Option<String>>,
+    /// Members of what was flown; `null` takes all of them away.
+    #[serde(default, deserialize_with = "named")]
     #[schema(value_type = Option<Flown>)]
-    flown: Option<Map<String, Value>>,
+    flown: Option<Option<Map<String, Value>>>,
+}
+
+/// A member that is named, be it `null`.
+fn named<'de, T: Deserialize<'de>, D: Deserializer<'de>>(member: D) -> Result<Option<T>, D::Error> {
+    T::deserialize(member).map(Some)
 }
 
 /// Say what was flown.
 ///
 /// Aircraft, configuration, mass, centre of gravity, inertia, notes and tags of a recording, and its name. The body is a JSON
-/// merge patch (RFC 7386): what it does not name stays, and `null` takes away. The recording itself, and so its id, does not
-/// change. Jobs that were submitted before keep what was said then.
+/// merge patch (RFC 7396): what it does not name stays, and `null` takes away. With `If-Match` it is changed only if it has this
+/// `ETag` still. The recording itself, and so its id, does not change. Jobs that were submitted before keep what was said then.
 #[utoipa::path(patch, path = "/v1/maneuvers/{id}", tag = "Maneuvers", operation_id = "updateManeuver",
-    params(("id" = String, Path)),
+    params(
+        ("id" = String, Path),
+        ("If-Match" = Option<String>, Header, description = "The `ETag` of the maneuver as it was read; `*` for any."),
+    ),
     request_body(content(
         (ManeuverChange = "application/json", example = json!({"flown": {"registration": "D-ADAM", "mass": {"value": 17600.0, "unit": "kg"}, "flaps": null}})),
         (ManeuverChange = "application/merge-patch+json"),
     )),
     responses(
-        (status = 200, description = "The maneuver as it is now.", body = ManeuverResource),
+        (status = 200, description = "The maneuver as it is now.", body = ManeuverResource, headers(("ETag" = String, description = "Of the maneuver as it is now."))),
         (status = 404, description = "`unknown_maneuver`", body = ProblemDocument, content_type = "application/problem+json"),
+        (status = 412, description = "`precondition_failed`: it was changed in the meantime.", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 415, description = "`unsupported_media_type`", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 422, description = "`wrong_shape`, `invalid_flown`: `errors` lists the faults by JSON pointer.", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
@@ -58,7 +71,7 @@ async fn update_maneuver(
     Id(id): Id,
     headers: HeaderMap,
     body: Body,
-) -> Result<Json<ManeuverResource>, Problem> {
+) -> Result<Response, Problem> {
     let media_type = body::media_type(&headers);
     if !["application/json", MERGE_PATCH].contains(&media_type.as_str()) {
         return Err(body::unsupported(
@@ -70,12 +83,17 @@ async fn update_maneuver(
     let received = body::read(&headers, body, limit, "--max-json-body", &service.room).await?;
     let body::Received { bytes, room: _room } = received;
     let change: ManeuverChange = json::parse(&json::text(bytes)?)?;
+    let now = service.store.maneuver(&id).await?;
+    let now = now.ok_or_else(|| unknown_maneuver(&id))?;
+    // what is wrong by itself waits for no other change, and no other change for it
+    changed(&change, &headers, &now)?;
     let changed = service
         .store
-        .change_maneuver(&id, |name, flown| changed(change, name, flown))
+        .change_maneuver(&id, |now| changed(&change, &headers, now))
         .await?;
     let record = changed.ok_or_else(|| unknown_maneuver(&id))??;
-    Ok(Json(ManeuverResource::of(record)?))
+    let json = serde_json::to_vec(&ManeuverResource::of(record)?)?;
+    Ok(cacheable(&HeaderMap::new(), Format::Json, json))
 }
 
 /// What is said once a change is in it: faults of its shape have their places in the change.
@@ -85,17 +103,29 @@ struct Said {
 }
 
 /// Name and what was flown, with a change in them.
-fn changed(change: ManeuverChange, name: &str, flown: &Flown) -> Result<(String, Flown), Problem> {
-    let name = change.name.unwrap_or_else(|| name.to_string());
+fn changed(
+    change: &ManeuverChange,
+    headers: &HeaderMap,
+    now: &ManeuverRecord,
+) -> Result<(String, Flown), Problem> {
+    let resource = ManeuverResource::of(now.clone())?;
+    check_if_match(headers, &serde_json::to_vec(&resource)?)?;
+    let name = match &change.name {
+        Some(name) => name.clone().unwrap_or_default(),
+        None => now.name.clone(),
+    };
     if name.chars().count() > LONGEST_NAME {
         let message = format!("longer than {LONGEST_NAME} characters");
         return Err(Problem::at(Code::InvalidFlown, "/name", message));
     }
-    let mut merged = serde_json::to_value(flown)?;
-    if let Some(change) = change.flown {
-        merge(&mut merged, Value::Object(change));
+    let mut merged = json!({ "flown": now.flown });
+    match &change.flown {
+        Some(Some(change)) => merge_into(&mut merged["flown"], change),
+        Some(None) => merged["flown"] = json!({}),
+        None => {}
     }
-    let Said { flown: merged } = json::parse(&json!({ "flown": merged }).to_string())?;
+    let Said { flown: merged } = json::parse(&merged.to_string())?;
+    let merged = merged.without_empty_groups();
     let faults: Vec<Fault> = (merged.faults().into_iter())
         .map(|fault| fault.under("/flown"))
         .collect();
@@ -105,12 +135,15 @@ fn changed(change: ManeuverChange, name: &str, flown: &Flown) -> Result<(String,
     }
 }
 
-/// A JSON merge patch, RFC 7386.
-fn merge(target: &mut Value, change: Value) {
-    let Value::Object(change) = change else {
-        *target = change;
-        return;
-    };
+/// A JSON merge patch, RFC 7396.
+fn merge(target: &mut Value, change: &Value) {
+    match change {
+        Value::Object(change) => merge_into(target, change),
+        change => target.clone_from(change),
+    }
+}
+
+fn merge_into(target: &mut Value, change: &Map<String, Value>) {
     if !target.is_object() {
         *target = Value::Object(Map::new());
     }
@@ -120,7 +153,7 @@ fn merge(target: &mut Value, change: Value) {
     for (name, value) in change {
         match value {
             Value::Null => {
-                members.shift_remove(&name);
+                members.shift_remove(name);
             }
             value => merge(members.entry(name).or_insert(Value::Null), value),
         }
@@ -151,7 +184,7 @@ mod tests {
 
     #[test]
     fn a_merge_patch_is_applied_as_its_rfc_says() {
-        // from the table of RFC 7386, appendix A
+        // from the table of RFC 7396, appendix A
         for (target, change, expected) in [
             (json!({"a": "b"}), json!({"a": "c"}), json!({"a": "c"})),
             (
@@ -183,7 +216,7 @@ mod tests {
             ),
         ] {
             let mut merged = target;
-            merge(&mut merged, change);
+            merge(&mut merged, &change);
             assert_eq!(merged, expected);
         }
     }

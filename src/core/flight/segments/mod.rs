@@ -10,12 +10,11 @@ mod range;
 mod response;
 mod word;
 
-use std::ops::Range;
-
 pub use proposal::{Moved, Proposal, ProposedSegment, SegmentKind};
 
 use super::{Fault, Maneuver};
 use motion::Watched;
+use response::Rates;
 
 /// How segments are looked for. Times are seconds.
 #[derive(Clone, PartialEq, Debug)]
@@ -52,9 +51,11 @@ const WANDERS: f64 = 3.0;
 /// There is no channel of a name that is wanted; or none is a control surface, and no name is given.
 pub fn segments(maneuver: &Maneuver, wanted: &Wanted) -> Result<Proposal, Fault> {
     let inputs = motion::watched(maneuver, &wanted.inputs)?;
+    let rates = Rates::of(maneuver);
     let mut found = Vec::new();
     for rows in maneuver.sampling().segments() {
-        found.extend(of_stretch(maneuver, &inputs, rows, wanted));
+        let time = &maneuver.time()[rows];
+        found.extend(of_stretch(time, &inputs, &rates, wanted));
     }
     let mut proposed: Vec<ProposedSegment> = (found.into_iter())
         .filter_map(|(kind, seconds)| proposed(maneuver, &inputs, kind, seconds))
@@ -68,18 +69,16 @@ pub fn segments(maneuver: &Maneuver, wanted: &Wanted) -> Result<Proposal, Fault>
 
 /// What there is between two gaps, in the order of its times.
 fn of_stretch(
-    maneuver: &Maneuver,
+    time: &[f64],
     inputs: &[Watched],
-    rows: Range<usize>,
+    rates: &Rates,
     wanted: &Wanted,
 ) -> Vec<(SegmentKind, [f64; 2])> {
-    let time = &maneuver.time()[rows];
     let (Some(&begin), Some(&end)) = (time.first(), time.last()) else {
         return Vec::new();
     };
-    let mut motions: Vec<[f64; 2]> = (inputs.iter().flat_map(|input| &input.motions))
-        .filter(|[from, to]| *to >= begin && *from <= end)
-        .copied()
+    let mut motions: Vec<[f64; 2]> = (inputs.iter())
+        .flat_map(|input| input.motions(begin, end))
         .collect();
     motions.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let mut maneuvers: Vec<[f64; 2]> = Vec::new();
@@ -95,10 +94,11 @@ fn of_stretch(
         let next = maneuvers
             .get(number + 1)
             .map_or(end, |next| next[0] - wanted.lead);
-        let rest = response::rest(maneuver, from, to, wanted.response);
+        // no further than to the next: its response is another
+        let longest = wanted.response.min((next.min(end) - to).max(0.0));
         let segment = [
             (from - wanted.lead).max(at),
-            rest.min(next.max(to)).min(end),
+            rates.rest(from, to, longest).min(end),
         ];
         found.extend(between(inputs, at, segment[0]));
         at = segment[1];
@@ -127,7 +127,10 @@ fn proposed(
     let time = maneuver.time();
     let first = time.partition_point(|&at| at < seconds[0]);
     let behind = time.partition_point(|&at| at <= seconds[1]);
-    let seconds = [*time.get(first)?, *time.get(behind.checked_sub(1)?)?];
+    if behind <= first {
+        return None;
+    }
+    let seconds = [time[first], time[behind - 1]];
     let moves = (inputs.iter()).map(|input| (input, input.excursion(seconds[0], seconds[1])));
     let mut moves: Vec<(&Watched, f64)> = moves
         .filter(|(input, excursion)| *excursion > input.threshold)

@@ -1,5 +1,7 @@
 //! When an input moves.
 
+use indexmap::IndexMap;
+
 use super::super::{Channel, Dimension, Fault, Maneuver, PhysicalQuantity, by_name};
 use super::range::ranges;
 
@@ -7,10 +9,10 @@ use super::range::ranges;
 pub(super) struct Watched {
     pub(super) name: String,
     pub(super) quantity: Option<PhysicalQuantity>,
-    /// More than so much within a window is a motion, SI.
+    /// More than so much within a window is a motion, SI; infinite where it never moves.
     pub(super) threshold: f64,
-    /// From when to when it moves, s.
-    pub(super) motions: Vec<[f64; 2]>,
+    /// The window, s.
+    width: f64,
     signal: Signal,
 }
 
@@ -39,12 +41,13 @@ const FEW: usize = 20;
 /// # Errors
 /// There is no such channel, or no control surface.
 pub(super) fn watched(maneuver: &Maneuver, wanted: &[String]) -> Result<Vec<Watched>, Fault> {
-    let mut chosen: Vec<(&String, &Channel)> = Vec::new();
+    // a name that stands there twice is watched once
+    let mut chosen: IndexMap<&String, &Channel> = IndexMap::new();
     for name in wanted {
         let Some((name, channel)) = maneuver.channels().get_key_value(name) else {
             return Err(unknown(maneuver, name));
         };
-        chosen.push((name, channel));
+        chosen.insert(name, channel);
     }
     if wanted.is_empty() {
         let all = maneuver.channels().iter();
@@ -86,7 +89,7 @@ pub(super) fn watched(maneuver: &Maneuver, wanted: &[String]) -> Result<Vec<Watc
                 name: name.clone(),
                 quantity: surface(name, channel.unit.dimension),
                 threshold: threshold.unwrap_or(f64::INFINITY),
-                motions: threshold.map_or_else(Vec::new, |threshold| signal.motions(threshold)),
+                width: signal.window(),
                 signal,
             }
         })
@@ -121,6 +124,48 @@ impl Watched {
     pub(super) fn excursion(&self, from: f64, to: f64) -> f64 {
         excursion(self.signal.between(from, to))
     }
+
+    /// From when to when it moves between two times, s: from the last sample at rest to the first at rest again.
+    pub(super) fn motions(&self, from: f64, to: f64) -> Vec<[f64; 2]> {
+        if self.threshold.is_infinite() {
+            return Vec::new();
+        }
+        let (first, behind) = self.signal.rows(from, to);
+        let time = &self.signal.time[first..behind];
+        let values = &self.signal.values[first..behind];
+        let moves: Vec<bool> = (ranges(time, values, self.width).into_iter())
+            .map(|range| range > self.threshold)
+            .collect();
+        let mut motions = Vec::new();
+        let mut at = 0;
+        for run in moves.chunk_by(|a, b| a == b) {
+            if run[0] {
+                motions.push(self.motion(time, at, at + run.len() - 1));
+            }
+            at += run.len();
+        }
+        motions
+    }
+
+    /// The motion that windows from one sample to another see. They see it half their width before it begins, and behind it.
+    fn motion(&self, time: &[f64], first: usize, last: usize) -> [f64; 2] {
+        let half = self.width / 2.0;
+        let behind = |at: f64| time.partition_point(|&other| other <= at);
+        let ahead = |at: f64| time.partition_point(|&other| other < at);
+        // what the window before sees is at rest, and so is what the window behind sees
+        let begin = first
+            .checked_sub(1)
+            .map_or(0, |at| behind(time[at] + half) - 1);
+        let end = (last + 1 < time.len()).then(|| ahead(time[last + 1] - half));
+        let end = end.unwrap_or(time.len() - 1);
+        let narrow = [time[begin], time[end]];
+        if begin < end && self.excursion(narrow[0], narrow[1]) > self.threshold {
+            return narrow;
+        }
+        // it goes on as long as the window
+        let wide = [ahead(time[first] - half), behind(time[last] + half) - 1];
+        wide.map(|at| time[at])
+    }
 }
 
 impl Signal {
@@ -137,9 +182,15 @@ impl Signal {
     }
 
     pub(super) fn between(&self, from: f64, to: f64) -> &[f64] {
+        let (first, behind) = self.rows(from, to);
+        &self.values[first..behind]
+    }
+
+    /// The first sample between two times, and that behind the last.
+    pub(super) fn rows(&self, from: f64, to: f64) -> (usize, usize) {
         let first = self.time.partition_point(|&at| at < from);
         let behind = self.time.partition_point(|&at| at <= to);
-        self.values.get(first..behind).unwrap_or_default()
+        (first, behind.max(first))
     }
 
     /// The standard deviation of its noise, from second differences, of which motions are few.
@@ -177,38 +228,15 @@ impl Signal {
         (!is_still && own > 0.0).then(|| threshold.into_iter().fold(0.0, f64::max))
     }
 
-    fn motions(&self, threshold: f64) -> Vec<[f64; 2]> {
+    /// How long a window is, s.
+    fn window(&self) -> f64 {
         let mut steps: Vec<f64> = self.time.windows(2).map(|pair| pair[1] - pair[0]).collect();
         if steps.is_empty() {
-            return Vec::new();
+            return WINDOW;
         }
         let middle = steps.len() / 2;
         let (_, step, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
-        let width = WINDOW.max(STEPS * *step);
-        let mut motions: Vec<[f64; 2]> = Vec::new();
-        let mut was_moving = false;
-        for (&now, range) in self
-            .time
-            .iter()
-            .zip(ranges(&self.time, &self.values, width))
-        {
-            let moves = range > threshold;
-            match motions.last_mut() {
-                Some(last) if moves && was_moving => last[1] = now,
-                _ if moves => motions.push([now, now]),
-                _ => {}
-            }
-            was_moving = moves;
-        }
-        // a window sees a motion half its width before it begins, and behind it
-        let narrowed = motions.into_iter().map(|[from, to]| {
-            let middle = (from + to) / 2.0;
-            [
-                (from + width / 2.0).min(middle),
-                (to - width / 2.0).max(middle),
-            ]
-        });
-        narrowed.collect()
+        WINDOW.max(STEPS * *step)
     }
 }
 

@@ -1,5 +1,7 @@
 //! What segments are called.
 
+use std::collections::HashMap;
+
 use super::super::PhysicalQuantity;
 use super::motion::Watched;
 use super::proposal::{ProposedSegment, SegmentKind};
@@ -39,15 +41,10 @@ fn surface(quantity: Option<PhysicalQuantity>) -> Option<&'static str> {
 
 /// Counts those of one name.
 pub(super) fn number(segments: &mut [ProposedSegment]) {
-    let words: Vec<String> = segments
-        .iter()
-        .map(|segment| segment.name.clone())
-        .collect();
-    for (at, segment) in segments.iter_mut().enumerate() {
-        let before = words[..at]
-            .iter()
-            .filter(|word| **word == words[at])
-            .count();
-        segment.name = format!("{} {}", words[at], before + 1);
+    let mut counts: HashMap<String, usize> = HashMap::new();
+    for segment in segments {
+        let count = counts.entry(segment.name.clone()).or_default();
+        *count += 1;
+        segment.name = format!("{} {count}", segment.name);
     }
 }

@@ -85,6 +85,19 @@ const WHOSE: [&str; 9] = [
     "utc", "gps", "gmt", "irig", "local", "lcl", "zulu", "rtc", "time",
 ];
 
+/// The unit of a part of time, by the title of its column.
+pub(super) fn unit_of(titles: &Titles, at: usize) -> Option<&'static str> {
+    let coarse = [
+        ("h", HOUR),
+        ("min", MINUTE),
+        ("s", SECOND),
+        ("s", SECOND_OF_DAY),
+    ];
+    let mut all = coarse.into_iter().chain(FINER);
+    let found = all.find(|(_, words)| is_called(titles, at, words));
+    found.map(|(unit, _)| unit)
+}
+
 /// The time of a table whose titles say its parts.
 pub(super) fn found(titles: &Titles) -> Option<InParts> {
     titles.names.as_ref()?;

@@ -182,11 +182,19 @@ fn in_parts(
         true => titles.label(at).map_err(|why| ("/time/from", why))?.unit,
         false => &said.unit,
     };
-    // beside seconds stands what is finer
-    let usual = if said.second.is_none() { "s" } else { "" };
-    let unit = if stated.is_empty() { usual } else { stated };
+    let usual = parts::unit_of(titles, at).or(match (&said.second, &said.minute, &said.hour) {
+        // beside seconds stands what is finer
+        (Some(_), ..) => Some(""),
+        (None, None, Some(_)) => None,
+        _ => Some("s"),
+    });
+    let unit = Some(stated).filter(|unit| !unit.is_empty()).or(usual);
+    let unit = unit.ok_or_else(|| {
+        let message = "beside hours alone stand minutes as often as seconds; say which, as unit = \"min\" or unit = \"s\"";
+        ("/time/unit", (code::TIME_UNIT, message.to_string()))
+    })?;
     let unit = RecordedUnit::parse_time(unit).map_err(|why| ("/time/unit", why))?;
-    let unit = unit.unit();
+    let (unit, usual) = (unit.unit(), usual.unwrap_or_default());
     Ok(Time::Parts(InParts {
         parts,
         at,

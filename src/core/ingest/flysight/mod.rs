@@ -113,6 +113,25 @@ mod tests {
     }
 
     #[test]
+    fn kinds_are_described_once_and_are_as_few_as_columns() {
+        let twice = FILE.replace("$DATA", "$COL,IMU,time,wz\n$DATA");
+        let refused = read(twice.as_bytes(), None, &Limits::default());
+        assert_eq!(places(refused), ["duplicate_channel /rows/9"]);
+        let of = |kinds: usize| {
+            let kinds: String = (0..kinds).map(|kind| format!("$COL,K{kind}\n")).collect();
+            FILE.replace("$DATA", &format!("{kinds}$DATA"))
+        };
+        let limits = Limits {
+            max_columns: 100,
+            ..Limits::default()
+        };
+        // the file has ten columns itself
+        assert!(read(of(80).as_bytes(), None, &limits).is_ok());
+        let refused = read(of(91).as_bytes(), None, &limits);
+        assert_eq!(places(refused), ["too_many_columns "]);
+    }
+
+    #[test]
     fn no_damage_panics() {
         let good = FILE.as_bytes();
         for at in 0..good.len() {

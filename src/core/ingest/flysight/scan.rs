@@ -1,5 +1,7 @@
 //! Kinds of records, and what they hold.
 
+use std::collections::HashMap;
+
 use super::super::fault::{CELLS_LISTED, pointer};
 use super::super::groups::{Channel, Group, Groups, Samples, Time};
 use super::super::lines::{Line, Lines};
@@ -38,6 +40,8 @@ pub(super) fn scan(
     let mut scan = Scan {
         limits,
         kinds: Vec::new(),
+        by_name: HashMap::new(),
+        columns: 0,
         values: 0,
         faults: Vec::new(),
         unknown: Vec::new(),
@@ -75,6 +79,9 @@ pub(super) fn scan(
 struct Scan<'a, 'l> {
     limits: &'l Limits,
     kinds: Vec<Kind<'a>>,
+    /// Where a kind stands among them.
+    by_name: HashMap<&'a str, usize>,
+    columns: usize,
     values: usize,
     faults: Vec<Fault>,
     /// Records of a kind that no line of the header has.
@@ -95,9 +102,12 @@ impl<'a> Scan<'a, '_> {
         match word {
             "$COL" => {
                 let titles: Vec<&str> = cells.collect();
-                let columns: usize = self.kinds.iter().map(|kind| kind.titles.len()).sum();
-                let columns = columns.saturating_add(titles.len());
-                self.limits.columns(columns).map_or(Ok(()), Err)?;
+                // a kind without columns counts, too
+                self.columns = self.columns.saturating_add(titles.len().max(1));
+                self.limits.columns(self.columns).map_or(Ok(()), Err)?;
+                if self.by_name.insert(name, self.kinds.len()).is_some() {
+                    return Err(twice(name, line.number));
+                }
                 self.kinds.push(Kind {
                     name,
                     units: vec![""; titles.len()],
@@ -107,8 +117,9 @@ impl<'a> Scan<'a, '_> {
                 });
             }
             "$UNIT" => {
-                if let Some(kind) = self.kinds.iter_mut().find(|kind| kind.name == name) {
-                    kind.units
+                if let Some(&at) = self.by_name.get(name) {
+                    self.kinds[at]
+                        .units
                         .iter_mut()
                         .zip(cells)
                         .for_each(|(unit, said)| *unit = said);
@@ -123,19 +134,20 @@ impl<'a> Scan<'a, '_> {
     fn is_whole(&self, line: Line) -> bool {
         let mut cells = line.text.split(',');
         let name = cells.next().and_then(|word| word.strip_prefix('$'));
-        let kind = self.kinds.iter().find(|kind| Some(kind.name) == name);
-        kind.is_some_and(|kind| cells.count() == kind.titles.len())
+        let at = name.and_then(|name| self.by_name.get(name));
+        at.is_some_and(|&at| cells.count() == self.kinds[at].titles.len())
     }
 
     fn record(&mut self, line: Line<'a>) -> Result<(), Fault> {
         let (word, cells) = line.text.split_once(',').unwrap_or((line.text, ""));
         let name = word.trim().strip_prefix('$');
-        let Some(kind) = self.kinds.iter_mut().find(|kind| Some(kind.name) == name) else {
+        let Some(&at) = name.and_then(|name| self.by_name.get(name)) else {
             if self.unknown.len() < MOST_UNKNOWN && !self.unknown.contains(&word) {
                 self.unknown.push(word);
             }
             return Ok(());
         };
+        let kind = &mut self.kinds[at];
         let count = cells.split(',').count();
         if count != kind.titles.len() {
             let message = format!(
@@ -168,6 +180,18 @@ impl<'a> Scan<'a, '_> {
         }
         Ok(())
     }
+}
+
+fn twice(name: &str, line: usize) -> Fault {
+    let message = format!(
+        "line {line}: the columns of {} are named a second time; take one of the two lines away",
+        quoted(name)
+    );
+    Fault::new(
+        pointer(["rows", &line.to_string()]),
+        code::DUPLICATE_CHANNEL,
+        message,
+    )
 }
 
 fn groups(kinds: Vec<Kind>) -> (Groups<Columns>, Vec<Finding>) {
@@ -231,7 +255,7 @@ fn groups(kinds: Vec<Kind>) -> (Groups<Columns>, Vec<Finding>) {
     }
     let spread = (!spread.is_empty()).then(|| {
         let message = format!(
-            "records have the time of the one before them ({}): they are spread evenly up to the next time",
+            "records have the time of the one before them ({}): they are spread evenly up to the next time, and before a gap as far apart as usual",
             listed(spread.into_iter())
         );
         let remedy = "nothing needs to be done where the clock is coarser than the rate";

@@ -69,6 +69,11 @@ impl<S> Source<S> {
         is_one.then_some((named.group, of, channel))
     }
 
+    /// The groups, with as many rows as were found of those that were asked for.
+    pub(super) fn groups(&self) -> &[Group] {
+        &self.groups.groups
+    }
+
     fn contents(&self) -> String {
         contents(&self.groups.groups)
     }
@@ -98,16 +103,17 @@ impl<S: Samples> Archive for Source<S> {
             [group, name] if name == TIMES => group.parse::<usize>().ok(),
             _ => None,
         };
-        let (group, at) = match times.and_then(|group| self.groups.groups.get(group)) {
-            Some(group) => match group.time {
-                Time::Recorded(at) => (group, Some(at)),
-                Time::Even { .. } => (group, None),
+        let times = times.and_then(|at| Some((at, self.groups.groups.get(at)?)));
+        let (number, at) = match times {
+            Some((number, group)) => match group.time {
+                Time::Recorded(at) => (number, Some(at)),
+                Time::Even { .. } => (number, None),
                 Time::Unknown => {
                     return Err((code::UNKNOWN_SOURCE, "there are no times".to_string()));
                 }
             },
             None => match self.find(path) {
-                Some((_, group, channel)) => (group, Some(channel.at)),
+                Some((number, _, channel)) => (number, Some(channel.at)),
                 None => {
                     let message = format!(
                         "there is no one channel {}; the file has {}",
@@ -118,6 +124,7 @@ impl<S: Samples> Archive for Source<S> {
                 }
             },
         };
+        let group = &mut self.groups.groups[number];
         if let Some(fault) = self.limits.samples(group.rows) {
             return Err((code::TOO_MANY_SAMPLES, fault.message));
         }
@@ -129,6 +136,8 @@ impl<S: Samples> Archive for Source<S> {
         };
         let values = self.groups.samples.values(at);
         self.values = values.map_err(|fault| (code::DAMAGED_FILE, fault.message))?;
+        // in some files only reading tells how many there are
+        group.rows = group.rows.min(self.values.len());
         Ok(Matrix::of_rows(&self.values, 1))
     }
 

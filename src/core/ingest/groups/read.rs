@@ -25,9 +25,9 @@ pub(in super::super) fn read<S: Samples>(
     limits: &Limits,
 ) -> Result<Reading, IngestError> {
     if let Some(mapping) = mapping {
-        let cut_off = cut_off(&groups.groups);
-        let mut reading = mapping.apply(&mut Source::of(groups, limits), limits)?;
-        reading.findings.extend(cut_off);
+        let mut source = Source::of(groups, limits);
+        let mut reading = mapping.apply(&mut source, limits)?;
+        reading.findings.extend(cut_off(source.groups()));
         return Ok(reading);
     }
     let timed = groups

@@ -27,10 +27,13 @@ pub(super) fn resolved<'s>(
             continue;
         };
         let place = format!("/constants/{}", escape(name));
+        // what a maneuver says itself is not asked of its recording
+        let asked = spec.maneuvers.iter().enumerate();
+        let asked = asked.filter(|(_, usage)| !usage.constants.contains_key(name));
         let of = |(index, usage): (usize, &ManeuverUse)| {
             number(path, usage.flown.as_ref(), unit, &spec.label(index))
         };
-        let found: Result<Vec<f64>, Fault> = spec.maneuvers.iter().enumerate().map(of).collect();
+        let found: Result<Vec<f64>, Fault> = asked.map(of).collect();
         match found {
             Err(fault) => faults.push(fault.under(&place)),
             Ok(found) if spec.kind == JobKind::Diagnose && !are_one(&found) => {
@@ -81,7 +84,7 @@ fn are_one(values: &[f64]) -> bool {
     values.windows(2).all(|pair| pair[0] == pair[1])
 }
 
-/// Gives a constant of the job its values by maneuver. What a maneuver says itself holds.
+/// Gives a constant of the job its values, one for each maneuver that says none itself.
 fn give(spec: &mut JobSpec, name: &str, values: &[f64]) {
     if are_one(values)
         && let Some(first) = values.first()
@@ -90,9 +93,11 @@ fn give(spec: &mut JobSpec, name: &str, values: &[f64]) {
         return;
     }
     spec.constants.shift_remove(name);
-    for (usage, value) in spec.maneuvers.iter_mut().zip(values) {
-        let own = usage.constants.entry(name.to_string());
-        own.or_insert(ConstantValue::Number(*value));
+    let uses = spec.maneuvers.iter_mut();
+    let asked = uses.filter(|usage| !usage.constants.contains_key(name));
+    for (usage, value) in asked.zip(values) {
+        let number = ConstantValue::Number(*value);
+        usage.constants.insert(name.to_string(), number);
     }
 }
 

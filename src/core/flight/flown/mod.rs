@@ -1,11 +1,14 @@
 //! What was flown: by which aircraft, when, and how it was loaded.
 
+mod quantity;
+
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::fault::{Fault, escape};
-use super::{Dimension, Unit};
+pub use quantity::Quantity;
+use quantity::short;
 
 /// What is known of a flight beside its channels. All of it may be absent, and none of it changes what was recorded.
 #[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
@@ -68,18 +71,6 @@ pub struct Flown {
     pub tags: Vec<String>,
 }
 
-/// A number with its unit.
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Quantity {
-    /// In `unit`.
-    #[schema(example = 17600.0)]
-    pub value: f64,
-    /// `-` for a pure number.
-    #[schema(example = "kg")]
-    pub unit: String,
-}
-
 /// Where the centre of gravity is, in the axes of whoever says so.
 #[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -127,6 +118,34 @@ impl Flown {
         *self == Self::default()
     }
 
+    /// The texts that are said, by their names, the notes last: `aircraft`, `registration`, `flight`, `test_point`, `date`,
+    /// `configuration`, `gear`, `flaps`, `notes`.
+    pub fn texts(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        let all = [
+            ("aircraft", &self.aircraft),
+            ("registration", &self.registration),
+            ("flight", &self.flight),
+            ("test_point", &self.test_point),
+            ("date", &self.date),
+            ("configuration", &self.configuration),
+            ("gear", &self.gear),
+            ("flaps", &self.flaps),
+            ("notes", &self.notes),
+        ];
+        all.into_iter()
+            .filter_map(|(name, text)| Some((name, text.as_deref()?)))
+    }
+
+    /// The same without groups in which nothing is said.
+    #[must_use]
+    pub fn without_empty_groups(mut self) -> Self {
+        let nothing = CentreOfGravity::default();
+        self.centre_of_gravity = self.centre_of_gravity.filter(|of| *of != nothing);
+        let nothing = Inertia::default();
+        self.inertia = self.inertia.filter(|of| *of != nothing);
+        self
+    }
+
     /// The quantities that are said, by their names: `mass`, `centre_of_gravity.x`, `inertia.Ix`, `quantities.fuel`.
     pub fn quantities(&self) -> impl Iterator<Item = (String, &Quantity)> {
         let centre = self.centre_of_gravity.iter().flat_map(|centre| {
@@ -151,10 +170,13 @@ impl Flown {
         let mut refuse = |pointer: String, message: String| {
             faults.push(Fault::new(pointer, "bad_flown", message));
         };
-        for (name, text, most) in self.texts() {
-            if let Some(text) = text
-                && !(1..=most).contains(&text.chars().count())
-            {
+        for (name, text) in self.texts() {
+            let most = if name == "notes" {
+                LONGEST_NOTES
+            } else {
+                LONGEST_TEXT
+            };
+            if !(1..=most).contains(&text.chars().count()) {
                 let message =
                     format!("a text of 1 to {most} characters stands here; null takes it away");
                 refuse(format!("/{name}"), message);
@@ -168,7 +190,7 @@ impl Flown {
             let message = format!("there are more than {MOST_QUANTITIES}");
             refuse("/quantities".to_string(), message);
         }
-        for name in self.quantities.keys() {
+        for name in self.quantities.keys().take(MOST_QUANTITIES) {
             let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
             if !(1..=LONGEST_NAME).contains(&name.len()) || !name.chars().all(is_plain) {
                 let message = format!("a name has 1 to {LONGEST_NAME} letters, digits and '_'");
@@ -198,89 +220,6 @@ impl Flown {
         }
         faults
     }
-
-    fn texts(&self) -> [(&'static str, Option<&String>, usize); 9] {
-        [
-            ("aircraft", self.aircraft.as_ref(), LONGEST_TEXT),
-            ("registration", self.registration.as_ref(), LONGEST_TEXT),
-            ("flight", self.flight.as_ref(), LONGEST_TEXT),
-            ("test_point", self.test_point.as_ref(), LONGEST_TEXT),
-            ("date", self.date.as_ref(), LONGEST_TEXT),
-            ("configuration", self.configuration.as_ref(), LONGEST_TEXT),
-            ("gear", self.gear.as_ref(), LONGEST_TEXT),
-            ("flaps", self.flaps.as_ref(), LONGEST_TEXT),
-            ("notes", self.notes.as_ref(), LONGEST_NOTES),
-        ]
-    }
-}
-
-impl Quantity {
-    /// A number with its unit behind it: `17600 kg`, `17600[kg]`.
-    ///
-    /// # Errors
-    /// It is none.
-    pub fn parse(text: &str) -> Result<Self, String> {
-        let text = text.trim();
-        let end = text.find(['[', ' ']).unwrap_or(text.len());
-        let (number, unit) = text.split_at(end);
-        let unit = unit.trim();
-        let unit = match unit.strip_prefix('[') {
-            Some(unit) => unit.strip_suffix(']').unwrap_or(""),
-            None => unit,
-        };
-        let value = number.parse::<f64>().ok().filter(|value| value.is_finite());
-        match value {
-            Some(value) if Unit::parse(unit).is_ok() && !unit.is_empty() => Ok(Self {
-                value,
-                unit: unit.to_string(),
-            }),
-            _ => Err(format!(
-                "'{}' is no number with a unit, such as 17600[kg]",
-                short(text)
-            )),
-        }
-    }
-
-    /// In SI, and what it measures; `None` where the unit is none.
-    pub fn in_si(&self) -> Option<(f64, Dimension)> {
-        let unit = Unit::parse(&self.unit).ok()?;
-        Some((unit.to_si(self.value), unit.dimension))
-    }
-
-    /// # Errors
-    /// Its unit is none, or not one of what its name says; or its size is none.
-    fn check(&self, name: &str) -> Result<(), String> {
-        let unit = Unit::parse(&self.unit).map_err(|error| error.to_string())?;
-        let of_inertia = Dimension::KILOGRAM
-            .times(Dimension::METRE)
-            .times(Dimension::METRE);
-        let (expected, is_right) = match name.split_once('.').map_or(name, |(group, _)| group) {
-            "mass" => ("kg", unit.dimension == Dimension::KILOGRAM),
-            "inertia" => ("kg*m^2", unit.dimension == of_inertia),
-            "centre_of_gravity" => (
-                "m, or % of the chord",
-                unit.dimension == Dimension::METRE || unit.dimension.is_none(),
-            ),
-            _ => ("", true),
-        };
-        if !is_right {
-            return Err(format!(
-                "this is in {expected}, or another unit of the kind, and not in '{}'",
-                short(&self.unit)
-            ));
-        }
-        let is_above_zero =
-            name == "mass" || (name.starts_with("inertia.") && name != "inertia.Ixz");
-        match self.value.is_finite() && (self.value > 0.0 || !is_above_zero) {
-            true => Ok(()),
-            false => Err(format!("{} is not above 0", self.value)),
-        }
-    }
-}
-
-/// The beginning of a stranger's text.
-fn short(text: &str) -> String {
-    text.chars().filter(|c| !c.is_control()).take(40).collect()
 }
 
 /// A day of the calendar, as ISO 8601 has it.
@@ -348,6 +287,34 @@ fn unique<'de, D: serde::Deserializer<'de>>(
 mod tests {
     use super::*;
 
+    fn quantity(unit: &str) -> Quantity {
+        Quantity {
+            value: 1.0,
+            unit: unit.to_string(),
+        }
+    }
+
+    #[test]
+    fn every_text_is_told_by_the_name_that_it_has_in_json() {
+        let names = [
+            "aircraft",
+            "registration",
+            "flight",
+            "test_point",
+            "date",
+            "configuration",
+            "gear",
+            "flaps",
+            "notes",
+        ];
+        let said = names.map(|name| (name.to_string(), format!("my {name}").into()));
+        let said = serde_json::Value::Object(said.into_iter().collect());
+        let flown: Flown = serde_json::from_value(said).unwrap();
+        let expected = names.map(|name| (name, format!("my {name}")));
+        let told = flown.texts().map(|(name, text)| (name, text.to_string()));
+        assert_eq!(told.collect::<Vec<_>>(), expected);
+    }
+
     #[test]
     fn faults_have_their_places() {
         let flown: Flown = serde_json::from_value(serde_json::json!({
@@ -373,20 +340,19 @@ mod tests {
             "/tags/1",
         ];
         assert_eq!(places, expected);
+        // as many as there may be are told of, however many there are
+        let many = (0..50_000).map(|number| (format!("{number} "), quantity("m")));
+        let many = Flown {
+            quantities: many.collect(),
+            mass: Some(quantity(&"kg*m/m".repeat(20_000))),
+            ..Flown::default()
+        };
+        let faults = many.faults();
+        assert!(faults.len() < 2 * MOST_QUANTITIES + 10, "{}", faults.len());
+        let length: usize = faults.iter().map(|fault| fault.message.len()).sum();
+        assert!(length < 100_000, "{length}");
+        assert!(faults.iter().any(|fault| fault.pointer == "/mass"));
         assert!(Flown::default().faults().is_empty() && Flown::default().is_empty());
         assert!(is_date("2024-02-29") && !is_date("2026-2-9") && !is_date("2026-13-01"));
-    }
-
-    #[test]
-    fn quantities_are_written_as_in_formulas() {
-        let quantity = |text| Quantity::parse(text).map(|quantity| (quantity.value, quantity.unit));
-        assert_eq!(quantity("17600[kg]"), Ok((17600.0, "kg".to_string())));
-        assert_eq!(
-            quantity(" -1.5e3 kg*m^2 "),
-            Ok((-1500.0, "kg*m^2".to_string()))
-        );
-        for text in ["17600", "[kg]", "1[", "1 warp", "inf kg", ""] {
-            assert!(quantity(text).is_err(), "{text}");
-        }
     }
 }
