@@ -13,6 +13,7 @@ mod file_rows;
 mod fit;
 mod health;
 mod inspect;
+mod join;
 mod key;
 mod local;
 mod maneuver;
@@ -68,6 +69,7 @@ enum Command {
     Watch(watch::Watch),
     Simulate(simulate::Simulate),
     Inspect(inspect::Inspect),
+    Join(join::Join),
     Segments(segments::Segments),
     #[command(name = "maneuver")]
     Maneuvers(maneuver::Maneuvers),
@@ -94,6 +96,7 @@ pub fn main() -> ExitCode {
         Command::Watch(watch) => block_on(watch.run()),
         Command::Simulate(simulate) => simulate.run(),
         Command::Inspect(inspect) => inspect.run(),
+        Command::Join(join) => join.run(),
         Command::Segments(segments) => segments.run(),
         Command::Maneuvers(maneuvers) => block_on(maneuvers.run()),
         Command::Model(model) => model.run(),

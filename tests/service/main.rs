@@ -46,4 +46,5 @@ mod pages;
 mod published_cases;
 mod real_flights;
 mod segments;
+mod several;
 mod webhooks;

@@ -13,6 +13,7 @@ mod metrics;
 mod problems;
 mod retention;
 mod segments;
+mod several;
 mod webhooks;
 
 use utoipa_axum::router::OpenApiRouter;

@@ -1,8 +1,9 @@
 //! The time of a row, from its cells.
 
 use super::super::{
+    Origin,
     cell::{Decimal, Marks, is_missing, number, unquote},
-    stamp::{Stamp, Stopwatch},
+    stamp::{ClockKind, Stamp, Stopwatch},
     text::quoted,
 };
 use super::{
@@ -97,6 +98,28 @@ impl Clock {
             *number = Some(value as i64);
         }
         Ok(numbers)
+    }
+
+    /// What the zero of the times is that were read.
+    pub(super) fn origin(&self) -> Option<Origin> {
+        match self.time {
+            Time::Even { .. } | Time::Numbers { .. } => Some(Origin::OWN),
+            Time::Epoch { unit, .. } => {
+                // as many of its units as a second has
+                let each = (1.0 / unit.scale).round().max(1.0) as i128;
+                Some(Origin::at(ClockKind::Utc, self.first? / each))
+            }
+            Time::Week { .. } => {
+                let week = self.first?;
+                Some(Origin::at(
+                    ClockKind::Gps,
+                    week * WEEK as i128 * 1_000_000_000,
+                ))
+            }
+            Time::Stamps { .. } | Time::Dated { .. } | Time::Parts(_) => {
+                Origin::of_stamp(self.watch.first()?)
+            }
+        }
     }
 
     fn number(&self, cell: &str) -> Result<f64, Option<String>> {
