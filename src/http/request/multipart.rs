@@ -130,10 +130,7 @@ mod tests {
     /// Name, file, media type and text.
     type Told = (String, Option<String>, String, String);
 
-    fn told(
-        content_type: &str,
-        body: &str,
-    ) -> Option<Vec<Told>> {
+    fn told(content_type: &str, body: &str) -> Option<Vec<Told>> {
         let parts = parts(content_type, body.as_bytes()).ok()?;
         let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
         Some(
