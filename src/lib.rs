@@ -84,7 +84,9 @@
 //!    every page for accessibility and overflow. `tests/browser cargo test --test service pages::`.
 //! 4. Its line in the list of pages in `README.md`.
 
-pub use trimtab_core::{diagnose, estimate, flight, ingest, job, model, simulate};
+pub use trimtab_core::{
+    diagnose, dynamics, estimate, flight, ingest, job, model, response, simulate, structure,
+};
 
 pub mod cli;
 pub mod dashboard;

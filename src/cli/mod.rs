@@ -3,6 +3,8 @@
 //!
 //! Invariant: results go to the standard output and all else to the standard error; a failure is one message and exit code 1.
 
+mod campaign;
+mod changes;
 mod client;
 mod demo;
 mod derivatives;
@@ -15,21 +17,28 @@ mod health;
 mod inspect;
 mod join;
 mod key;
+mod linear;
+mod linear_tables;
 mod local;
 mod maneuver;
 mod mapping;
 mod model;
 mod notes;
+mod pairs;
 mod plots;
+mod predict;
 mod process;
 mod progress;
 mod recording;
 mod request;
+mod response;
 mod retain;
 mod segments;
 mod serve;
 mod server;
 mod simulate;
+mod start_method;
+mod structure;
 mod study;
 mod study_tables;
 mod submit;
@@ -64,7 +73,12 @@ enum Command {
     Demo(demo::Demo),
     Fit(fit::Fit),
     Study(study::Study),
+    Structure(Box<structure::StructureCommand>),
     Diagnose(diagnose::Diagnose),
+    Linear(linear::Linear),
+    Predict(predict::Predict),
+    #[command(name = "campaign")]
+    Campaign(campaign::ShowCampaign),
     Submit(submit::Submit),
     Watch(watch::Watch),
     Simulate(simulate::Simulate),
@@ -73,6 +87,7 @@ enum Command {
     Segments(segments::Segments),
     #[command(name = "maneuver")]
     Maneuvers(maneuver::Maneuvers),
+    Response(response::Response),
     Model(model::ShowModel),
     Derivatives(derivatives::Derivatives),
     Health(health::Health),
@@ -91,7 +106,11 @@ pub fn main() -> ExitCode {
         Command::Demo(demo) => block_on(demo.run()),
         Command::Fit(fit) => fit.run(),
         Command::Study(study) => study.run(),
+        Command::Structure(structure) => structure.run(),
         Command::Diagnose(diagnose) => diagnose.run(),
+        Command::Linear(linear) => linear.run(),
+        Command::Predict(predict) => predict.run(),
+        Command::Campaign(campaign) => campaign.run(),
         Command::Submit(submit) => block_on(submit.run()),
         Command::Watch(watch) => block_on(watch.run()),
         Command::Simulate(simulate) => simulate.run(),
@@ -99,6 +118,7 @@ pub fn main() -> ExitCode {
         Command::Join(join) => join.run(),
         Command::Segments(segments) => segments.run(),
         Command::Maneuvers(maneuvers) => block_on(maneuvers.run()),
+        Command::Response(response) => response.run(),
         Command::Model(model) => model.run(),
         Command::Derivatives(derivatives) => derivatives.run(),
         Command::Health(health) => block_on(health.run()),

@@ -6,16 +6,21 @@ use std::sync::Arc;
 use indexmap::{IndexMap, IndexSet};
 
 use super::Failure;
+use super::changes::Changes;
 use super::file_rows::FileRows;
 use super::mapping::MappingOption;
+use super::pairs::{once, pair};
 use super::recording::{read_recording, read_text};
-use crate::estimate::{Derivatives, Estimator, Method, Options, Role};
+use super::start_method::start_method;
+use crate::estimate::{
+    Derivatives, Estimator, FrequencyOptions, Method, Noise, NoiseStructure, Options, Role,
+    StartMethod,
+};
 use crate::flight::Maneuver;
 use crate::job::{
-    self, ConstantValue, Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, ParameterOverride, Plan,
-    Strict,
+    self, ConstantValue, Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, Plan, Strict,
 };
-use crate::model::{ModelDocument, Start, catalog};
+use crate::model::{ModelDocument, catalog};
 use crate::simulate::{InputInterpolation, Integrator};
 
 #[derive(clap::Args, Debug)]
@@ -40,18 +45,11 @@ pub(super) struct Request {
     /// How a model input or output is made from recorded channels: "da=(da_right - da_left)/2".
     #[arg(long = "channel", short, value_name = "NAME=FORMULA")]
     channels: Vec<String>,
-    /// Another start value: "Ma=-3.5", or "alpha_0=first(alpha)".
-    #[arg(long = "start", short, value_name = "NAME=VALUE")]
-    starts: Vec<String>,
+    #[command(flatten)]
+    changes: Changes,
     /// Another value of one of the model's constants: "m=17600", or "m=recording.mass" where the server was told what was flown.
     #[arg(long = "constant", value_name = "NAME=VALUE")]
     constants: Vec<String>,
-    /// Hold a parameter at its start value.
-    #[arg(long, value_name = "NAME")]
-    fix: Vec<String>,
-    /// Estimate a parameter that the model holds.
-    #[arg(long, value_name = "NAME")]
-    free: Vec<String>,
     /// What to do where recordings have gaps: auto (through where a gap is short against the motion, else split), through
     /// (integrate on), split (parts of their own), or join (close them up).
     #[arg(long, value_name = "HOW", default_value = Gaps::default().name(), value_parser = gaps)]
@@ -71,9 +69,23 @@ pub(super) struct Request {
     /// Gauss-Newton steps in place of Levenberg-Marquardt.
     #[arg(long)]
     gauss_newton: bool,
+    /// Where output error starts from: automatic, document, equation_error, nelder_mead[:SIMULATIONS], multi_start[:STARTS]
+    /// or multiple_shooting[:SECONDS].
+    #[arg(long, value_name = "METHOD", default_value = "automatic", value_parser = start_method)]
+    start_method: StartMethod,
+    /// Noises of outputs are correlated: estimate all of R, and not its diagonal alone.
+    #[arg(long)]
+    full_noise: bool,
     /// For flight in turbulence: estimate process noise too, with a Kalman filter.
     #[arg(long)]
     filter_error: bool,
+    /// The estimator by name: output_error, filter_error, equation_error, output_error_frequency or equation_error_frequency.
+    /// The last two need --band.
+    #[arg(long, value_name = "NAME", value_parser = estimator, conflicts_with = "filter_error")]
+    estimator: Option<Estimator>,
+    /// The band of frequencies of an estimator of the frequency domain, Hz: 0.1-1.5. Alone it asks for output_error_frequency.
+    #[arg(long, value_name = "FROM-TO", value_parser = band, conflicts_with = "filter_error")]
+    band: Option<[f64; 2]>,
     /// Stop when a step is shorter than this many standard errors.
     #[arg(long, default_value_t = Options::default().tolerance)]
     pub tolerance: f64,
@@ -96,7 +108,7 @@ impl Request {
     }
 
     /// The recording of each.
-    fn recordings(&self) -> Result<Vec<Arc<Maneuver>>, Failure> {
+    pub(super) fn recordings(&self) -> Result<Vec<Arc<Maneuver>>, Failure> {
         let mapping = self.mapping.read()?;
         let read = |file: &Path| read_recording(file, mapping.as_ref()).map(Arc::new);
         let files = self.files().into_iter().map(|file| Ok((file, read(file)?)));
@@ -120,7 +132,7 @@ impl Request {
     }
 
     /// The document that `model` stands for here, without a server.
-    fn document(&self) -> Result<ModelDocument, Failure> {
+    pub(super) fn document(&self) -> Result<ModelDocument, Failure> {
         match self.model()? {
             ModelSource::Document(document) => Ok(*document),
             ModelSource::Reference(name) => catalog::find(&name).ok_or_else(|| {
@@ -163,29 +175,6 @@ impl Request {
 
     /// The job, for recordings that are known by `ids`.
     pub(super) fn spec(&self, ids: &[String]) -> Result<JobSpec, Failure> {
-        let mut parameters: IndexMap<String, ParameterOverride> = IndexMap::new();
-        for text in &self.starts {
-            let (name, value) = pair(text, "--start")?;
-            let start = value
-                .parse()
-                .map_or_else(|_| Start::FromData(value.to_string()), Start::Value);
-            let before = parameters
-                .entry(name.to_string())
-                .or_default()
-                .start
-                .replace(start);
-            once("--start", name, before.is_some())?;
-        }
-        for (names, fixed) in [(&self.fix, true), (&self.free, false)] {
-            for name in names {
-                let before = parameters
-                    .entry(name.clone())
-                    .or_default()
-                    .fixed
-                    .replace(fixed);
-                once("--fix or --free", name, before.is_some())?;
-            }
-        }
         let (mut channels, mut constants) = (IndexMap::new(), IndexMap::new());
         for text in &self.channels {
             let (name, formula) = pair(text, "--channel")?;
@@ -224,15 +213,16 @@ impl Request {
             tags: Vec::new(),
             priority: 0,
             model: self.model()?,
-            edits: Vec::new(),
+            edits: self.changes.edits.clone(),
             maneuvers: ids
                 .iter()
                 .zip(fitted.chain(predicted).chain(last))
                 .map(usage)
                 .collect(),
             channels,
-            parameters,
+            parameters: self.changes.parameters()?,
             candidates: Vec::new(),
+            structure: None,
             knowledge: Default::default(),
             constants,
             options: Options {
@@ -241,11 +231,20 @@ impl Request {
                 } else {
                     Method::LevenbergMarquardt
                 },
-                estimator: if self.filter_error {
-                    Estimator::FilterError
-                } else {
-                    Estimator::OutputError
+                estimator: match (self.filter_error, self.estimator, self.band) {
+                    (true, ..) => Estimator::FilterError,
+                    (false, Some(estimator), _) => estimator,
+                    (false, None, Some(_)) => Estimator::OutputErrorFrequency,
+                    (false, None, None) => Estimator::OutputError,
                 },
+                start: self.start_method.clone(),
+                noise: Noise::Estimated {
+                    structure: match self.full_noise {
+                        true => NoiseStructure::Full,
+                        false => NoiseStructure::Diagonal,
+                    },
+                },
+                frequency: self.band.map(FrequencyOptions::of_band),
                 tolerance: self.tolerance,
                 max_iterations: self.max_iterations,
                 derivatives: self.derivatives()?,
@@ -270,18 +269,26 @@ impl Request {
     }
 }
 
-/// What is said of one name twice would count once, and which is not plain to see.
-fn once(option: &str, name: &str, again: bool) -> Result<(), Failure> {
-    match again {
-        true => Err(Failure::new(format!("{option} names '{name}' twice"))),
-        false => Ok(()),
-    }
-}
-
 fn gaps(name: &str) -> Result<Gaps, String> {
     let names = || Gaps::ALL.map(Gaps::name).join(", ");
     let found = Gaps::ALL.into_iter().find(|gaps| gaps.name() == name);
     found.ok_or_else(|| format!("choose one of {}", names()))
+}
+
+fn estimator(text: &str) -> Result<Estimator, String> {
+    let all = Estimator::ALL;
+    let found = all.iter().copied().find(|known| known.name() == text);
+    found.ok_or_else(|| {
+        let names: Vec<&str> = all.iter().map(|known| known.name()).collect();
+        format!("one of {}", names.join(", "))
+    })
+}
+
+pub(super) fn band(text: &str) -> Result<[f64; 2], String> {
+    let wrong = || "two frequencies in Hz, as 0.1-1.5".to_string();
+    let (from, to) = text.split_once('-').ok_or_else(wrong)?;
+    let number = |text: &str| text.trim().parse::<f64>().map_err(|_| wrong());
+    Ok([number(from)?, number(to)?])
 }
 
 fn integrator(name: &str) -> Result<Integrator, String> {
@@ -290,14 +297,5 @@ fn integrator(name: &str) -> Result<Integrator, String> {
         "rk2" => Ok(Integrator::Rk2),
         "rk4" => Ok(Integrator::Rk4),
         _ => Err("choose one of euler, rk2, rk4".to_string()),
-    }
-}
-
-fn pair<'a>(text: &'a str, option: &str) -> Result<(&'a str, &'a str), Failure> {
-    match text.split_once('=') {
-        Some((name, value)) if !name.trim().is_empty() => Ok((name.trim(), value.trim())),
-        _ => Err(Failure::new(format!(
-            "{option} '{text}' should read NAME=VALUE"
-        ))),
     }
 }

@@ -4,8 +4,9 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use super::Failure;
+use super::recording::read_text;
 use crate::ingest::{self, Format, Limits};
-use crate::model::{Model, catalog};
+use crate::model::{Model, ModelDocument, catalog};
 use crate::simulate::{Scenario, ScenarioEffect};
 
 /// Simulates a maneuver from a scenario and writes it as CSV. The same scenario gives the same file.
@@ -17,12 +18,38 @@ pub(super) struct Simulate {
     /// such as sensor_delay:q=0.1 or missing_term:q:alpha^2=-8. The value is that of the first parameter it adds.
     #[arg(long = "effect", value_name = "EFFECT", value_parser = ScenarioEffect::parse)]
     effects: Vec<ScenarioEffect>,
+    /// A model document (.toml, .json) or a catalog model, in place of the one that the scenario names.
+    #[arg(long, short, value_name = "MODEL")]
+    model: Option<String>,
     /// Where to write; standard output without it.
     #[arg(long, short)]
     output: Option<PathBuf>,
 }
 
 impl Simulate {
+    /// The model by its name in the catalog, or in a file: one that the scenario names is beside it.
+    fn document(&self, named: &str) -> Result<ModelDocument, Failure> {
+        let name = self.model.as_deref().unwrap_or(named);
+        let beside = match self.model {
+            Some(_) => None,
+            None => self.scenario.parent(),
+        };
+        let file = beside.map_or_else(|| PathBuf::from(name), |directory| directory.join(name));
+        let unread = |error: String| Failure::new(format!("{}: {error}", file.display()));
+        match file.extension().and_then(|extension| extension.to_str()) {
+            Some("toml") => toml::from_str(&read_text(&file)?).map_err(|e| unread(e.to_string())),
+            Some("json") => {
+                serde_json::from_str(&read_text(&file)?).map_err(|e| unread(e.to_string()))
+            }
+            _ => catalog::find(name).ok_or_else(|| {
+                let path = self.scenario.display();
+                Failure::new(format!(
+                    "{path}: there is no catalog model '{name}'; name one, or a model document (.toml, .json)"
+                ))
+            }),
+        }
+    }
+
     pub(super) fn run(&self) -> Result<(), Failure> {
         let path = self.scenario.display();
         let text = std::fs::read_to_string(&self.scenario)
@@ -40,12 +67,7 @@ impl Simulate {
         scenario
             .read_recorded(read)
             .map_err(|e| Failure::new(format!("{path}: {e}")))?;
-        let document = catalog::find(&scenario.model).ok_or_else(|| {
-            Failure::new(format!(
-                "{path}: there is no catalog model '{}'",
-                scenario.model
-            ))
-        })?;
+        let document = self.document(&scenario.model)?;
         let model =
             Model::compile(&document).map_err(|faults| Failure::faults(&document.name, &faults))?;
         let maneuver = scenario

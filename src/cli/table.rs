@@ -140,7 +140,7 @@ pub(super) fn coefficients(coefficients: &[Coefficient]) -> String {
 }
 
 /// Modes of the motion.
-fn modes(modes: &[Mode]) -> String {
+pub(super) fn modes(modes: &[Mode]) -> String {
     let text = |measure: Option<Measure>| measure.map(|m| m.to_string()).unwrap_or_default();
     let rows = modes.iter().map(|mode| {
         vec![

@@ -10,11 +10,16 @@
 //! | z, u | recorded channels | [`flight`], read from files by [`ingest`] |
 //! | f, g, x0, θ | a model document and what it compiles to | [`model`] |
 //! | x, y, ∂y/∂θ | trajectories and sensitivities | [`simulate`] |
+//! | X(f), U(f), Z(f) | finite Fourier transforms of signals | [`spectral`] |
 //! | J, R, F, the estimate | cost, steps, error bounds | [`estimate`] |
+//! | A, B, C, D, H(jω) | linear system, flying qualities | [`dynamics`] |
+//! | H, γ², ε | frequency responses of recorded signals | [`response`] |
+//! | X, F, PSE, PRESS | which terms an equation needs | [`structure`] |
 //! | S⊥, ψ, the effect that is missing | screening, trials, verdict | [`diagnose`] |
 //!
 //! [`job`] is what may be asked of all this in one document, and the events by which its progress is told. Arrows go
-//! one way: `job → diagnose → estimate → simulate → model → flight`, `ingest → flight`. Everything here is synchronous
+//! one way: `job → diagnose → estimate → simulate → model → flight`, `job → dynamics → estimate`,
+//! `estimate, response → spectral`, `job → structure`, `ingest → flight`. Everything here is synchronous
 //! and deterministic: no server, no database, no clock, no environment, no hidden randomness. The service around it
 //! is the crate `trimtab`.
 //!
@@ -75,9 +80,13 @@
 #![warn(missing_docs)]
 
 pub mod diagnose;
+pub mod dynamics;
 pub mod estimate;
 pub mod flight;
 pub mod ingest;
 pub mod job;
 pub mod model;
+pub mod response;
 pub mod simulate;
+pub mod spectral;
+pub mod structure;

@@ -61,11 +61,22 @@ pub(super) fn plane(modes: &[Mode]) -> Markup {
                         line x1=(cx) x2=(cx) y1=(y((im.value.abs() - bound(im)).max(0.0))) y2=(y(im.value.abs() + bound(im))) stroke-width="1" {}
                         path d={ "M" (cx - 5.0) " " (cy - 5.0) "l10 10m0 -10l-10 10" } {}
                     }
-                    text x=(cx + 8.0) y=(cy - 8.0) { (mode.label()) }
+                    // towards the side where there is room
+                    @let is_left = cx < 0.6 * WIDTH;
+                    text x=(cx + if is_left { 8.0 } else { -8.0 }) y=(cy - 8.0) text-anchor=(if is_left { "start" } else { "end" }) { (short(mode)) }
                 }
             }
             figcaption { "Eigenvalues with 2 standard errors; what is right of the axis grows. Imaginary part upwards, rad/s." }
         }
+    }
+}
+
+/// Its name alone, where it has one: the table has the states.
+fn short(mode: &Mode) -> String {
+    match (mode.name, &mode.segment) {
+        (Some(name), Some(segment)) => format!("{} [{segment}]", name.words()),
+        (Some(name), None) => name.words().to_string(),
+        (None, _) => mode.label(),
     }
 }
 

@@ -54,7 +54,8 @@ pub struct UsedManeuver {
 }
 
 impl JobView {
-    pub(super) fn title(&self) -> &str {
+    /// Its name, or the name of its model.
+    pub fn title(&self) -> &str {
         if self.name.is_empty() {
             &self.model.name
         } else {
@@ -74,7 +75,7 @@ pub fn job_page(view: &JobView) -> String {
             (actions(view))
             @if view.status.is_over() { (findings(view)) } @else { (progress(view)) }
             @if let Some(diagnosis) = &view.diagnosis { (diagnosis::story(diagnosis)) }
-            @if let Some(estimate) = &view.estimate { (result(estimate, has_course(view))) }
+            @if let Some(estimate) = &view.estimate { (result(view, estimate)) }
             @if let Some(study) = &view.study { (study_section(study)) }
             @if view.estimate.is_some() { (downloads(view)) }
         }
@@ -192,7 +193,7 @@ fn progress(view: &JobView) -> Markup {
     }
 }
 
-fn result(estimate: &Estimate, has_course: bool) -> Markup {
+fn result(view: &JobView, estimate: &Estimate) -> Markup {
     html! {
         h2 id="histories" { "Measured and model" }
         p.soft { "Drag to look closer, double-click for the whole. All plots share the time axis." }
@@ -210,9 +211,10 @@ fn result(estimate: &Estimate, has_course: bool) -> Markup {
         @if !estimate.modes.is_empty() {
             div.scroll tabindex="0" role="region" aria-labelledby="modes" { (mode_table(&estimate.modes)) }
         }
+        p { a href={ "/jobs/" (view.id) "/dynamics" } { "Linear system, frequency responses, flying qualities" } }
         h2 { "Course of the iterations" }
         p.soft { (estimate.iterations) " iterations, " (estimate.evaluations) " evaluations with derivatives, " (estimate.simulations) " simulations" }
-        @if has_course { (course()) }
+        @if has_course(view) { (course()) }
     }
 }
 
@@ -239,6 +241,8 @@ fn downloads(view: &JobView) -> Markup {
             li { a href={ (base) "/time-histories?format=csv" } { "time histories (CSV)" } }
             li { a href={ (base) "/residuals?format=csv" } { "residuals (CSV)" } }
             li { a href={ (base) "/trajectories?format=csv" } { "states and definitions with standard errors (CSV)" } }
+            li { a href={ (base) "/frequency-response?format=csv" } { "frequency responses with standard errors (CSV)" } }
+            li { a href={ (base) "/linear-system" } { "linear system (JSON)" } }
             li { a href={ (base) "/model?format=toml" } { "model as estimated (TOML)" } }
             li { a href={ (base) "/estimate" } { "estimate (JSON)" } }
             li { a href={ (base) "/residual-analysis" } { "residual analysis (JSON)" } }

@@ -149,6 +149,7 @@ pub(super) fn kind_text(kind: &str) -> &str {
     match kind {
         "diagnose" => "diagnosis",
         "derivative_study" => "derivative study",
+        "structure" => "structure determination",
         _ => kind,
     }
 }

@@ -6,10 +6,12 @@
 //! Invariant: a page is a function of its view; nothing here asks a store, a clock or a network.
 
 mod assets;
+mod bode_figure;
 mod chart;
 mod correlation;
 mod decimate;
 mod diagnosis;
+mod dynamics_page;
 mod eigenvalues;
 mod estimate_tables;
 mod figure;
@@ -39,7 +41,9 @@ mod unit_list;
 mod unmodelled;
 
 pub use assets::{Asset, asset};
+pub use bode_figure::bode_svg;
 pub use decimate::rows_to_plot;
+pub use dynamics_page::{DynamicsView, dynamics_page};
 pub use figure::history_svg;
 pub use job_page::{JobView, NamedModel, UsedManeuver, job_page};
 pub use jobs_page::{Chosen, JobRow, JobsView, jobs_page};

@@ -66,7 +66,8 @@ pub fn report(view: &ReportView) -> String {
 fn result(view: &ReportView, estimate: &Estimate) -> Markup {
     html! {
         (tables(estimate, [&source(view, "parameters"), &source(view, "estimate")]))
-        (tolerances(&view.histories))
+        // what a reconstruction computes is recorded motion, and no response
+        @if !estimate.modes.is_empty() { (tolerances(&view.histories)) }
         @for history in &view.histories {
             section.whole {
                 h2 { "Measured and model: " (history.segment) @if history.role != Role::Estimation { " (took no part in the fit)" } }

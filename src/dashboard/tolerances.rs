@@ -5,71 +5,17 @@
 use maud::{Markup, html};
 
 use crate::estimate::{OutputSeries, Role, TimeHistory, five_digits as number};
-use crate::flight::{Shown, shown_in};
-
-/// What a response may deviate by.
-struct Tolerance {
-    /// Names that the output goes by.
-    names: &'static [&'static str],
-    /// SI unit that it has.
-    unit: &'static str,
-    /// SI.
-    absolute: f64,
-    /// Share of the measured value, whichever of the two is larger; 0: none.
-    relative: f64,
-    text: &'static str,
-}
-
-const DEGREE: f64 = std::f64::consts::PI / 180.0;
-
-const TOLERANCES: [Tolerance; 5] = [
-    Tolerance {
-        names: &["q"],
-        unit: "rad/s",
-        absolute: 2.0 * DEGREE,
-        relative: 0.0,
-        text: "short-period dynamics: pitch rate ±2 deg/s",
-    },
-    Tolerance {
-        names: &["theta"],
-        unit: "rad",
-        absolute: 1.5 * DEGREE,
-        relative: 0.0,
-        text: "short-period dynamics: pitch angle ±1.5 deg",
-    },
-    Tolerance {
-        names: &["az", "a_z", "nz"],
-        unit: "m/s^2",
-        absolute: 0.1 * 9.806_65,
-        relative: 0.0,
-        text: "short-period dynamics: normal acceleration ±0.1 g",
-    },
-    Tolerance {
-        names: &["p"],
-        unit: "rad/s",
-        absolute: 2.0 * DEGREE,
-        relative: 0.1,
-        text: "roll response: roll rate ±2 deg/s or ±10 %",
-    },
-    Tolerance {
-        names: &["r"],
-        unit: "rad/s",
-        absolute: 2.0 * DEGREE,
-        relative: 0.1,
-        text: "rudder response: yaw rate ±2 deg/s or ±10 %",
-    },
-];
+use crate::flight::{Shown, Unit, by_name, shown_in};
+use crate::job::Tolerance;
 
 /// A table of the outputs that a tolerance applies to; nothing where there is none.
 pub(super) fn tolerances(histories: &[TimeHistory]) -> Markup {
     let mut rows = Vec::new();
     for history in histories {
         for output in &history.outputs {
-            let applies = |tolerance: &&Tolerance| {
-                tolerance.names.contains(&output.name.as_str()) && tolerance.unit == output.unit
-            };
-            if let Some(tolerance) = TOLERANCES.iter().find(applies) {
-                rows.push((history, output, tolerance, held(output, tolerance)));
+            if let Some(tolerance) = tolerance(output) {
+                let held = tolerance.held(&output.measured, &output.residual);
+                rows.push((history, output, held));
             }
         }
     }
@@ -84,13 +30,13 @@ pub(super) fn tolerances(histories: &[TimeHistory]) -> Markup {
                         th.number scope="col" { "largest deviation" } th.number scope="col" { "samples within" } th scope="col" { "tolerance" }
                     } }
                     tbody {
-                        @for (history, output, tolerance, held) in &rows {
+                        @for (history, output, held) in &rows {
                             @let Shown { scale, unit } = shown_in(&output.unit);
                             tr {
                                 td { (history.segment) @if history.role != Role::Estimation { span.soft { " (not fitted)" } } }
                                 th scope="row" { (output.name) } td.soft { (unit) }
-                                td.number { (number(held.largest * scale)) } td.number { (format!("{:.1} %", 100.0 * held.share)) }
-                                td.soft { (tolerance.text) }
+                                td.number { (number(held.largest_deviation * scale)) } td.number { (format!("{:.1} %", 100.0 * held.share_within)) }
+                                td.soft { (held.entry) ", " (held.tolerance) }
                             }
                         }
                     }
@@ -100,26 +46,10 @@ pub(super) fn tolerances(histories: &[TimeHistory]) -> Markup {
     }
 }
 
-struct Held {
-    /// SI
-    largest: f64,
-    /// Of the samples that are there.
-    share: f64,
-}
-
-fn held(output: &OutputSeries, tolerance: &Tolerance) -> Held {
-    let (mut largest, mut within, mut samples) = (0.0_f64, 0, 0);
-    let present = output.residual.iter().zip(&output.measured);
-    for (residual, measured) in present.filter(|(residual, _)| residual.is_finite()) {
-        let bound = tolerance.absolute.max(tolerance.relative * measured.abs());
-        largest = largest.max(residual.abs());
-        within += usize::from(residual.abs() <= bound);
-        samples += 1;
-    }
-    Held {
-        largest,
-        share: within as f64 / f64::from(samples.max(1)),
-    }
+/// By the output's name and unit, as reports know no more of it.
+fn tolerance(output: &OutputSeries) -> Option<Tolerance> {
+    let dimension = Unit::parse(&output.unit).ok()?.dimension;
+    Tolerance::of(by_name(&output.name, dimension)?, &output.unit)
 }
 
 #[cfg(test)]
@@ -144,9 +74,6 @@ mod tests {
             inputs: Vec::new(),
             outputs: vec![output.clone()],
         };
-        let held = held(&output, &TOLERANCES[3]);
-        assert_eq!(held.largest, 0.2);
-        assert!((held.share - 2.0 / 3.0).abs() < 1e-12);
         let html = tolerances(std::slice::from_ref(&history)).into_string();
         assert!(
             html.contains("66.7 %") && html.contains("roll &lt;1&gt;"),

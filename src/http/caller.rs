@@ -56,8 +56,13 @@ pub(super) fn needed(method: &Method, path: &str) -> Option<Scope> {
     if is_admins || *method == Method::DELETE {
         return Some(Scope::Admin);
     }
-    // works out numbers from a result and keeps nothing
-    let only_asks = under("/v1/jobs") && path.ends_with("/coefficients");
+    // works out numbers from what is kept, and keeps nothing
+    let only_asks = under("/v1/simulations")
+        || under("/v1/maneuvers") && path.ends_with("/frequency-responses")
+        || under("/v1/jobs")
+            && ["/coefficients", "/predictions"]
+                .iter()
+                .any(|end| path.ends_with(end));
     if method.is_safe() || only_asks {
         Some(Scope::Read)
     } else {

@@ -82,6 +82,8 @@ codes! {
     NoResult "no_result" NOT_FOUND "The job has no result";
     /// The result has no trajectory: `detail` says why.
     NoTrajectory "no_trajectory" CONFLICT "There is no trajectory";
+    /// The estimated model cannot be linearised: `detail` says why.
+    NoLinearSystem "no_linear_system" CONFLICT "There is no linear system";
     /// The path is right, the method is not. The header `Allow` lists those that are.
     MethodNotAllowed "method_not_allowed" METHOD_NOT_ALLOWED "The method is not allowed here";
     /// None of the media types in `Accept` is offered here.
@@ -122,6 +124,10 @@ codes! {
     InvalidModel "invalid_model" UNPROCESSABLE_ENTITY "The model has faults";
     /// The job cannot be started. `errors` lists all faults, each with its place in the spec.
     InvalidJob "invalid_job" UNPROCESSABLE_ENTITY "The job has faults";
+    /// The prediction cannot be made. `errors` lists all faults, each with its place.
+    InvalidPrediction "invalid_prediction" UNPROCESSABLE_ENTITY "The prediction has faults";
+    /// The scenario cannot be flown. `detail` says which part of it and why.
+    InvalidScenario "invalid_scenario" UNPROCESSABLE_ENTITY "The scenario has a fault";
     /// The key cannot be made like this. `errors` lists all faults, each with its place.
     InvalidKey "invalid_key" UNPROCESSABLE_ENTITY "The key cannot be made like this";
     /// The webhook cannot be made like this: `errors` tells the place.
@@ -130,12 +136,16 @@ codes! {
     InvalidMapping "invalid_mapping" UNPROCESSABLE_ENTITY "The mapping has faults";
     /// The aircraft's constants have faults. `errors` lists all of them.
     InvalidAircraft "invalid_aircraft" UNPROCESSABLE_ENTITY "The aircraft's constants have faults";
+    /// The frequency responses cannot be worked out. Each entry of `errors` says why and points into the request.
+    InvalidResponse "invalid_response" UNPROCESSABLE_ENTITY "The frequency responses cannot be worked out";
     /// The service failed: a defect of ours. Report it with the `request_id`.
     Internal "internal" INTERNAL_SERVER_ERROR "The service failed";
     /// The service holds as much of what is being sent to it as it may. Send it again after `Retry-After` seconds.
     Busy "busy" SERVICE_UNAVAILABLE "The service is busy";
     /// The database does not answer in time. Nothing was lost that was accepted; try again.
     StoreUnavailable "store_unavailable" SERVICE_UNAVAILABLE "The store does not answer";
+    /// The database's disk is full. Nothing was lost that was accepted; make room, and try again.
+    StoreFull "store_full" INSUFFICIENT_STORAGE "The store is full";
 }
 
 impl Code {

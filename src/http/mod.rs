@@ -27,6 +27,9 @@ mod routes;
 mod serve;
 mod service;
 
+pub use answer::campaign_table::campaign_as_csv;
+pub use answer::prediction_table::predictions_as_csv;
+pub use answer::response_table::responses_as_csv;
 pub use answer::trajectory_table::trajectories_as_csv;
 pub use config::Config;
 pub use handlers::keys::{a_day, days};

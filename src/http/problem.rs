@@ -15,7 +15,7 @@ use super::code::Code;
 use crate::dashboard::{ProblemView, problem_page};
 use crate::ingest::IngestError;
 use crate::job::Fault;
-use crate::store::StoreError;
+use crate::store::{StoreError, Trouble};
 
 pub const MEDIA_TYPE: &str = "application/problem+json";
 
@@ -166,12 +166,23 @@ impl From<StoreError> for Problem {
     fn from(error: StoreError) -> Self {
         tracing::error!(%error, "store");
         // its text may name files and tables: that is for the log
-        if !error.is_passing() {
-            return Self::internal();
-        }
-        let detail = "the database does not answer; try again in a few seconds";
+        let (code, detail) = match error.trouble() {
+            None => return Self::internal(),
+            Some(Trouble::Away) => (
+                Code::StoreUnavailable,
+                "the database does not answer; try again in a few seconds",
+            ),
+            Some(Trouble::Full) => (
+                Code::StoreFull,
+                "the database has no room left on its disk; make room there, and try again",
+            ),
+            Some(Trouble::ReadOnly) => (
+                Code::StoreUnavailable,
+                "the database can be read and not written; see to its permissions, and try again",
+            ),
+        };
         let seconds = HeaderValue::from_static("5");
-        Self::new(Code::StoreUnavailable, detail).with_header(header::RETRY_AFTER, seconds)
+        Self::new(code, detail).with_header(header::RETRY_AFTER, seconds)
     }
 }
 

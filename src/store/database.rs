@@ -1,14 +1,19 @@
 //! The database, open: what all that is kept is read from and written to.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use sqlx::AnyPool;
+use tokio::time::timeout;
 use tokio_util::sync::DropGuard;
 
 use super::clock::Clock;
 use super::engine::Engine;
 use super::error::StoreError;
 use super::signal::{Listener, Signals};
+
+/// A probe that takes longer is of a database that does not answer.
+const PROBE: Duration = Duration::from_secs(3);
 
 /// A handle; clones share one database.
 #[derive(Clone)]
@@ -32,14 +37,19 @@ impl Store {
         self.signals.listen()
     }
 
-    /// Whether the database answers.
+    /// Whether the database answers and can be written: what is accepted has to be kept.
     ///
     /// # Errors
-    /// It does not.
+    /// It does not, or cannot, within some seconds.
     pub async fn ping(&self) -> Result<(), StoreError> {
-        sqlx::query("SELECT COUNT(*) FROM schema_steps")
-            .fetch_one(&self.readers)
-            .await?;
+        let probe = async {
+            // changes nothing, and is written nevertheless
+            sqlx::query("UPDATE schema_steps SET applied = applied WHERE version = 1")
+                .execute(&self.writer)
+                .await
+        };
+        let in_time = timeout(PROBE, probe).await;
+        in_time.unwrap_or(Err(sqlx::Error::PoolTimedOut))?;
         Ok(())
     }
 

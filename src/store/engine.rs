@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use sqlx::any::AnyPoolOptions;
-use sqlx::{AnyConnection, Executor};
+use sqlx::{AnyConnection, Connection, Executor};
 
 /// A statement that waits longer than this for the database gives up.
 const ACQUIRE_TIMEOUT: Duration = Duration::from_secs(10);
@@ -82,14 +82,15 @@ impl Engine {
         let pool = AnyPoolOptions::new()
             .max_connections(connections)
             .acquire_timeout(ACQUIRE_TIMEOUT)
-            .after_connect(move |connection, _| Box::pin(self.prepare(connection)));
+            .after_connect(move |connection, _| Box::pin(self.prepare(connection)))
+            .after_release(|connection, _| Box::pin(is_clear(connection)));
         match self {
             Self::Sqlite => pool.idle_timeout(None).max_lifetime(None),
             Self::Postgres => pool,
         }
     }
 
-    async fn prepare(self, connection: &mut AnyConnection) -> sqlx::Result<()> {
+    pub(super) async fn prepare(self, connection: &mut AnyConnection) -> sqlx::Result<()> {
         let settings: &[&'static str] = match self {
             // WAL: readers do not block the writer. FULL: what was committed outlives a power cut.
             Self::Sqlite => &[
@@ -110,4 +111,12 @@ impl Engine {
         }
         Ok(())
     }
+}
+
+/// Whether a connection that comes back has no transaction any more. SQLite ends one by itself where the disk is full, so
+/// that it cannot be rolled back; the driver then believes for ever that it goes on. Such a connection is thrown away.
+async fn is_clear(connection: &mut AnyConnection) -> sqlx::Result<bool> {
+    // behind a rollback that is under way
+    connection.ping().await?;
+    Ok(!connection.is_in_transaction())
 }

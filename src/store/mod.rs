@@ -48,7 +48,7 @@ pub use address::{is_missing, without_password};
 pub use answers::{KeptAnswer, Once};
 pub use clock::Clock;
 pub use database::Store;
-pub use error::StoreError;
+pub use error::{StoreError, Trouble};
 pub use jobs::{CancelReply, JobFilter, JobRecord, NewJob};
 pub use keys::{Key, KeyCheck, KeyRecord, NewKey, Scope};
 pub use lease::{Claim, LEASE, MOST_LOST_WORKERS};

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use sqlx::{AnyConnection, Connection};
 use tokio::time::{Instant, sleep};
 
 use super::address::{connection, without_password};
@@ -48,6 +49,10 @@ impl Store {
     }
 
     async fn connect(engine: Engine, url: &str, clock: &Clock) -> Result<Self, StoreError> {
+        // a pool tries until its patience ends, and then does not say why
+        let mut first = AnyConnection::connect(url).await?;
+        engine.prepare(&mut first).await?;
+        first.close().await?;
         let writer = engine.pool(engine.writers()).connect(url).await?;
         let readers = engine.pool(8).connect(url).await?;
         let signals = Signals::new();

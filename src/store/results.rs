@@ -20,6 +20,8 @@ pub enum Part {
     Study,
     /// [`crate::diagnose::Diagnosis`]; only of jobs of that kind.
     Diagnosis,
+    /// [`crate::structure::Structure`]; only of jobs of that kind.
+    Structure,
     /// [`Maker`].
     Maker,
 }
@@ -31,6 +33,7 @@ impl Part {
             Self::Model => "model",
             Self::Study => "study",
             Self::Diagnosis => "diagnosis",
+            Self::Structure => "structure",
             Self::Maker => "maker",
         }
     }
@@ -67,6 +70,10 @@ impl ResultParts {
         if let Some(diagnosis) = &result.diagnosis {
             let diagnosis = serde_json::to_vec(diagnosis);
             parts.push((Part::Diagnosis.name().to_string(), diagnosis));
+        }
+        if let Some(structure) = &result.structure {
+            let structure = serde_json::to_vec(structure);
+            parts.push((Part::Structure.name().to_string(), structure));
         }
         for (number, history) in result.histories.iter().enumerate() {
             parts.push((history_part(number), encode_history(history)));

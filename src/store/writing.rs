@@ -53,3 +53,41 @@ impl Store {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::Trouble;
+
+    /// A database that may not grow is to SQLite a disk that is full: it ends the transaction by itself. Found on a full
+    /// disk, where no transaction could be begun any more until the process was started again.
+    #[tokio::test]
+    async fn a_full_disk_is_told_and_costs_the_connection_alone() {
+        let directory = tempfile::tempdir().unwrap();
+        let file = directory.path().join("trimtab.db");
+        let store = Store::open(file.to_str().unwrap()).await.unwrap();
+        sqlx::query("PRAGMA max_page_count = 1")
+            .execute(&store.writer)
+            .await
+            .unwrap();
+        let mut writing = store.begin().await.unwrap();
+        let full = loop {
+            let written = sqlx::query(
+                "INSERT INTO schema_steps (version, applied) SELECT MAX(version) + 1, $1 FROM schema_steps",
+            )
+            .bind("x".repeat(10_000))
+            .execute(writing.connection())
+            .await;
+            if let Err(error) = written {
+                break StoreError::from(error);
+            }
+        };
+        assert_eq!(full.trouble(), Some(Trouble::Full), "{full}");
+        drop(writing);
+        // another connection, without the limit: as if there were room again
+        for _ in 0..3 {
+            store.begin().await.unwrap().commit().await.unwrap();
+        }
+        store.ping().await.unwrap();
+    }
+}

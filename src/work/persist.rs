@@ -4,8 +4,11 @@ use std::time::Duration;
 
 use crate::store::{LEASE, StoreError};
 
-/// Tries again while the database is in trouble (locked, disk full), as long as a lease lasts. That
-/// the lease is lost, or that there is no way to write what is to be written, is final.
+/// Passing trouble is waited out this long: nobody else can take the job over while the database is away.
+const PATIENCE: Duration = Duration::from_secs(600);
+
+/// Tries again while the database is in trouble (away, locked, disk full); what else a database objects to, as long as a
+/// lease lasts. That the lease is lost, or that there is no way to write what is to be written, is final.
 ///
 /// # Errors
 /// The last one met.
@@ -13,11 +16,16 @@ pub(super) async fn persist<T, F>(what: &str, mut write: impl FnMut() -> F) -> R
 where
     F: Future<Output = Result<T, StoreError>>,
 {
-    let deadline = tokio::time::Instant::now() + LEASE;
+    let start = tokio::time::Instant::now();
     let mut pause = Duration::from_millis(50);
+    let patience = |error: &StoreError| match error {
+        _ if error.is_passing() => PATIENCE,
+        StoreError::Database(_) => LEASE,
+        _ => Duration::ZERO,
+    };
     loop {
         match write().await {
-            Err(StoreError::Database(error)) if tokio::time::Instant::now() + pause < deadline => {
+            Err(error) if start.elapsed() + pause < patience(&error) => {
                 tracing::warn!(%error, what, "the store is in trouble; trying again");
                 tokio::time::sleep(pause).await;
                 pause = (pause * 2).min(Duration::from_secs(2));

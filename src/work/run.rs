@@ -28,7 +28,10 @@ const LOG_CAPACITY: usize = 256;
 pub(super) async fn run_job(store: &Store, claim: Claim, shutdown: &CancellationToken) {
     let claim = Arc::new(claim);
     let written = match work_on(store, &claim, shutdown).await {
-        Settled::Ended(ending) => end(store, &claim, ending).await,
+        Settled::Ended(ending) => tokio::select! {
+            written = end(store, &claim, ending) => written,
+            () = last_chance(shutdown) => Err(StoreError::Database(sqlx::Error::PoolTimedOut)),
+        },
         Settled::Released => {
             let release = || store.release(&claim, "the server is shutting down");
             persist("release", release).await
@@ -43,6 +46,12 @@ pub(super) async fn run_job(store: &Store, claim: Claim, shutdown: &Cancellation
         // the lease runs out, and the next worker starts the job anew
         Err(error) => tracing::error!(job = %claim.job, %error, "the job's end was not written"),
     }
+}
+
+/// A process that is to end does not wait as long for its database as another.
+async fn last_chance(shutdown: &CancellationToken) {
+    shutdown.cancelled().await;
+    sleep(LEASE).await;
 }
 
 enum Settled {
@@ -257,6 +266,8 @@ async fn end(store: &Store, claim: &Claim, ending: JobEnd) -> Result<(), StoreEr
     } = ending;
     let finish = || store.finish(claim, before, &events, event.clone(), result.as_ref());
     match persist("finish", finish).await {
+        // trouble that did not pass says nothing against the result: the lease runs out, and the job is run again
+        Err(error) if error.is_passing() => Err(error),
         Err(error) if result.is_some() && !matches!(error, StoreError::LeaseLost) => {
             let event = failed("store of the result", &error).event;
             (store.finish(claim, before, &events, event, None)).await

@@ -73,6 +73,9 @@ pub(super) fn solve(
     };
     let result = match spec.kind {
         JobKind::Estimate => job::run(&plan, &mut |progress| tell(Some(progress.into()))),
+        JobKind::Structure => {
+            job::run_structure(&plan, &mut |progress| tell(Some(progress.into())))
+        }
         JobKind::DerivativeStudy => job::run_study(&plan, &ThreadClock::start(), &mut |progress| {
             tell(match progress {
                 StudyProgress::Estimation(progress) => Some(progress.into()),

@@ -120,6 +120,14 @@ fn choices() -> Vec<Vec<Choice>> {
             vec![json!("validation"), json!("final")],
         ),
         option("/model/outputs/y/delay", vec![json!("tau")]),
+        option("/model/inputs/u/delay", vec![json!("tau")]),
+        option(
+            "/options/frequency",
+            vec![
+                json!({"band_hz": [0.3, 3.0], "step_hz": 0.1}),
+                json!({"band_hz": [0.25, 4.0], "ends": "at_rest", "trend": "constant"}),
+            ],
+        ),
     ]
 }
 
@@ -199,13 +207,23 @@ fn every_pair_works_or_is_refused_by_name() {
     let choices = choices();
     let mut bad = Vec::new();
     let mut tried = 0;
-    for estimator in ["output_error", "filter_error", "equation_error"] {
+    for estimator in [
+        "output_error",
+        "filter_error",
+        "equation_error",
+        "output_error_frequency",
+        "equation_error_frequency",
+    ] {
         for kind in ["estimate", "diagnose", "derivative_study"] {
             let base = json!({
                 "kind": kind, "model": model(), "parameters": {},
                 "maneuvers": [{"id": maneuver.digest(), "label": "one"}, {"id": maneuver.digest(), "label": "two"}],
                 "options": {"estimator": estimator},
             });
+            let mut base = base;
+            if estimator.ends_with("_frequency") {
+                base["options"]["frequency"] = json!({"band_hz": [0.25, 4.0]});
+            }
             let mut attempt = |chosen: &[&Choice]| {
                 let mut spec = base.clone();
                 chosen

@@ -37,6 +37,80 @@ fn fails(arguments: &[&str]) -> String {
     said(&output.stderr)
 }
 
+/// A table of numbers, without a model: the term that is there is found, by both methods, and the one that is not is left.
+#[test]
+fn structure_finds_an_equation_from_channels() {
+    let mut csv = "t[s],alpha[rad],de[rad],CL[-]\n".to_string();
+    for k in 0..200 {
+        let t = f64::from(k) * 0.05;
+        let (alpha, de) = (0.08 + 0.06 * (0.9 * t).sin(), 0.05 * (1.3 * t).sin());
+        let noise = 0.002 * (f64::from(k) * 12.9898).sin();
+        csv += &format!("{t},{alpha},{de},{}\n", 0.2 + 4.5 * alpha + noise);
+    }
+    let file = std::env::temp_dir().join(format!("trimtab-structure-{}.csv", std::process::id()));
+    std::fs::write(&file, csv).expect("written");
+    let path = file.to_string_lossy();
+    let common = [
+        "structure",
+        &path,
+        "--output",
+        "CL",
+        "--variables",
+        "alpha,de",
+        "--order",
+        "1",
+    ];
+    let table = succeeds(&common);
+    assert!(table.contains("CL = CL_0 + CL_alpha*alpha\n"), "{table}");
+    assert!(
+        table.contains("PRESS") && table.contains("partial F"),
+        "{table}"
+    );
+    let result: Value = serde_json::from_str(&succeeds(
+        &[&common[..], &["--orthogonal", "--json"]].concat(),
+    ))
+    .expect("JSON");
+    assert_eq!(result["structure"]["method"], "orthogonal");
+    assert_eq!(result["structure"]["terms"][1]["term"], "alpha");
+    let refused = fails(&["structure", &path, "--output", "CD", "--variables", "alpha"]);
+    assert!(refused.contains("no channel 'CD' is recorded"), "{refused}");
+    std::fs::remove_file(&file).expect("removed");
+}
+
+/// The band alone asks for output error in the frequency domain.
+#[test]
+fn fit_works_in_the_frequency_domain() {
+    let common = ["fit", "data/elevator.csv", "-m", "short-period", "--json"];
+    let with = |more: &[&str]| -> Value {
+        serde_json::from_str(&succeeds(&[&common[..], more].concat())).expect("JSON")
+    };
+    for (more, output) in [
+        (&["--band", "0.1-1.5"][..], "alpha"),
+        (
+            &[
+                "--band",
+                "0.1-1.5",
+                "--estimator",
+                "equation_error_frequency",
+            ],
+            "d_alpha_dt",
+        ),
+    ] {
+        let frequency = with(more)["estimate"]["frequency"].clone();
+        assert_eq!(frequency["segments"][0]["frequencies"], 35, "{frequency}");
+        assert_eq!(frequency["outputs"][0]["name"], output);
+    }
+    let refused = fails(&[
+        "fit",
+        "data/elevator.csv",
+        "-m",
+        "short-period",
+        "--estimator",
+        "output_error_frequency",
+    ]);
+    assert!(refused.contains("band_hz"), "{refused}");
+}
+
 #[test]
 fn fit_works_without_a_server() {
     let table = succeeds(&["fit", "data/elevator.csv", "--model", "short-period"]);

@@ -58,6 +58,26 @@ async fn the_same_content_is_the_same_maneuver() {
     assert_eq!(unknown.problem(404, "unknown_maneuver"), []);
 }
 
+/// It was dropped on the way, and the encoding found out by what the bytes look like.
+#[tokio::test]
+async fn the_charset_of_an_upload_holds() {
+    let server = Server::start().await;
+    let refused = server
+        .post("/v1/maneuvers", "text/csv; charset=klingon", SMALL)
+        .await;
+    let faults = refused.problem(422, "invalid_maneuver");
+    assert!(faults[0].1.contains("not_utf8"), "{faults:?}");
+    let titled = |title: &str| format!("time [s],{title} [deg]\n0,1\n0.1,2\n0.2,3\n0.3,5\n");
+    let utf16: Vec<u8> = (titled("alpha").encode_utf16())
+        .flat_map(u16::to_be_bytes)
+        .collect();
+    let read = server
+        .post("/v1/maneuvers", "Text/CSV; Charset=\"UTF-16BE\"", utf16)
+        .await;
+    assert!(read.status.is_success(), "{}", read.text());
+    assert!(read.text().contains("alpha"), "{}", read.text());
+}
+
 #[tokio::test]
 async fn a_file_is_what_its_first_bytes_tell() {
     let config = Config {
@@ -303,4 +323,34 @@ async fn a_body_that_breaks_off_keeps_nothing() {
         server.get("/v1/maneuvers").await.json()["maneuvers"],
         json!([])
     );
+}
+
+/// Of the elevator maneuver: a short-period response where the motion is, and faults by their place.
+#[tokio::test]
+async fn a_recording_has_frequency_responses() {
+    let server = Server::start().await;
+    let id = server.upload(&elevator()).await;
+    let path = format!("/v1/maneuvers/{id}/frequency-responses");
+    let asked = json!({"inputs": ["de"], "outputs": ["q", "alpha"], "band_hz": [0.1, 1.0], "points": 10, "windows": [20.0]});
+    let answer = server.post_json(&path, &asked).await;
+    assert_eq!(answer.status, 200, "{}", answer.text());
+    let found = answer.json();
+    assert_eq!(found["frequency_hz"].as_array().unwrap().len(), 10);
+    assert_eq!(found["responses"][1]["output"], "alpha");
+    assert!(
+        found["responses"][0]["coherence"][3].as_f64().unwrap() > 0.9,
+        "{found}"
+    );
+    let refused = server
+        .post_json(
+            &path,
+            &json!({"inputs": ["dr"], "outputs": ["q"], "band_hz": [0.1, 1.0]}),
+        )
+        .await;
+    assert_eq!(refused.status, 422);
+    assert_eq!(refused.json()["errors"][0]["pointer"], "/inputs");
+    let nowhere = server
+        .post_json("/v1/maneuvers/none/frequency-responses", &asked)
+        .await;
+    assert_eq!(nowhere.status, 404);
 }

@@ -87,6 +87,7 @@ pub(crate) fn new_job(name: &str) -> NewJob {
         parameters: Default::default(),
         constants: Default::default(),
         candidates: Vec::new(),
+        structure: None,
         knowledge: Default::default(),
         options: Options::default(),
         strict: Default::default(),

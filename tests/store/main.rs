@@ -13,4 +13,5 @@ mod projects;
 mod queue;
 mod records;
 mod schema;
+mod trouble;
 mod webhooks;

@@ -14,11 +14,12 @@ use super::found::Found;
 use super::lines::{Line, lines};
 use super::report::{Diagnosis, EffectParameter, FitChange, NamedEffect, ParameterChange, Verdict};
 use super::residual::analyse;
+use super::rival::Rival;
 use super::screen::Screen;
 use super::sentence;
 use super::size::sizes;
 use super::unmodelled::Picture;
-use super::verdict::{self, Left};
+use super::verdict::{self, Doubt, Left};
 use crate::estimate::{
     Estimate, OutputFit, ParameterEstimate, Problem, Role, Solution, TimeHistory, estimate,
     five_digits, predict,
@@ -45,6 +46,7 @@ pub(super) fn answer(
     last: &Fitted,
     found: Found,
     picture: Option<Picture>,
+    rival: Option<Rival>,
 ) -> Result<Conclusion, Unfit> {
     let Declared {
         fitted: declared,
@@ -103,10 +105,18 @@ pub(super) fn answer(
     } else {
         coherent(case, last)
     };
+    let doubt = rival.as_ref().map(|rival| Doubt {
+        named: rival.named,
+        force: rival.picture.unmodelled.likelihood_ratio,
+    });
+    let picture = rival.map(|rival| rival.picture).or(picture);
     let unmodelled = picture.map(|picture| picture.unmodelled);
     let left = Left {
         coherent: &following,
         differs: found.differs_between_maneuvers(),
+        terms: verdict::terms(&found),
+        pushed: found.pushed.as_deref(),
+        doubt,
         force: unmodelled.as_ref(),
     };
     let verdict = verdict::of(case, declared, &found, &left);

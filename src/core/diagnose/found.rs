@@ -1,7 +1,8 @@
 //! Effects that the rounds found, and those that they refused.
 
 use super::accepted::Accepted;
-use super::effect::Effect;
+use super::effect::{Effect, Treatment};
+use super::group::alone;
 use super::report::{Refusal, RefusedEffect};
 use crate::model::Added;
 
@@ -13,9 +14,20 @@ const CLEARLY: f64 = 40.0;
 pub(super) struct Found {
     pub accepted: Vec<Accepted>,
     pub refused: Vec<RefusedEffect>,
+    /// The rate that something disturbs which nothing recorded tells of, and which is no turbulence.
+    pub pushed: Option<String>,
 }
 
 impl Found {
+    /// The process noise that was accepted last is that of a rate.
+    pub(super) fn is_no_turbulence(&mut self, rate: String) {
+        if let Some(last) = self.accepted.last_mut() {
+            last.effect = Effect::treatment(Treatment::ProcessNoise, rate.as_str());
+            last.group = alone(&last.effect);
+        }
+        self.pushed = Some(rate);
+    }
+
     /// The parameters that the accepted effects added.
     pub(super) fn added(&self) -> Vec<Added> {
         let accepted = self.accepted.iter();

@@ -12,6 +12,7 @@ use super::predicted::Predicted;
 use super::refused::differs;
 use super::repeats::disagreement;
 use super::report::{OutputGain, Refusal};
+use super::size::Size;
 use super::stack::Layout;
 use super::threshold::Threshold;
 use super::trial::Trial;
@@ -20,6 +21,12 @@ use crate::model::{Added, AddedRole, EditKind};
 
 /// A size within so many standard errors of nothing is nothing that one can tell an engineer of.
 const LEAST_ERRORS: f64 = 2.0;
+
+/// A flow about an aircraft, and the downwash on its way to the tail, form within this time, s.
+const SLOWEST_FLOW: f64 = 0.6;
+
+/// A frequency that is told is at least so many of its standard errors.
+const LEAST_FREQUENCY: f64 = 4.0;
 
 /// Two sizes of a larger correlation are one.
 const TIED: f64 = 0.97;
@@ -50,8 +57,8 @@ pub(super) fn pass(
     threshold: Threshold,
 ) -> Result<Passed, Box<(Trial, Objection)>> {
     match judge(null, &trial, threshold) {
-        Ok((settled, gains)) => Ok(Passed {
-            plain_gain: plain_gain(null, &trial.effect, &settled, &gains),
+        Ok((settled, Heard { gains, again })) => Ok(Passed {
+            plain_gain: again.or_else(|| plain_gain(null, &trial.effect, &settled, &gains)),
             trial,
             settled,
             gains,
@@ -60,20 +67,30 @@ pub(super) fn pass(
     }
 }
 
+/// What flights that were not fitted say of an effect.
+#[derive(Default)]
+struct Heard {
+    /// By output, of plain errors.
+    gains: Vec<OutputGain>,
+    /// What it is worth where these are fitted themselves, if that was asked.
+    again: Option<f64>,
+}
+
 fn judge(
     null: &NullModel<'_>,
     trial: &Trial,
     threshold: Threshold,
-) -> Result<(Fitted, Vec<OutputGain>), Objection> {
+) -> Result<(Fitted, Heard), Objection> {
     let least = threshold.of(trial.freedom, trial.starts);
     significant(trial, least)?;
     within_range(&trial.effect, &trial.likeliest, &trial.added)?;
+    is_of_its_kind(&trial.effect, &trial.likeliest, &trial.added)?;
     let settled = settle(null.case, trial)?;
     holds(&trial.effect, &settled, &trial.added)?;
     told_from_earlier(null, &settled, &trial.added)?;
     repeats(trial, &settled)?;
-    let gains = predictive(null, trial, &settled, least)?;
-    Ok((settled, gains))
+    let heard = predictive(null, trial, &settled, least)?;
+    Ok((settled, heard))
 }
 
 fn significant(trial: &Trial, least: f64) -> Result<(), Objection> {
@@ -100,6 +117,7 @@ fn significant(trial: &Trial, least: f64) -> Result<(), Objection> {
 /// What speaks against it.
 pub(super) fn holds(effect: &Effect, settled: &Fitted, added: &[Added]) -> Result<(), Objection> {
     within_range(effect, settled, added)?;
+    is_of_its_kind(effect, settled, added)?;
     told_from_nothing(effect, settled, added)
 }
 
@@ -116,6 +134,42 @@ fn within_range(effect: &Effect, fitted: &Fitted, added: &[Added]) -> Result<(),
             ),
         )),
     }
+}
+
+/// Whether the numbers that make it what it is called are those of such an effect: a flow forms in a time that the
+/// aircraft takes to fly some lengths of its own, and a mode has a frequency.
+fn is_of_its_kind(effect: &Effect, fitted: &Fitted, added: &[Added]) -> Result<(), Objection> {
+    let of = |role: AddedRole| {
+        let added = added.iter().find(|added| added.role == role)?;
+        let sizes = fitted.sizes(std::slice::from_ref(added));
+        sizes.into_iter().next()
+    };
+    match effect.kind {
+        EffectKind::Edit(EditKind::UnsteadyAero) => match of(AddedRole::TimeConstant) {
+            Some(time) if time.value > SLOWEST_FLOW => Err((
+                Refusal::OutOfRange,
+                format!(
+                    "a flow that follows {:.2} s late is none: it forms within {SLOWEST_FLOW} s",
+                    time.value
+                ),
+            )),
+            _ => Ok(()),
+        },
+        EffectKind::Edit(EditKind::StructuralMode) => match of(AddedRole::Frequency) {
+            Some(mode) if is_not_told(&mode) => Err((
+                Refusal::OutOfRange,
+                "the data do not tell its frequency: what swings so is no mode".into(),
+            )),
+            _ => Ok(()),
+        },
+        _ => Ok(()),
+    }
+}
+
+/// Whether the error of a frequency is so large that it is none.
+fn is_not_told(frequency: &Size) -> bool {
+    (frequency.standard_error_si())
+        .is_some_and(|error| frequency.value.abs() < LEAST_FREQUENCY * error)
 }
 
 /// The fit that is reported: converged, by output error.
@@ -210,28 +264,28 @@ fn repeats(trial: &Trial, settled: &Fitted) -> Result<(), Objection> {
     }
 }
 
-/// Whether flights that were not fitted are predicted better with it; gains by output.
+/// Whether flights that were not fitted are predicted better with it.
 fn predictive(
     null: &NullModel<'_>,
     trial: &Trial,
     settled: &Fitted,
     least: f64,
-) -> Result<Vec<OutputGain>, Objection> {
+) -> Result<Heard, Objection> {
     // a gust comes once, and innovations are no prediction
     let is_heard =
         !trial.effect.is_noise() && trial.effect.kind != EffectKind::Edit(EditKind::Gust);
     let (Some(before), true) = (&null.predicted, is_heard) else {
-        return Ok(Vec::new());
+        return Ok(Heard::default());
     };
     let predicted = Predicted::of(settled, null.case, Role::Validation)
         .map_err(|why| (Refusal::NotPredictive, why.to_string()))?;
     let Some(after) = predicted else {
-        return Ok(Vec::new());
+        return Ok(Heard::default());
     };
     let gains = after.gains_over(before);
     if trial.effect.is_local_in_time() {
         // each flight has a size of its own, found on that flight
-        return Ok(gains);
+        return Ok(Heard { gains, again: None });
     }
     let gain: f64 = gains.iter().map(|gain| gain.gain).sum();
     let expected = after.gain_expected_over(before);
@@ -243,8 +297,16 @@ fn predictive(
     }
     // what speaks for it on all flights together
     let in_all = trial.likelihood_ratio + gain;
-    let is_seen = gain > 0.0 || trial.likelihood_ratio >= UNHEARD * least;
-    if expected >= HEARD && (gain < least_gain(expected) || in_all < least || !is_seen) {
+    let is_clear = trial.likelihood_ratio >= UNHEARD * least;
+    let is_seen = gain > 0.0 || is_clear;
+    let is_denied =
+        expected >= HEARD && (gain < least_gain(expected) || in_all < least || !is_seen);
+    // plain errors of coloured noise say little: whether the effect is there is asked as it was of the flights fitted
+    let again = match is_denied && is_clear && null.base.is_coloured() {
+        true => null.shown_again(settled, &trial.added, trial.freedom),
+        false => None,
+    };
+    if is_denied && again.is_none() {
         let why = format!(
             "it differs between maneuvers: flights that were not fitted are not predicted better with it (gain {gain:.1}, where {expected:.1} is expected)"
         );
@@ -256,7 +318,7 @@ fn predictive(
         );
         return Err((Refusal::NotPredictive, why));
     }
-    Ok(gains)
+    Ok(Heard { gains, again })
 }
 
 /// The gain below which flights that were not fitted speak against an effect that should bring `expected`.

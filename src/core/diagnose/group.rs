@@ -1,5 +1,6 @@
 //! Alias groups: candidates that the data cannot tell apart.
 
+use super::effect::Effect;
 use super::passed::{Noise, Passed};
 use super::projection::dot;
 use super::report::Member;
@@ -15,6 +16,14 @@ const PARALLEL: f64 = 0.95;
 
 /// Beyond this the likelihood is clear even so.
 const FAR: f64 = 40.0;
+
+/// An effect that no other can be taken for.
+pub(super) fn alone(effect: &Effect) -> Vec<Member> {
+    vec![Member {
+        effect: effect.clone(),
+        weight: 1.0,
+    }]
+}
 
 /// The members of the group that `best` leads, itself included, the likeliest first, with their weights.
 pub(super) fn group(best: &Passed, others: &[Passed], noise: Noise) -> Vec<Member> {

@@ -11,6 +11,7 @@
 
 mod accepted;
 mod answer;
+mod beside_noise;
 mod candidates;
 mod case;
 mod colour;
@@ -18,6 +19,7 @@ mod declared;
 mod difference;
 mod disturbed;
 mod effect;
+mod elsewhere;
 mod fitted;
 mod flight;
 mod found;
@@ -38,6 +40,7 @@ mod repeats;
 mod report;
 mod residual;
 mod review;
+mod rival;
 mod round;
 mod screen;
 mod sentence;
@@ -45,8 +48,12 @@ mod size;
 mod spikes;
 mod stack;
 mod starts;
+#[cfg(test)]
+mod tests;
 mod threshold;
 mod trial;
+#[cfg(test)]
+mod truth;
 mod unmodelled;
 mod verdict;
 mod watch;
@@ -73,12 +80,14 @@ pub use watch::Watcher;
 
 use accepted::Accepted;
 use answer::answer;
+use beside_noise::beside_noise;
 use declared::Declared;
-use disturbed::disturbed_throughout;
+use disturbed::{disturbed_elsewhere, disturbed_throughout};
 use fitted::Fitted;
 use found::Found;
 use review::review;
-use round::round;
+use rival::Rival;
+use round::{Round, round};
 use watch::{Stopped, ask, tell};
 
 /// Rounds, and so effects, at most: who lacks more than these has another model.
@@ -97,6 +106,7 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
     let mut base = declared.fitted.clone();
     let cleaned = clean(case, &declared.fitted, &mut base, &mut found, watcher)?;
     let case = cleaned.as_ref().unwrap_or(case);
+    let mut start = base.clone();
     let catalogue = candidates::candidates(case, &declared.fitted.problem.model);
     let mut pool = catalogue.clone();
     // of the last fit, where it was looked for
@@ -108,8 +118,14 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
             .cloned()
             .collect();
         let round = round(case, &base, left, &found.added(), number, watcher)?;
-        let Some(accepted) = round.accepted else {
-            found.refuse(round.refused);
+        let Round {
+            accepted,
+            refused,
+            mut others,
+            threshold,
+        } = round;
+        let Some(accepted) = accepted else {
+            found.refuse(refused);
             if picture.is_some() {
                 break;
             }
@@ -135,15 +151,31 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
             && let Some(lower) = declared.lower(case, &accepted.fitted, watcher)
         {
             base = lower.fitted.clone();
+            start = base.clone();
             declared = lower;
             continue;
         }
-        found.refuse(round.refused);
+        found.refuse(refused);
         let calm = std::mem::replace(&mut base, accepted.fitted.clone());
         let last = accepted.effect.is_noise();
         accept(accepted, number, &mut found, watcher)?;
         if last {
-            base = disturbed_throughout(case, &calm, base);
+            base = match disturbed_elsewhere(case, &calm, &base) {
+                Some((rate, fitted)) => {
+                    found.is_no_turbulence(rate);
+                    fitted
+                }
+                None => disturbed_throughout(case, &calm, base),
+            };
+            while number < MOST_ROUNDS
+                && let Some(further) = beside_noise(case, &base, &others, threshold)
+            {
+                ask(watcher)?;
+                number += 1;
+                others.retain(|other| !further.effect.rules_out(&other.trial.effect));
+                base = further.fitted.clone();
+                accept(further, number, &mut found, watcher)?;
+            }
             break;
         }
         number += 1;
@@ -157,7 +189,9 @@ pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, In
             unmodelled::found(case, &base)
         }
     };
-    Ok(answer(case, &declared, &base, found, picture)?)
+    ask(watcher)?;
+    let rival = Rival::of(case, &start, &base, &found);
+    Ok(answer(case, &declared, &base, found, picture, rival)?)
 }
 
 /// Leaves out samples that are no measurements; `None` where there are none.

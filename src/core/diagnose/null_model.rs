@@ -1,7 +1,10 @@
 //! The null model: the model as it is, which a candidate has to beat.
 
+use std::sync::OnceLock;
+
 use super::case::{Case, Unfit};
 use super::colour::Colour;
+use super::elsewhere::Elsewhere;
 use super::fitted::Fitted;
 use super::predicted::Predicted;
 use super::projection::norm;
@@ -19,6 +22,8 @@ pub(super) struct NullModel<'c> {
     pub ln_evidence: f64,
     /// Of flights that were not fitted; `None` where there are none.
     pub predicted: Option<Predicted>,
+    /// The model without any effect, fitted to those flights alone, once that is asked for.
+    elsewhere: OnceLock<Option<Elsewhere>>,
     colour: Colour,
     layout: Layout,
 }
@@ -38,9 +43,24 @@ impl<'c> NullModel<'c> {
             earlier,
             ln_evidence: base.clone().likeliest().ln_evidence(),
             predicted: Predicted::of(base, case, Role::Validation)?,
+            elsewhere: OnceLock::new(),
             colour: Colour::of_best_order(&layout, &base.residual),
             layout,
         })
+    }
+
+    /// What an effect is worth to the flights that were not fitted, were they fitted themselves: twice the gain of ln L.
+    /// `None` where it is not clearly there, or has another size.
+    pub(super) fn shown_again(
+        &self,
+        settled: &Fitted,
+        added: &[Added],
+        freedom: usize,
+    ) -> Option<f64> {
+        let elsewhere = self
+            .elsewhere
+            .get_or_init(|| Elsewhere::of(self.case, self.base));
+        elsewhere.as_ref()?.shows(settled, added, freedom)
     }
 
     /// What a fit takes off the whitened residual, of length 1.

@@ -1,7 +1,8 @@
 //! Review: what no longer holds with later effects in the model, or what these made needless, is taken out again.
 
 use super::accepted::Accepted;
-use super::case::Case;
+use super::case::{Case, Unfit};
+use super::disturbed::again;
 use super::fitted::Fitted;
 use super::found::Found;
 use super::gate::holds;
@@ -23,9 +24,12 @@ pub(super) fn review(case: &Case, declared: &Fitted, base: &mut Fitted, found: &
         let leaving = untenable(declared, base, found);
         let leaving = leaving.or_else(|| needless(case, declared, base, found));
         let Some(leaving) = leaving else { break };
-        let Ok(fitted) = Fitted::settled(case, leaving.without, &base.values()) else {
-            break;
+        let fitted = if is_filtered(found) {
+            again(case, base, leaving.without)
+        } else {
+            Fitted::settled(case, leaving.without, &base.values())
         };
+        let Ok(fitted) = fitted else { break };
         *base = fitted;
         let removed = found.accepted.remove(leaving.at);
         found.removed(removed, leaving.why, leaving.worth);
@@ -33,18 +37,18 @@ pub(super) fn review(case: &Case, declared: &Fitted, base: &mut Fitted, found: &
     }
 }
 
+/// With process noise in the model the fit is that of the filter-error method.
+fn is_filtered(found: &Found) -> bool {
+    (found.accepted.iter()).any(|accepted| accepted.effect.is_noise())
+}
+
 /// The last effect whose size has come to a bound of its range, or to nothing.
 fn untenable(declared: &Fitted, base: &Fitted, found: &Found) -> Option<Leaving> {
-    // with process noise in the model the fit is another estimator's
-    if found
-        .accepted
-        .iter()
-        .any(|accepted| accepted.effect.is_noise())
-    {
-        return None;
-    }
     (0..found.accepted.len()).rev().find_map(|at| {
         let Accepted { effect, added, .. } = &found.accepted[at];
+        if effect.edits.is_empty() {
+            return None;
+        }
         let (refusal, why) = holds(effect, base, added).err()?;
         Some(Leaving {
             at,
@@ -62,11 +66,22 @@ fn untenable(declared: &Fitted, base: &Fitted, found: &Found) -> Option<Leaving>
 
 /// The effect whose removal costs least, if that is less than what it had to pass.
 fn needless(case: &Case, declared: &Fitted, base: &Fitted, found: &Found) -> Option<Leaving> {
-    let evidence = base.clone().likeliest().ln_evidence();
+    let filtered = is_filtered(found);
+    let evidence = |fitted: Fitted| match filtered {
+        true => fitted.ln_evidence(),
+        false => fitted.likeliest().ln_evidence(),
+    };
+    let with = evidence(base.clone());
+    let fit = |document: ModelDocument| -> Result<Fitted, Unfit> {
+        match filtered {
+            true => again(case, base, document),
+            false => Fitted::trial(case, document, &base.values()),
+        }
+    };
     let of = |at: usize| {
         let without = without(declared, found, at)?;
-        let fitted = Fitted::trial(case, without.clone(), &base.values()).ok()?;
-        let cost = 2.0 * (evidence - fitted.likeliest().ln_evidence());
+        let fitted = fit(without.clone()).ok()?;
+        let cost = 2.0 * (with - evidence(fitted));
         let beyond = cost - found.accepted[at].evidence.threshold;
         let why = format!(
             "it was accepted in an earlier round; with the later effects in the model its likelihood ratio is only {cost:.1}"

@@ -42,6 +42,9 @@ const STILL_IN_PLAY: f64 = 0.3;
 pub(super) struct Round {
     pub accepted: Option<Accepted>,
     pub refused: Vec<RefusedEffect>,
+    /// What passed beside the one that was accepted.
+    pub others: Vec<Passed>,
+    pub threshold: Threshold,
 }
 
 /// A candidate, and what the screen saw of it.
@@ -66,6 +69,8 @@ pub(super) fn round(
     let mut result = Round {
         accepted: None,
         refused: Vec::new(),
+        others: Vec::new(),
+        threshold: Threshold { questions: 1.0 },
     };
     let (Some(screen), Ok(null)) = (Screen::new(case, base), NullModel::new(case, base, earlier))
     else {
@@ -77,6 +82,7 @@ pub(super) fn round(
     let threshold = Threshold {
         questions: questions(&visible),
     };
+    result.threshold = threshold;
     let step = Step::Screened {
         round: number,
         candidates: count,
@@ -363,4 +369,5 @@ fn choose(mut passed: Vec<Passed>, threshold: Threshold, result: &mut Round) {
         ));
     }
     result.accepted = Some(Accepted::of(best, group, threshold));
+    result.others = others;
 }

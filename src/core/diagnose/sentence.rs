@@ -49,7 +49,9 @@ fn words(effect: &Effect, first: Option<&Size>) -> String {
     let term = effect.term.as_deref().unwrap_or_default();
     let kind = match effect.kind {
         EffectKind::Treatment(Treatment::ProcessNoise) => {
-            return format!("{target} is disturbed by turbulence (process noise)");
+            return format!(
+                "{target} is disturbed by turbulence or another force that nothing recorded tells of (process noise)"
+            );
         }
         EffectKind::Treatment(Treatment::SensorOutliers) => {
             return format!("{target} has samples that are no measurements (outliers)");

@@ -17,14 +17,30 @@ const UNLIKELY: f64 = 0.01;
 /// Fewer samples than this for each free parameter decide nothing.
 const LEAST_SAMPLES: usize = 5;
 
+/// So many terms describe what is missing; their forms are hardly those of nature.
+const PATCHWORK: usize = 3;
+
 /// What is left when all rounds are over.
 pub(super) struct Left<'l> {
     /// Outputs, and inputs that their residuals still follow.
     pub coherent: &'l [(String, String)],
     /// Something that is clearly there, but not in all flights.
     pub differs: Option<&'l RefusedEffect>,
+    /// How many terms the equations of motion were given, see [`terms`].
+    pub terms: usize,
+    /// A rate that something pushes which nothing recorded tells of.
+    pub pushed: Option<&'l str>,
+    /// Whether the names are in doubt.
+    pub doubt: Option<Doubt>,
     /// A force in one equation, where white noise alone would hardly leave it.
     pub force: Option<&'l Unmodelled>,
+}
+
+/// A force of no form explains what the declared model leaves as well as what was named: twice the gains of ln L.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Doubt {
+    pub named: f64,
+    pub force: f64,
 }
 
 pub(super) fn of(case: &Case, declared: &Fitted, found: &Found, left: &Left<'_>) -> Verdict {
@@ -36,7 +52,9 @@ pub(super) fn of(case: &Case, declared: &Fitted, found: &Found, left: &Left<'_>)
         }
     }
     let forced = left.force.is_some_and(Unmodelled::is_clear);
-    let follows = !left.coherent.is_empty() || forced;
+    let patched = left.terms >= PATCHWORK;
+    let doubtful = patched || left.doubt.is_some() || left.pushed.is_some();
+    let follows = !left.coherent.is_empty() || forced || doubtful;
     if follows || (found.accepted.is_empty() && left.differs.is_some()) {
         return Verdict::Unexplained;
     }
@@ -46,6 +64,18 @@ pub(super) fn of(case: &Case, declared: &Fitted, found: &Found, left: &Left<'_>)
         Some(1) => Verdict::Named,
         Some(_) => Verdict::NamedGroup,
     }
+}
+
+/// How many terms the equations of motion were given.
+pub(super) fn terms(found: &Found) -> usize {
+    use EditKind::{MissingTerm, StallHysteresis, UnrecordedInput, UnsteadyAero};
+    let is_term = |accepted: &&Accepted| {
+        matches!(
+            accepted.effect.kind,
+            EffectKind::Edit(MissingTerm | StallHysteresis | UnrecordedInput | UnsteadyAero)
+        )
+    };
+    found.accepted.iter().filter(is_term).count()
 }
 
 fn nothing_moves(declared: &Fitted) -> bool {
@@ -158,6 +188,18 @@ fn what_is_left(left: &Left<'_>) -> String {
             differs.sentence
         ));
     }
+    parts.extend(left.doubt.map(|Doubt { named, force }| {
+        format!("a force of no form in one equation of the declared model explains as much (2 ln L {force:.0}, that {named:.0}), and so the name is in doubt")
+    }));
+    if left.terms >= PATCHWORK {
+        parts.push(format!(
+            "{} terms together describe what is missing: what it is has another form",
+            left.terms
+        ));
+    }
+    parts.extend(left.pushed.map(|rate| {
+        format!("what disturbs {rate} is no turbulence, which would come by the flow, and nothing recorded tells of it")
+    }));
     parts.extend(left.force.map(|force| force.sentence.clone()));
     parts.join("; ")
 }

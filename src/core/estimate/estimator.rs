@@ -4,6 +4,7 @@ use crate::estimate::answer::Solution;
 use crate::estimate::equation_error::equation_error;
 use crate::estimate::filter_error::finer_steps::filter_error_in_steps;
 use crate::estimate::findings::findings;
+use crate::estimate::frequency::{equation_error_frequency, output_error_frequency};
 use crate::estimate::options::estimator::Estimator;
 use crate::estimate::output_error::finer_steps::from_start;
 use crate::estimate::problem::Problem;
@@ -22,6 +23,12 @@ pub fn estimate(problem: &Problem, watcher: &mut Watcher<'_>) -> Result<Solution
             watcher(Progress::Iteration(iteration))
         }),
         Estimator::EquationError => equation_error(problem, &mut |iteration| {
+            watcher(Progress::Iteration(iteration))
+        }),
+        Estimator::OutputErrorFrequency => output_error_frequency(problem, &mut |iteration| {
+            watcher(Progress::Iteration(iteration))
+        }),
+        Estimator::EquationErrorFrequency => equation_error_frequency(problem, &mut |iteration| {
             watcher(Progress::Iteration(iteration))
         }),
     }?;

@@ -1,4 +1,5 @@
-//! Estimation by output error, filter error and equation error: start, cost, steps, iterations, error bounds.
+//! Estimation by output error, filter error and equation error, the first and last in the frequency domain, too: start,
+//! cost, steps, iterations, error bounds.
 //!
 //! [`Problem`] is a model with its data, [`estimate`] finds the θ that its options ask for: with [`output_error()`], from
 //! a start that is found first, the θ of least negative log-likelihood
@@ -24,7 +25,7 @@
 //! answer       estimate and time histories, put together at the end
 //! regression   the problem of equation error
 //! start        where to begin; multiple shooting
-//! output_error, filter_error, study
+//! output_error, filter_error, frequency, study
 //! findings     what a reader of the answer should know beside its numbers
 //! ```
 //!
@@ -39,19 +40,24 @@ mod estimator;
 mod evaluation;
 mod filter_error;
 mod findings;
+mod frequency;
 mod likelihood;
 mod linear;
+mod monte_carlo;
 mod options;
 mod output_error;
 mod prediction;
 mod problem;
 mod regression;
 mod report;
+mod simulated;
 mod start;
 pub mod study;
 mod trajectory;
 
 pub use crate::flight::five_digits;
+pub(crate) use accuracy::covariance::Estimated;
+pub(crate) use accuracy::state_matrix::is_kinematic;
 pub use answer::Solution;
 pub use coefficients::{Coefficient, coefficients};
 pub use descent::quasi_newton;
@@ -63,8 +69,12 @@ pub use evaluation::evaluator::Evaluator;
 pub use evaluation::normal_equations::NormalEquations;
 pub(crate) use filter_error::process_noise_names;
 pub use filter_error::{FilterEquations, FilterEvaluator, filter_error};
+pub(crate) use frequency::band_frequencies;
+pub use frequency::{equation_error_frequency, output_error_frequency};
+pub use monte_carlo::{DRAWS, MonteCarlo};
 pub use options::error_bounds::ErrorBoundsKind;
 pub use options::estimator::Estimator;
+pub use options::frequency::{Ends, FrequencyOptions, Trend};
 pub use options::process_noise::ProcessNoise;
 pub use options::role::Role;
 pub use options::start::StartMethod;
@@ -81,15 +91,17 @@ pub use report::collinear::CollinearSet;
 pub use report::estimate::Estimate;
 pub use report::filter::{FilterEstimate, Pole, ProcessNoiseEstimate, SegmentGain};
 pub use report::fit::{OutputFit, TheilShares};
+pub use report::frequency::{FrequencyEstimate, FrequencyFit, SegmentBand};
 pub use report::history::{OutputSeries, Series, TimeHistory};
 pub use report::identifiability::{
     CorrelatedPair, DataInformation, Identifiability, NearlyCollinearSet,
 };
 pub use report::integration::{HalvedSteps, Integration};
 pub use report::iteration::{Iteration, Outcome};
-pub use report::mode::{Measure, Mode};
+pub use report::mode::{Measure, Mode, ModeName};
 pub use report::parameter::{Bound, ParameterEstimate};
 pub use report::prediction::Prediction;
 pub use report::progress::{Observer, Progress, Watcher};
 pub use report::start::{StartKind, StartReport};
+pub use simulated::{NoSimulation, SimulatedQuantity, SimulatedSegment, simulate_estimate};
 pub use trajectory::{QuantityKind, Trajectory, TrajectorySeries, trajectories};

@@ -99,7 +99,8 @@ pub fn predict(
                 Unusable::NotFinite
                 | Unusable::SingularNoise
                 | Unusable::NoSteadyGain { .. }
-                | Unusable::NoMeasuredState => {
+                | Unusable::NoMeasuredState
+                | Unusable::NoBand => {
                     "with the estimate an output is not a finite number at some sample".to_string()
                 }
             };

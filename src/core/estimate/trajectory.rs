@@ -5,12 +5,12 @@
 //! sensitivities (Maine and Iliff, NASA RP 1168, 1986, chapter 11, for outputs). A quantity is an output of the model
 //! compiled once more: there is one way to write models, and one to simulate them.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::accuracy::covariance::Estimated;
 use super::problem::Problem;
-use super::problem::unknowns::Unknowns;
 use super::problem::unusable::Unusable;
 use super::report::estimate::Estimate;
 use crate::flight::Unit;
@@ -60,14 +60,23 @@ pub struct Trajectory {
 }
 
 /// Outputs of a model that is compiled to see quantities.
-const AT_ONCE: usize = 60;
+pub(super) const AT_ONCE: usize = 60;
 
 /// All quantities of a problem's model along its segments, at an estimate of the problem.
 ///
 /// # Errors
 /// The simulation leaves the range of numbers.
 pub fn trajectories(problem: &Problem, estimate: &Estimate) -> Result<Vec<Trajectory>, Unusable> {
-    let at = At::of(problem, estimate);
+    let at = Estimated::of(problem, estimate);
+    along_all(problem, &at, &quantities(&problem.model.document))
+}
+
+/// Some quantities along all segments of a problem.
+pub(super) fn along_all(
+    problem: &Problem,
+    at: &Estimated,
+    wanted: &[Quantity],
+) -> Result<Vec<Trajectory>, Unusable> {
     let mut trajectories: Vec<Trajectory> = (problem.segments.iter())
         .map(|segment| Trajectory {
             segment: segment.label.clone(),
@@ -75,7 +84,7 @@ pub fn trajectories(problem: &Problem, estimate: &Estimate) -> Result<Vec<Trajec
             quantities: Vec::new(),
         })
         .collect();
-    for some in quantities(&problem.model.document).chunks(AT_ONCE) {
+    for some in wanted.chunks(AT_ONCE) {
         let document = seen(&problem.model.document, some);
         // the document was compiled before: with other outputs it cannot fail, and there is nothing to show if it did
         let Ok(model) = Model::compile(&document) else {
@@ -90,13 +99,13 @@ pub fn trajectories(problem: &Problem, estimate: &Estimate) -> Result<Vec<Trajec
 }
 
 /// A quantity to be seen.
-struct Quantity {
-    name: String,
+pub(super) struct Quantity {
+    pub name: String,
     kind: QuantityKind,
     output: Output,
 }
 
-fn quantities(document: &ModelDocument) -> Vec<Quantity> {
+pub(super) fn quantities(document: &ModelDocument) -> Vec<Quantity> {
     let plain = |name: &String, unit: &String, kind: QuantityKind| Quantity {
         name: name.clone(),
         kind,
@@ -119,7 +128,7 @@ fn quantities(document: &ModelDocument) -> Vec<Quantity> {
 }
 
 /// The document with quantities as its outputs.
-fn seen(document: &ModelDocument, quantities: &[Quantity]) -> ModelDocument {
+pub(super) fn seen(document: &ModelDocument, quantities: &[Quantity]) -> ModelDocument {
     let mut document = document.clone();
     let outputs = quantities.iter().enumerate();
     document.outputs = outputs
@@ -128,44 +137,7 @@ fn seen(document: &ModelDocument, quantities: &[Quantity]) -> ModelDocument {
     document
 }
 
-/// An estimate, SI.
-struct At {
-    /// Free and fixed ones where they were estimated.
-    unknowns: Unknowns,
-    theta: Vec<f64>,
-    /// P; rows of unknowns without a standard error are zero.
-    covariance: DMatrix<f64>,
-    /// By place of θ: whether it has a standard error.
-    is_known: Vec<bool>,
-}
-
-impl At {
-    fn of(problem: &Problem, estimate: &Estimate) -> Self {
-        let unknowns = &problem.unknowns;
-        let unit = |index: usize| problem.model.parameters[unknowns.all[index].parameter].unit;
-        let rows = estimate.parameters.iter().enumerate();
-        let values: Vec<f64> = rows
-            .map(|(index, row)| unit(index).to_si(row.estimate))
-            .collect();
-        let unknowns = unknowns.with_starts(&values);
-        let correlation = &estimate.correlation;
-        let is_whole = correlation.len() == unknowns.len();
-        let errors: Vec<Option<f64>> = (unknowns.free.iter())
-            .map(|&index| Some(estimate.parameters[index].standard_error? * unit(index).scale))
-            .map(|error| error.filter(|error| is_whole && error.is_finite()))
-            .collect();
-        let covariance = |i: usize, j: usize| match (errors[i], errors[j]) {
-            (Some(a), Some(b)) => a * b * correlation[i][j],
-            _ => 0.0,
-        };
-        Self {
-            theta: unknowns.start(),
-            covariance: DMatrix::from_fn(errors.len(), errors.len(), covariance),
-            is_known: errors.iter().map(Option::is_some).collect(),
-            unknowns,
-        }
-    }
-
+impl Estimated {
     fn along(
         &self,
         problem: &Problem,
@@ -200,14 +172,10 @@ impl At {
                 let places: Vec<usize> = (columns.of_output(output).iter())
                     .filter_map(|&parameter| unknowns.place(index, parameter))
                     .collect();
-                let among = (self.covariance)
-                    .select_rows(&places)
-                    .select_columns(&places);
+                let among = self.among(&places);
                 for k in 0..block.len {
                     let row = block.row(output, k);
-                    let slopes = places.iter().zip(row);
-                    is_told[output] &=
-                        { slopes }.all(|(&place, slope)| self.is_known[place] || *slope == 0.0);
+                    is_told[output] &= self.is_known(&places, row);
                     let row = DVector::from_column_slice(row);
                     let variance = row.dot(&(&among * &row));
                     series.standard_errors.push(variance.max(0.0).sqrt());

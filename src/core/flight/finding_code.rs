@@ -103,6 +103,14 @@ codes! {
     Elsewhere "elsewhere" Warning;
     /// Inputs that are held between samples explain the data far better than the straight lines that were assumed, or the reverse.
     InputInterpolation "input_interpolation" Warning;
+    /// The model is not linear: an estimator of the frequency domain looks at small motions about the start of each maneuver.
+    Linearised "linearised" Warning;
+    /// An input has next to no power in the band of frequencies that is looked at.
+    NoPowerInBand "no_power_in_band" Warning;
+    /// The frequencies of a band tell few numbers for so many unknowns.
+    FewFrequencies "few_frequencies" Warning;
+    /// Terms of a structure determination are the same everywhere, or no numbers somewhere, and were left out.
+    LeftOutTerms "left_out_terms" Warning;
     /// Integration steps are too long for the accuracy of the estimate: with half their length a parameter would move.
     StepTooLong "step_too_long" Warning;
     /// A motion of the estimate is at the edge of what an integration step can follow.

@@ -3,7 +3,7 @@
 use crate::estimate::{Estimator, Problem, Unusable};
 use crate::flight::Fault;
 use crate::model::Element;
-use crate::simulate::MOST_DELAY;
+use crate::simulate::{MOST_DELAY, Segment};
 
 /// Why the start values lead nowhere.
 pub(super) fn no_start(problem: &Problem, why: Unusable) -> Fault {
@@ -29,6 +29,7 @@ pub(super) fn no_start(problem: &Problem, why: Unusable) -> Fault {
             Fault::new("/options/noise", "singular_noise", message)
         }
         Unusable::NoMeasuredState => no_measured_state(problem),
+        Unusable::NoBand => no_band(&problem.segments, problem.options.estimator),
     }
 }
 
@@ -41,11 +42,23 @@ fn no_gain(problem: &Problem, segment: usize) -> Fault {
     Fault::new("/options/process_noise", "no_steady_gain", message)
 }
 
+/// Why an estimator of the frequency domain has nothing to look at.
+pub(super) fn no_band(segments: &[Segment], estimator: Estimator) -> Fault {
+    let longest = segments.iter().map(Segment::duration);
+    let longest = longest.fold(0.0, f64::max);
+    let message = format!(
+        "the estimator \"{}\" needs a band of frequencies: say \"frequency\": {{\"band_hz\": [from, to]}}, from no less than some {:.2} Hz, of which the record has two periods, to where the motion ends, some 1 to 2 Hz for a rigid aircraft",
+        estimator.name(),
+        2.0 / longest
+    );
+    Fault::new("/options/frequency", "no_band", message)
+}
+
 /// Why equation error has no equation.
 pub(super) fn no_measured_state(problem: &Problem) -> Fault {
     let pointer = match problem.options.estimator {
-        Estimator::EquationError => "/options/estimator",
-        Estimator::OutputError | Estimator::FilterError => "/options/start",
+        estimator if estimator.is_equation_error() => "/options/estimator",
+        _ => "/options/start",
     };
     let message = "equation error needs an output that measures a state: its equation is the state, possibly with a bias, scale or drift parameter; add such an output, or choose another";
     Fault::new(pointer, "no_measured_state", message)

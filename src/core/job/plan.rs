@@ -2,6 +2,7 @@
 
 use super::event::Prepared;
 use super::strict::Strict;
+use super::term_search::TermSearch;
 use crate::diagnose::Case;
 use crate::estimate::{Problem, Validation};
 use crate::model::ModelDocument;
@@ -20,6 +21,8 @@ pub struct Plan {
     pub validation: Vec<Validation>,
     /// Of a diagnosis: all that it is made from.
     pub case: Option<Case>,
+    /// Of a structure determination: what terms are chosen from.
+    pub terms: Option<TermSearch>,
     /// Which findings refuse the result.
     pub strict: Strict,
 }

@@ -7,6 +7,7 @@ use crate::diagnose::Diagnosis;
 use crate::estimate::study::DerivativeStudy;
 use crate::estimate::{Estimate, TimeHistory};
 use crate::model::ModelDocument;
+use crate::structure::Structure;
 
 /// Everything a finished job answers.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
@@ -23,4 +24,7 @@ pub struct JobResult {
     /// Of a diagnosis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub diagnosis: Option<Diagnosis>,
+    /// Of a structure determination.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub structure: Option<Structure>,
 }

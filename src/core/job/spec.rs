@@ -14,6 +14,7 @@ use crate::diagnose::Knowledge;
 use crate::estimate::{Options, Role};
 use crate::flight::Flown;
 use crate::model::{Edit, ModelDocument, Prior, Start};
+use crate::structure::StructureOptions;
 
 /// A job: a kind, a model, maneuvers, and how the one meets the others.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
@@ -76,6 +77,9 @@ pub struct JobSpec {
     /// Of a diagnosis: what is known before the data.
     #[serde(default, skip_serializing_if = "is_nothing")]
     pub knowledge: Knowledge,
+    /// Of a structure determination: which output is explained by which terms.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub structure: Option<StructureOptions>,
     /// How to estimate; each option has a default.
     #[serde(default)]
     pub options: Options,
@@ -101,6 +105,7 @@ impl JobSpec {
             parameters: IndexMap::new(),
             constants: IndexMap::new(),
             candidates: Vec::new(),
+            structure: None,
             knowledge: Default::default(),
             options: Options::default(),
             strict: Strict::default(),
@@ -170,11 +175,19 @@ pub enum JobKind {
     /// Output-error estimation, and then what the model lacks: the residual is traced to effects of the catalogue,
     /// which are added one by one. The result has a `diagnosis`; its estimate is that of the model with the effects.
     Diagnose,
+    /// Which terms the equation of an output needs, by stepwise regression or orthogonal functions, over the terms in
+    /// `structure`; and then the estimation of their parameters. The result has a `structure`; its model has the equation.
+    Structure,
 }
 
 impl JobKind {
     /// All kinds, in the order of the help.
-    pub const ALL: [Self; 3] = [Self::Estimate, Self::Diagnose, Self::DerivativeStudy];
+    pub const ALL: [Self; 4] = [
+        Self::Estimate,
+        Self::Diagnose,
+        Self::Structure,
+        Self::DerivativeStudy,
+    ];
 
     /// As it is written in a job.
     pub fn name(self) -> &'static str {
@@ -182,6 +195,7 @@ impl JobKind {
             Self::Estimate => "estimate",
             Self::DerivativeStudy => "derivative_study",
             Self::Diagnose => "diagnose",
+            Self::Structure => "structure",
         }
     }
 }

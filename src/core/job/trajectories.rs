@@ -41,6 +41,15 @@ pub fn trajectories_of(plan: &Plan, estimate: &Estimate) -> Result<Vec<Trajector
     if estimate.filter.is_some() {
         return Err(NoTrajectory::Filter);
     }
+    check_parameters(plan, estimate)?;
+    trajectories(&plan.problem, estimate).map_err(NoTrajectory::Unusable)
+}
+
+/// Whether an estimate has the parameters of a plan, in its order.
+///
+/// # Errors
+/// It has others: another program made it.
+pub fn check_parameters(plan: &Plan, estimate: &Estimate) -> Result<(), NoTrajectory> {
     let problem = &plan.problem;
     let own = problem.unknowns.all.iter().map(|unknown| {
         let segment = unknown
@@ -55,10 +64,10 @@ pub fn trajectories_of(plan: &Plan, estimate: &Estimate) -> Result<Vec<Trajector
         .parameters
         .iter()
         .map(|row| (row.name.as_str(), row.segment.as_deref()));
-    if !own.eq(estimated) {
-        return Err(NoTrajectory::OtherParameters);
+    match own.eq(estimated) {
+        true => Ok(()),
+        false => Err(NoTrajectory::OtherParameters),
     }
-    trajectories(problem, estimate).map_err(NoTrajectory::Unusable)
 }
 
 /// The plan of a job of which spec, declared model, data and the model as estimated were kept.
@@ -74,9 +83,10 @@ pub fn plan_again(
     let plan = match spec.kind {
         JobKind::Estimate | JobKind::DerivativeStudy => prepare(spec, declared, maneuvers),
         // the model of a diagnosis has its effects in it, and the job's own edits
-        JobKind::Diagnose => {
+        JobKind::Diagnose | JobKind::Structure => {
             let mut spec = spec.clone();
             spec.kind = JobKind::Estimate;
+            spec.structure = None;
             spec.edits.clear();
             spec.parameters.clear();
             prepare(&spec, estimated, maneuvers)

@@ -43,7 +43,7 @@ const MOST_VISITS: usize = 100_000_000;
 impl Affine {
     /// `None` where some row is not affine, or depends on the time, or where there is too much to differentiate.
     pub(super) fn find(graph: &mut Graph, slots: Slots, rows: &[NodeId]) -> Option<Self> {
-        if !are_affine(graph, slots, rows) {
+        if !are_affine(graph, slots, rows, Degree::Higher) {
             return None;
         }
         let states = (0..slots.states).map(|i| (Factor::State(i), slots.state(i)));
@@ -89,14 +89,21 @@ impl Affine {
     }
 }
 
-/// Whether nodes are affine in states and inputs, with coefficients that only θ changes.
-fn are_affine(graph: &Graph, slots: Slots, rows: &[NodeId]) -> bool {
-    #[derive(Clone, Copy, PartialEq, PartialOrd)]
-    enum Degree {
-        Constant,
-        Affine,
-        Higher,
-    }
+/// Whether rows are linear in states and inputs but for what is added to them: functions of θ, and the time itself.
+pub(super) fn are_linear(graph: &Graph, slots: Slots, rows: &[NodeId]) -> bool {
+    are_affine(graph, slots, rows, Degree::Affine)
+}
+
+/// How a node depends on states and inputs.
+#[derive(Clone, Copy, PartialEq, PartialOrd)]
+enum Degree {
+    Constant,
+    Affine,
+    Higher,
+}
+
+/// Whether nodes are affine in states and inputs, with coefficients that only θ changes; `time` is what the time counts as.
+fn are_affine(graph: &Graph, slots: Slots, rows: &[NodeId], time: Degree) -> bool {
     use Degree::{Affine, Constant, Higher};
     let last = rows.iter().max().map_or(0, |&row| row as usize + 1);
     let mut degrees: Vec<Degree> = Vec::with_capacity(last);
@@ -106,7 +113,7 @@ fn are_affine(graph: &Graph, slots: Slots, rows: &[NodeId]) -> bool {
         let constant_if = |yes: bool| if yes { Constant } else { Higher };
         degrees.push(match graph.node(id as NodeId) {
             Node::Constant(_) => Constant,
-            Node::Symbol(slot) if slot == slots.time() => Higher,
+            Node::Symbol(slot) if slot == slots.time() => time,
             Node::Symbol(slot) if slot < slots.time() => Affine,
             Node::Symbol(_) => Constant,
             Node::Unary(Unary::Negate, a) => of(a),

@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use super::affine::Affine;
+use super::affine::{Affine, are_linear};
 use super::document::{ModelDocument, Per, Start};
 use super::equations::Equations;
 use super::expression::{self, BinaryOperator, Expression, Function, Kind};
@@ -63,6 +63,9 @@ impl Model {
             observation_jacobian: Jacobian::derive(&mut graph, slots, &roots.observation),
             paths: Paths::compile(&mut graph, slots, &roots.input_paths, &roots.output_paths),
             affine_dynamics: Affine::find(&mut graph, slots, &roots.dynamics),
+            linear: [&roots.dynamics, &roots.observation]
+                .iter()
+                .all(|rows| are_linear(&graph, slots, rows)),
             inputs: quantities(
                 document
                     .inputs

@@ -27,6 +27,7 @@ mod paths;
 mod program;
 mod quantities;
 mod scalar;
+mod source;
 mod trigonometry;
 mod unique;
 
@@ -45,6 +46,7 @@ pub use program::{Program, Workspace};
 pub use quantities::{Quantities, Source, Taken};
 pub use scalar::Scalar;
 pub(crate) use scalar::{BLOCK, LANES, Lanes};
+pub use source::SourceLanguage;
 pub(crate) use unique::unique;
 
 use std::sync::Arc;
@@ -70,6 +72,8 @@ pub struct Model {
     pub dynamics: Program,
     /// f as A x + B u + c, where it is of this form.
     pub(crate) affine_dynamics: Option<Affine>,
+    /// f and g are A x + B u and C x + D u but for what is added: functions of θ, and the time itself.
+    pub(crate) linear: bool,
     /// g(x, u, t, θ)
     pub observation: Program,
     /// ∂x0/∂θ
@@ -88,6 +92,12 @@ impl Model {
     /// Whether f is A x + B u + c with A, B and c functions of θ alone, so that a step is a product with a matrix.
     pub fn is_affine(&self) -> bool {
         self.affine_dynamics.is_some()
+    }
+
+    /// Whether states and outputs are linear in states and inputs, with coefficients that only θ changes; constants and
+    /// drifts may be added to them.
+    pub fn is_linear(&self) -> bool {
+        self.linear
     }
 
     /// What its equations see as inputs: those of the document, then the ρ of each element of their paths.

@@ -92,19 +92,32 @@ impl Paths {
         sizes
     }
 
-    /// ∂ψ/∂θ of the elements of outputs: (place among them, parameter, value) where it is not structurally zero.
-    pub fn output_derivatives(&self, parameters: &[f64]) -> Vec<(usize, usize, f64)> {
+    /// ∂ψ/∂θ: (place, parameter, value) where it is not structurally zero.
+    pub fn derivatives(&self, parameters: &[f64]) -> Vec<(usize, usize, f64)> {
         let program = &self.jacobian.program;
         let mut workspace = program.workspace();
         program.set_parameters(&mut workspace, parameters);
         program.run(&mut workspace);
         let entries = self.jacobian.by_parameter.iter().enumerate();
         entries
-            .filter_map(|(entry, &(place, parameter))| {
-                let place = place.checked_sub(self.of_inputs)?;
-                Some((place, parameter, program.result(&workspace, entry)))
+            .map(|(entry, &(place, parameter))| {
+                (place, parameter, program.result(&workspace, entry))
             })
             .collect()
+    }
+
+    /// As [`Self::derivatives`], of the elements of outputs, by place among them.
+    pub fn output_derivatives(&self, parameters: &[f64]) -> Vec<(usize, usize, f64)> {
+        let all = self.derivatives(parameters).into_iter();
+        all.filter_map(|(place, parameter, value)| {
+            Some((place.checked_sub(self.of_inputs)?, parameter, value))
+        })
+        .collect()
+    }
+
+    /// Whether the size of any element depends on a parameter.
+    pub fn depends_on(&self, parameter: usize) -> bool {
+        (self.jacobian.by_parameter.iter()).any(|&(_, by)| by == parameter)
     }
 
     /// Whether the path of an output depends on a parameter.

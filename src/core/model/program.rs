@@ -166,6 +166,15 @@ impl Program {
         self.slots
     }
 
+    pub(super) fn prelude(&self) -> &[Instruction] {
+        self.prelude.as_slice()
+    }
+
+    /// Registers that hold constants, and these.
+    pub(super) fn constants(&self) -> &[(u32, f64)] {
+        &self.constants
+    }
+
     pub(super) fn body(&self) -> &[Instruction] {
         self.body.as_slice()
     }

@@ -15,6 +15,8 @@ pub(crate) enum Format {
     Json,
     Csv,
     Toml,
+    /// MAT file.
+    Mat,
     /// Server-sent events.
     Sse,
 }
@@ -25,6 +27,7 @@ impl Format {
             Self::Json => "application/json",
             Self::Csv => "text/csv",
             Self::Toml => "application/toml",
+            Self::Mat => "application/x-matlab-data",
             Self::Sse => "text/event-stream",
         }
     }
@@ -34,6 +37,7 @@ impl Format {
             Self::Json => "application/json",
             Self::Csv => "text/csv; charset=utf-8; header=present",
             Self::Toml => "application/toml",
+            Self::Mat => "application/x-matlab-data",
             Self::Sse => "text/event-stream",
         })
     }
@@ -110,6 +114,14 @@ fn quality(accept: &str, media_type: &str) -> f32 {
         }
     }
     best.1
+}
+
+/// An answer that is made for the asking, and not to be cached.
+pub(crate) fn plain(format: Format, body: Vec<u8>) -> Response {
+    let mut response = body.into_response();
+    let headers = response.headers_mut();
+    headers.insert(header::CONTENT_TYPE, format.content_type());
+    response
 }
 
 /// An answer that never changes: with an `ETag`, or without a body if the client has it already.

@@ -37,11 +37,12 @@ async fn live() -> Json<Health> {
     Json(OK)
 }
 
-/// Whether requests can be served: the store answers.
+/// Whether requests can be served: the store answers, and can be written.
 #[utoipa::path(get, path = "/health/ready", tag = "Operations", operation_id = "ready",
     responses(
         (status = 200, description = "They can.", body = Health),
         (status = 503, description = "`store_unavailable`", body = ProblemDocument, content_type = "application/problem+json"),
+        (status = 507, description = "`store_full`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn ready(State(server): State<Server>) -> Result<Json<Health>, Problem> {
     server.store.ping().await?;

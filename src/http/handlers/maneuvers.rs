@@ -187,6 +187,8 @@ async fn upload_maneuver(
         max_bytes: limit,
         ..service.config.recording
     };
+    // with its parameters, of which the charset is one
+    let content_type = body::content_type(&headers).to_owned();
     let read = move || {
         let mapping = mapping.as_ref();
         let read = match &said {

@@ -6,7 +6,9 @@ pub(super) mod maneuvers;
 pub(super) mod mappings;
 pub(super) mod models;
 
+mod campaigns;
 mod flown;
+mod frequency_responses;
 mod health;
 mod maneuver_data;
 mod metrics;
@@ -14,6 +16,7 @@ mod problems;
 mod retention;
 mod segments;
 mod several;
+mod simulations;
 mod webhooks;
 
 use utoipa_axum::router::OpenApiRouter;
@@ -27,8 +30,10 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(flown::router())
         .merge(maneuver_data::router())
         .merge(segments::router())
+        .merge(frequency_responses::router())
         .merge(mappings::router())
         .merge(models::router())
+        .merge(simulations::router())
         .merge(jobs::submit::router())
         .merge(jobs::bulk::router())
         .merge(jobs::rerun::router())
@@ -43,6 +48,10 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(jobs::residual_analysis::router())
         .merge(jobs::trajectories::router())
         .merge(jobs::corrected::router())
+        .merge(jobs::predictions::router())
+        .merge(jobs::source_code::router())
+        .merge(campaigns::router())
+        .merge(jobs::dynamics::router())
         .merge(problems::router())
         .merge(keys::router())
         .merge(webhooks::router())

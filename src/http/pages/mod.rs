@@ -2,6 +2,7 @@
 //!
 //! A page is put together here from what the store has, and rendered in the room `dashboard`.
 
+mod dynamics;
 mod job;
 mod jobs;
 mod maneuver;
@@ -27,6 +28,7 @@ pub(super) fn router() -> Router<Server> {
         .merge(jobs::router())
         .merge(job::router())
         .merge(report::router())
+        .merge(dynamics::router())
         .merge(new_job::router())
         .merge(maneuvers::router())
         .merge(maneuver::router())

@@ -99,15 +99,16 @@ fn too_large(limit: usize, setting: &str) -> Problem {
 
 /// The media type of a request, without its parameters, in lower case.
 pub(crate) fn media_type(headers: &HeaderMap) -> String {
-    let value = headers
-        .get(header::CONTENT_TYPE)
-        .and_then(|value| value.to_str().ok());
-    let essence = value
+    let essence = content_type(headers).split(';').next();
+    essence.unwrap_or_default().trim().to_ascii_lowercase()
+}
+
+/// The `Content-Type` as it was sent, parameters and all; empty where there is none that can be read.
+pub(crate) fn content_type(headers: &HeaderMap) -> &str {
+    let value = headers.get(header::CONTENT_TYPE);
+    value
+        .and_then(|value| value.to_str().ok())
         .unwrap_or_default()
-        .split(';')
-        .next()
-        .unwrap_or_default();
-    essence.trim().to_ascii_lowercase()
 }
 
 /// The answer to a media type that is not read here.

@@ -18,22 +18,36 @@ const CRATES: [(&str, &str); 2] = [
 ];
 
 /// Each room and those it may use. An arrow that is not here is a change of design: make it on purpose.
-const ROOMS: [(&str, &[&str]); 13] = [
+const ROOMS: [(&str, &[&str]); 17] = [
     ("flight", &[]),
+    ("spectral", &[]),
+    ("structure", &[]),
+    ("response", &["spectral", "flight"]),
     ("ingest", &["flight"]),
     ("model", &["flight"]),
     ("simulate", &["model", "flight"]),
-    ("estimate", &["simulate", "model", "flight"]),
+    ("estimate", &["simulate", "spectral", "model", "flight"]),
     ("diagnose", &["estimate", "simulate", "model", "flight"]),
+    ("dynamics", &["estimate", "simulate", "model", "flight"]),
     (
         "job",
-        &["diagnose", "estimate", "simulate", "model", "flight"],
+        &[
+            "diagnose",
+            "dynamics",
+            "structure",
+            "estimate",
+            "simulate",
+            "model",
+            "flight",
+        ],
     ),
     ("store", &["job", "estimate", "model", "flight", "ingest"]),
     ("work", &["store", "job", "estimate", "model", "flight"]),
     (
         "dashboard",
-        &["job", "ingest", "diagnose", "estimate", "model", "flight"],
+        &[
+            "job", "ingest", "diagnose", "dynamics", "estimate", "model", "flight",
+        ],
     ),
     ("webhook", &["store", "job"]),
     (
@@ -44,6 +58,9 @@ const ROOMS: [(&str, &[&str]); 13] = [
             "job",
             "ingest",
             "diagnose",
+            "dynamics",
+            "structure",
+            "response",
             "estimate",
             "model",
             "flight",
@@ -61,6 +78,9 @@ const ROOMS: [(&str, &[&str]); 13] = [
             "ingest",
             "simulate",
             "diagnose",
+            "dynamics",
+            "structure",
+            "response",
             "estimate",
             "model",
             "flight",

@@ -27,12 +27,10 @@ mod spectrum;
 mod splines;
 #[cfg(test)]
 mod tests;
-#[cfg(test)]
-mod truth;
 
 pub use report::{
     ForceCurve, ForceDependence, ForceElsewhere, ForceHistory, ForceIn, ForceInterval,
     ForceSpectrum, Unmodelled,
 };
 
-pub(super) use picture::{Picture, found};
+pub(super) use picture::{Picture, found, found_beyond};

@@ -64,10 +64,22 @@ impl Picture {
 /// The picture of what a fit by output error leaves. `None` where noise alone would leave as much, and where the
 /// simulation leaves the range of numbers.
 pub(in crate::diagnose) fn found(case: &Case, fitted: &Fitted) -> Option<Picture> {
+    found_beyond(case, fitted, |_| true)
+}
+
+/// As [`found`], where the force's likelihood ratio is also one that is `asked_for`.
+pub(in crate::diagnose) fn found_beyond(
+    case: &Case,
+    fitted: &Fitted,
+    asked_for: impl Fn(f64) -> bool,
+) -> Option<Picture> {
     if fitted.estimate.filter.is_some() {
         return None;
     }
     let left = left_over(case, fitted).filter(LeftOver::is_significant)?;
+    if !asked_for(left.likelihood_ratio) {
+        return None;
+    }
     picture(case, fitted, &left)
 }
 

@@ -7,10 +7,10 @@ use nalgebra::{DMatrix, DVector};
 use super::left_over::{LeftOver, left_over};
 use super::picture::found;
 use super::report::{ForceIn, Unmodelled};
-use super::truth::{Noise, Truth, steps};
 use crate::diagnose::case::Case;
 use crate::diagnose::declared::Declared;
 use crate::diagnose::fitted::Fitted;
+use crate::diagnose::truth::{Noise, Truth, steps};
 use crate::estimate::Role;
 use crate::model::catalog;
 

@@ -8,6 +8,7 @@ use multiversion::multiversion;
 use nalgebra::DMatrix;
 
 use super::autoregression::most_lags;
+use crate::estimate::evaluation::evaluate::Evaluate;
 use crate::estimate::evaluation::evaluator::Evaluator;
 use crate::estimate::linear::products::add_combination;
 use crate::estimate::problem::unusable::Unusable;

@@ -16,6 +16,7 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::autoregression::{Autoregression, most_lags};
+use crate::estimate::evaluation::evaluate::Evaluate;
 use crate::estimate::evaluation::evaluator::Evaluator;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::history::TimeHistory;

@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::absorbed::absorbed;
 use super::coloured_residuals::{Colour, gradient_covariance};
 use crate::estimate::descent::iterate::Iterate;
+use crate::estimate::evaluation::evaluate::Evaluate;
 use crate::estimate::evaluation::evaluator::Evaluator;
 use crate::estimate::likelihood::priors;
 use crate::estimate::linear::definite::Definite;
@@ -103,9 +104,21 @@ impl ErrorBounds {
             let noise = Colour::of_noise(histories, &absorbed);
             self.sandwich(evaluator, iterate, &noise)
         });
-        let Ok(corrected) = corrected else {
-            return;
-        };
+        if let Ok(corrected) = corrected {
+            self.take(corrected);
+        }
+    }
+
+    /// F⁻¹ becomes F⁻¹ B F⁻¹, B the covariance of the gradient.
+    pub(crate) fn correct_with(&mut self, scatter: &DMatrix<f64>) {
+        let corrected = &self.covariance * scatter * &self.covariance;
+        if corrected.iter().all(|v| v.is_finite()) {
+            self.take((&corrected + corrected.transpose()) * 0.5);
+        }
+    }
+
+    /// Another covariance of θ.
+    fn take(&mut self, corrected: DMatrix<f64>) {
         let determined = |i: &usize| self.conventional[*i].is_some();
         let places: Vec<usize> = (0..self.conventional.len()).filter(determined).collect();
         self.covariance = corrected;
@@ -132,7 +145,7 @@ impl ErrorBounds {
         }
     }
 
-    fn mean_nothing(&mut self) {
+    pub(crate) fn mean_nothing(&mut self) {
         let unknowns = self.conventional.len();
         self.kind = None;
         self.standard_errors = vec![None; unknowns];

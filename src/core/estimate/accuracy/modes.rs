@@ -10,9 +10,12 @@
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 use super::error_bounds::ErrorBounds;
+use super::mode_name::{mode_name, only_once};
 use super::state_matrix::{StateMatrix, feeding_back, is_kinematic};
 use crate::estimate::problem::Problem;
 use crate::estimate::report::mode::{Measure, Mode};
+use crate::flight::PhysicalQuantity;
+use crate::model::Quantities;
 
 /// Largest standard error of an eigenvalue, relative to its distance from the next one, at which the
 /// perturbation is still of first order: at two standard errors the discriminant of a close pair has then
@@ -29,6 +32,10 @@ pub(crate) fn modes(problem: &Problem, theta: &[f64], bounds: &ErrorBounds) -> V
         return Vec::new();
     }
     let states = feeding_back(model);
+    let known = Quantities::of(&model.document);
+    let quantities: Vec<_> = (states.iter())
+        .map(|&state| known.get(&model.states[state].name))
+        .collect();
     let mut all = Vec::new();
     for segment in 0..problem.segments.len() {
         let Some(matrix) = StateMatrix::at(problem, segment, theta, &states) else {
@@ -36,7 +43,8 @@ pub(crate) fn modes(problem: &Problem, theta: &[f64], bounds: &ErrorBounds) -> V
         };
         let is_everywhere = matrix.is_everywhere;
         let label = (!is_everywhere).then(|| problem.segments[segment].label.clone());
-        all.extend(of_matrix(problem, &states, matrix, bounds, label).unwrap_or_default());
+        let found = of_matrix(problem, &states, &quantities, matrix, bounds, label);
+        all.extend(found.unwrap_or_default());
         if is_everywhere {
             break;
         }
@@ -48,6 +56,7 @@ pub(crate) fn modes(problem: &Problem, theta: &[f64], bounds: &ErrorBounds) -> V
 fn of_matrix(
     problem: &Problem,
     states: &[usize],
+    quantities: &[Option<PhysicalQuantity>],
     mut matrix: StateMatrix,
     bounds: &ErrorBounds,
     segment: Option<String>,
@@ -72,6 +81,8 @@ fn of_matrix(
             .fold(f64::INFINITY, f64::min);
         let delta = Delta::new(bounds, &gradient, nearest);
         let share = |k: usize| (left[k].conj() * right[k]).norm();
+        let shares: Vec<f64> = (0..n).map(share).collect();
+        let name = mode_name(quantities, &shares, eigenvalue.im > 0.0);
         let largest = (0..n).map(share).fold(0.0, f64::max);
         let mut taking: Vec<usize> = (0..n)
             .filter(|&k| share(k) >= TAKES_PART * largest)
@@ -80,8 +91,14 @@ fn of_matrix(
         let names = (taking.into_iter())
             .map(|k| problem.model.states[states[k]].name.clone())
             .collect();
-        modes.push(mode(eigenvalue, names, &delta, segment.clone()));
+        modes.push(Mode {
+            name,
+            ..mode(eigenvalue, names, &delta, segment.clone())
+        });
     }
+    let mut names: Vec<_> = modes.iter().map(|mode| mode.name).collect();
+    only_once(&mut names);
+    (modes.iter_mut().zip(names)).for_each(|(mode, name)| mode.name = name);
     let size = |mode: &Mode| mode.real.value.hypot(mode.imaginary.value);
     modes.sort_by(|a, b| size(b).total_cmp(&size(a)));
     Some(modes)
@@ -141,6 +158,7 @@ fn mode(
     let period = std::f64::consts::TAU / im;
     Mode {
         segment,
+        name: None,
         states,
         real: delta.measure(re, 1.0, 0.0),
         imaginary: delta.measure(im, 0.0, if oscillates { 1.0 } else { 0.0 }),

@@ -12,6 +12,7 @@ use crate::estimate::accuracy::identifiability::data_information;
 use crate::estimate::accuracy::modes::modes;
 use crate::estimate::descent::Descent;
 use crate::estimate::descent::stopped::Stopped;
+use crate::estimate::evaluation::evaluator::Evaluator;
 use crate::estimate::likelihood::weighting::Weighting;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unknowns::Unknowns;
@@ -71,7 +72,7 @@ pub(crate) struct Asked<'a> {
 }
 
 /// At the end of a descent.
-pub(crate) fn answer(problem: &Problem, descent: Descent<'_>) -> Solution {
+pub(crate) fn answer(problem: &Problem, descent: Descent<Evaluator<'_>>) -> Solution {
     let asked = Asked {
         problem,
         theta: descent.last.theta.clone(),
@@ -81,7 +82,11 @@ pub(crate) fn answer(problem: &Problem, descent: Descent<'_>) -> Solution {
 }
 
 /// At the end of a descent in a problem that was made of the one that was asked about.
-pub(crate) fn answer_to(asked: Asked<'_>, problem: &Problem, descent: Descent<'_>) -> Solution {
+pub(crate) fn answer_to(
+    asked: Asked<'_>,
+    problem: &Problem,
+    descent: Descent<Evaluator<'_>>,
+) -> Solution {
     let Descent {
         mut evaluator,
         first_information,
@@ -178,6 +183,7 @@ impl Ending<'_> {
             integration: None,
             findings: Vec::new(),
             filter: None,
+            frequency: None,
             modes: modes(problem, self.theta, self.bounds),
         }
     }

@@ -37,7 +37,7 @@ impl Accuracy {
     }
 
     /// The accuracy of the unknowns of another problem: `place` says which of these each of them is.
-    pub(super) fn seen_from(
+    pub(crate) fn seen_from(
         &self,
         unknowns: usize,
         place: impl Fn(usize) -> Option<usize>,

@@ -5,6 +5,7 @@ use super::fallback::Fallback;
 use super::iterate::{Iterate, Taken};
 use super::search::{Nothing, Search};
 use super::stopped::Stopped;
+use crate::estimate::evaluation::evaluate::Evaluate;
 use crate::estimate::evaluation::evaluator::Evaluator;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
@@ -22,8 +23,20 @@ pub(crate) fn descend<'p>(
     problem: &'p Problem,
     theta: Vec<f64>,
     observer: &mut Observer<'_>,
-) -> Result<Descent<'p>, Unusable> {
-    let mut evaluator = Evaluator::on_all_cores(problem);
+) -> Result<Descent<Evaluator<'p>>, Unusable> {
+    descend_with(Evaluator::on_all_cores(problem), theta, observer)
+}
+
+/// As [`descend`], by an evaluator of any domain.
+///
+/// # Errors
+/// This θ gives no cost.
+pub(crate) fn descend_with<'p, E: Evaluate<'p>>(
+    mut evaluator: E,
+    theta: Vec<f64>,
+    observer: &mut Observer<'_>,
+) -> Result<Descent<E>, Unusable> {
+    let problem = evaluator.problem();
     let start = theta.clone();
     let mut current = Iterate::at(problem, &mut evaluator, theta)?;
     let first_information = Some(current.information.clone());

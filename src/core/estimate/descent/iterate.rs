@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::step::{Newton, held};
-use crate::estimate::evaluation::evaluator::Evaluator;
+use crate::estimate::evaluation::evaluate::Evaluate;
 use crate::estimate::evaluation::normal_equations::NormalEquations;
 use crate::estimate::likelihood::weighting::Weighting;
 use crate::estimate::problem::Problem;
@@ -34,12 +34,12 @@ pub(crate) struct Taken {
 }
 
 impl Iterate {
-    pub(crate) fn at(
+    pub(crate) fn at<'p>(
         problem: &Problem,
-        evaluator: &mut Evaluator<'_>,
+        evaluator: &mut impl Evaluate<'p>,
         theta: Vec<f64>,
     ) -> Result<Self, Unusable> {
-        let equations = NormalEquations::at(evaluator, &theta)?;
+        let equations = NormalEquations::by(evaluator, &theta)?;
         let held = held(&problem.unknowns, &theta, &equations.descent);
         let newton = Newton::new(
             &equations.information,

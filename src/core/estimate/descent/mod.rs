@@ -13,13 +13,12 @@ pub(super) mod stopped;
 
 use nalgebra::DMatrix;
 
-use crate::estimate::evaluation::evaluator::Evaluator;
 use iterate::Iterate;
 use stopped::Stopped;
 
 /// Where an iteration ended, and why.
-pub(crate) struct Descent<'p> {
-    pub evaluator: Evaluator<'p>,
+pub(crate) struct Descent<E> {
+    pub evaluator: E,
     /// The information matrix at the start; none where the iteration looks at gradients alone.
     pub first_information: Option<DMatrix<f64>>,
     pub last: Iterate,

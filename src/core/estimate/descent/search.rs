@@ -11,7 +11,7 @@ use super::acceleration::Acceleration;
 use super::damping;
 use super::iterate::{Iterate, Taken};
 use super::step::{Newton, advanced, length};
-use crate::estimate::evaluation::evaluator::Evaluator;
+use crate::estimate::evaluation::evaluate::Evaluate;
 use crate::estimate::likelihood::weighting::Weighting;
 use crate::estimate::options::Method;
 use crate::estimate::problem::Problem;
@@ -67,7 +67,7 @@ impl<'p> Search<'p> {
     /// The next iterate, and how it was reached.
     pub(crate) fn onward(
         &mut self,
-        evaluator: &mut Evaluator<'_>,
+        evaluator: &mut impl Evaluate<'p>,
         current: &Iterate,
         newton: &Newton,
     ) -> Result<Box<(Iterate, Taken)>, Nothing> {
@@ -94,7 +94,7 @@ impl<'p> Search<'p> {
     /// By what earlier steps tell.
     fn accelerated(
         &mut self,
-        evaluator: &mut Evaluator<'_>,
+        evaluator: &mut impl Evaluate<'p>,
         current: &Iterate,
         newton: &Newton,
     ) -> Option<Box<(Iterate, Taken)>> {
@@ -125,7 +125,7 @@ impl<'p> Search<'p> {
     /// Along the step, as short or as much damped as it must be.
     fn along(
         &self,
-        evaluator: &mut Evaluator<'_>,
+        evaluator: &mut impl Evaluate<'p>,
         current: &Iterate,
         newton: &Newton,
     ) -> Result<Box<(Iterate, Taken)>, Nothing> {

@@ -6,6 +6,7 @@ use super::derivatives::central_difference::CentralDifference;
 use super::derivatives::complex_step::ComplexStep;
 use super::derivatives::forward_difference::ForwardDifference;
 use super::derivatives::perturbation::sums;
+use super::evaluate::Evaluate;
 use super::strand;
 use super::strand::Strand;
 use crate::estimate::likelihood::sums::{ResidualSums, Sums, mirror};
@@ -66,12 +67,32 @@ impl<'p> Evaluator<'p> {
         }
     }
 
-    pub(crate) fn problem(&self) -> &'p Problem {
+    /// Runs along one segment and hands outputs and sensitivities to `sink`.
+    pub(crate) fn sweep(
+        &mut self,
+        theta: &[f64],
+        segment: usize,
+        sink: impl FnMut(&Block<'_>),
+    ) -> Result<(), Unusable> {
+        self.strands[0].run(self.problem, segment, theta, sink)
+    }
+
+    /// -ln L at a θ, R concentrated.
+    ///
+    /// # Errors
+    /// The θ gives no cost.
+    pub(crate) fn cost(&mut self, theta: &[f64]) -> Result<f64, Unusable> {
+        let residuals = self.residuals(theta)?;
+        Weighting::at(self.problem, theta, &residuals).map(|weighting| weighting.cost)
+    }
+}
+
+impl<'p> Evaluate<'p> for Evaluator<'p> {
+    fn problem(&self) -> &'p Problem {
         self.problem
     }
 
-    /// Residuals alone.
-    pub(crate) fn residuals(&mut self, theta: &[f64]) -> Result<ResidualSums, Unusable> {
+    fn residuals(&mut self, theta: &[f64]) -> Result<ResidualSums, Unusable> {
         self.simulations += 1;
         let problem = self.problem;
         let outputs = problem.model.outputs.len();
@@ -101,27 +122,7 @@ impl<'p> Evaluator<'p> {
         }
     }
 
-    /// Runs along one segment and hands outputs and sensitivities to `sink`.
-    pub(crate) fn sweep(
-        &mut self,
-        theta: &[f64],
-        segment: usize,
-        sink: impl FnMut(&Block<'_>),
-    ) -> Result<(), Unusable> {
-        self.strands[0].run(self.problem, segment, theta, sink)
-    }
-
-    /// -ln L at a θ, R concentrated.
-    ///
-    /// # Errors
-    /// The θ gives no cost.
-    pub(crate) fn cost(&mut self, theta: &[f64]) -> Result<f64, Unusable> {
-        let residuals = self.residuals(theta)?;
-        Weighting::at(self.problem, theta, &residuals).map(|weighting| weighting.cost)
-    }
-
-    /// Residuals and the sums of their sensitivities.
-    pub(crate) fn sums(&mut self, theta: &[f64]) -> Result<Sums, Unusable> {
+    fn sums(&mut self, theta: &[f64]) -> Result<Sums, Unusable> {
         self.evaluations += 1;
         let problem = self.problem;
         let outputs = problem.model.outputs.len();

@@ -2,6 +2,7 @@
 //! threads look.
 
 pub mod derivatives;
+pub(super) mod evaluate;
 pub(super) mod evaluator;
 pub(super) mod linearised;
 mod local_sums;

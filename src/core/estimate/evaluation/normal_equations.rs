@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::evaluate::Evaluate;
 use super::evaluator::Evaluator;
 use crate::estimate::likelihood::priors;
 use crate::estimate::likelihood::weighting::Weighting;
@@ -26,6 +27,17 @@ impl NormalEquations {
     /// # Errors
     /// The simulation leaves the range of numbers.
     pub fn at(evaluator: &mut Evaluator<'_>, theta: &[f64]) -> Result<Self, Unusable> {
+        Self::by(evaluator, theta)
+    }
+
+    /// As [`Self::at`], in any domain.
+    ///
+    /// # Errors
+    /// The θ gives no cost.
+    pub(crate) fn by<'p>(
+        evaluator: &mut impl Evaluate<'p>,
+        theta: &[f64],
+    ) -> Result<Self, Unusable> {
         let sums = evaluator.sums(theta)?;
         let problem = evaluator.problem();
         let noise = &problem.options.noise;

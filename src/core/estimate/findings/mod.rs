@@ -5,6 +5,7 @@
 //! behind it. Trial fits of a diagnosis are not checked: only [`estimate`](super::estimate()) is.
 
 mod convergence;
+mod frequency;
 mod identifiability;
 mod input_interpolation;
 mod steps;
@@ -20,6 +21,7 @@ pub(super) fn findings(problem: &Problem, solution: &Solution) -> Vec<Finding> {
     let estimated = problem.options.max_iterations > 0;
     let checks = [
         convergence::findings(&solution.estimate, estimated),
+        frequency::findings(problem, &solution.estimate),
         identifiability::findings(&solution.estimate),
         input_interpolation::findings(problem, solution),
         steps::findings(problem, &solution.estimate),

@@ -2,6 +2,7 @@
 
 pub(super) mod error_bounds;
 pub(super) mod estimator;
+pub(super) mod frequency;
 pub(super) mod process_noise;
 pub(super) mod role;
 pub(super) mod start;
@@ -15,6 +16,7 @@ use utoipa::ToSchema;
 use crate::simulate::{InputInterpolation, Integrator};
 use error_bounds::ErrorBoundsKind;
 use estimator::Estimator;
+use frequency::FrequencyOptions;
 use process_noise::ProcessNoise;
 use start::StartMethod;
 use steps::StepsPerSample;
@@ -50,6 +52,9 @@ pub struct Options {
     )]
     #[schema(example = json!({"theta": {"start": 0.0, "fixed": true}}))]
     pub process_noise: IndexMap<String, ProcessNoise>,
+    /// The band of the frequency-domain estimators; they need one, and no other may have one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frequency: Option<FrequencyOptions>,
     /// Converged when a full step would move the estimate by less than this many standard errors:
     /// √(gᵀ H⁻¹ g), g the gradient and H the Hessian of the cost that the step is made with.
     #[schema(example = 1e-5, exclusive_minimum = 0.0)]
@@ -73,6 +78,7 @@ impl Default for Options {
             error_bounds: ErrorBoundsKind::default(),
             derivatives: Derivatives::default(),
             process_noise: IndexMap::new(),
+            frequency: None,
             tolerance: 1e-5,
             max_iterations: 50,
         }

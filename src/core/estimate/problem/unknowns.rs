@@ -142,6 +142,27 @@ impl Unknowns {
         )
     }
 
+    /// The same, with `more` parameters behind those of the model, free in each segment, that start at zero.
+    #[must_use]
+    pub(crate) fn with_more(&self, more: usize) -> Self {
+        let (mut all, mut places) = (self.all.clone(), self.places.clone());
+        for (segment, places) in places.iter_mut().enumerate() {
+            for _ in 0..more {
+                all.push(Unknown {
+                    parameter: places.len(),
+                    segment: Some(segment),
+                    start: 0.0,
+                    lower: f64::NEG_INFINITY,
+                    upper: f64::INFINITY,
+                    fixed: false,
+                    prior: None,
+                });
+                places.push(all.len() - 1);
+            }
+        }
+        Self::of(all, places)
+    }
+
     /// Unknowns that `is_meant` picks are no less than `least`, and start no lower.
     pub fn raise_lower(&mut self, least: f64, is_meant: impl Fn(&Unknown) -> bool) {
         for unknown in self.all.iter_mut().filter(|unknown| is_meant(unknown)) {

@@ -37,6 +37,9 @@ pub enum Unusable {
     /// Equation error was asked for, and no output measures a state.
     #[error("no output measures a state, as equation error needs")]
     NoMeasuredState,
+    /// An estimator of the frequency domain was asked for, and no band of frequencies.
+    #[error("an estimator of the frequency domain needs a band of frequencies")]
+    NoBand,
 }
 
 pub(crate) fn left_range(segment: usize, diverged: &Diverged) -> Unusable {

@@ -27,11 +27,29 @@ pub(crate) struct Regression {
     places: Vec<usize>,
     /// Names of the states that stay states.
     pub integrated: Vec<String>,
+    /// The states that are measured, in the order of the inputs and outputs that they have become.
+    pub measured: Vec<MeasuredState>,
 }
+
+/// A segment as the edited model wants it, and the first value of each measured state.
+type Made = (Segment, Vec<f64>);
 
 impl Regression {
     /// `None` where no output measures a state, or the edited model is too large.
     pub(crate) fn new(problem: &Problem) -> Option<Self> {
+        Self::with(problem, with_states)
+    }
+
+    /// As [`Self::new`], with all signals as they were recorded: where the outputs of the edited model are derivatives of
+    /// states, the segments have the states themselves.
+    pub(crate) fn recorded(problem: &Problem) -> Option<Self> {
+        Self::with(problem, with_recorded_states)
+    }
+
+    fn with(
+        problem: &Problem,
+        made: impl Fn(&Problem, &Segment, &[MeasuredState], &[f64]) -> Made,
+    ) -> Option<Self> {
         let start = problem.unknowns.start();
         let mut parameters = Vec::new();
         if problem.segments.is_empty() {
@@ -51,7 +69,7 @@ impl Regression {
         let mut initial = InitialStates::new(problem);
         for (index, segment) in problem.segments.iter().enumerate() {
             problem.unknowns.parameters(index, &start, &mut parameters);
-            let (segment, first) = with_states(problem, segment, &measured, &parameters);
+            let (segment, first) = made(problem, segment, &measured, &parameters);
             segments.push(segment);
             for (at, value) in measured.iter().zip(first) {
                 initial.add(problem, &model, index, at.state, value);
@@ -89,6 +107,7 @@ impl Regression {
             problem: Problem::new(model, segments, unknowns, options),
             rest,
             places,
+            measured,
         })
     }
 
@@ -180,7 +199,7 @@ fn with_states(
     segment: &Segment,
     measured: &[MeasuredState],
     parameters: &[f64],
-) -> (Segment, Vec<f64>) {
+) -> Made {
     let time = segment.elapsed();
     let read = |at: &MeasuredState| at.read(&problem.model, segment, parameters);
     let states: Vec<Vec<f64>> = measured.iter().map(read).collect();
@@ -212,6 +231,26 @@ fn with_states(
             .map(|(z, smooth)| if z.is_finite() { smooth } else { *z })
             .collect()
     }));
+    (made, first)
+}
+
+/// The segment with measured states behind its inputs, and again in place of their derivatives.
+fn with_recorded_states(
+    problem: &Problem,
+    segment: &Segment,
+    measured: &[MeasuredState],
+    parameters: &[f64],
+) -> Made {
+    let read = |at: &MeasuredState| at.read(&problem.model, segment, parameters);
+    let states: Vec<Vec<f64>> = measured.iter().map(read).collect();
+    let first = states.iter().map(|state| state[0]).collect();
+    let mut made = segment.clone();
+    made.inputs.extend(states.iter().cloned());
+    made.measured = states;
+    let others = segment.measured.iter().enumerate();
+    let others = others.filter(|(i, _)| measured.iter().all(|at| at.output != *i));
+    made.measured
+        .extend(others.map(|(_, values)| values.clone()));
     (made, first)
 }
 

@@ -6,6 +6,7 @@ use utoipa::ToSchema;
 use super::collinear::CollinearSet;
 use super::filter::FilterEstimate;
 use super::fit::OutputFit;
+use super::frequency::FrequencyEstimate;
 use super::identifiability::Identifiability;
 use super::integration::Integration;
 use super::iteration::Outcome;
@@ -65,6 +66,9 @@ pub struct Estimate {
     /// What the filter-error estimator adds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub filter: Option<FilterEstimate>,
+    /// What the frequency-domain estimators add.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frequency: Option<FrequencyEstimate>,
     /// Modes of the motion, fastest first; none for reconstruction models.
     #[serde(default)]
     pub modes: Vec<Mode>,

@@ -5,6 +5,7 @@ pub(super) mod collinear;
 pub(super) mod estimate;
 pub(super) mod filter;
 pub(super) mod fit;
+pub(super) mod frequency;
 pub(super) mod history;
 pub(super) mod identifiability;
 pub(super) mod integration;

@@ -27,6 +27,41 @@ impl std::fmt::Display for Measure {
     }
 }
 
+/// A mode of the motion as the field calls it.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ModeName {
+    /// Angle of attack and pitch rate, an oscillation.
+    ShortPeriod,
+    /// Speed and pitch angle, an oscillation.
+    Phugoid,
+    /// Sideslip and yaw rate, an oscillation.
+    DutchRoll,
+    /// Roll rate, aperiodic.
+    Roll,
+    /// Bank angle, aperiodic.
+    Spiral,
+    /// Roll and spiral mode as one oscillation.
+    RollSpiral,
+    /// An elastic mode.
+    Structural,
+}
+
+impl ModeName {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::ShortPeriod => "short period",
+            Self::Phugoid => "phugoid",
+            Self::DutchRoll => "Dutch roll",
+            Self::Roll => "roll",
+            Self::Spiral => "spiral",
+            Self::RollSpiral => "roll-spiral oscillation",
+            Self::Structural => "structural",
+        }
+    }
+}
+
 /// One mode of the motion: an eigenvalue that is real, or a pair.
 ///
 /// Linear models have one set of modes; of others, each segment has its own, about its start. States that
@@ -37,6 +72,9 @@ pub struct Mode {
     /// The segment at whose start the model was linearised; absent where the state matrix is the same everywhere.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub segment: Option<String>,
+    /// What it is, by the quantities of the states that take part; absent where these leave it open.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<ModeName>,
     /// States that take most part in it, by participation factor, the first most.
     #[schema(example = json!(["alpha", "q"]))]
     pub states: Vec<String>,
@@ -68,12 +106,16 @@ pub struct Mode {
 }
 
 impl Mode {
-    /// What to call it in a table: the states that take most part.
+    /// What to call it in a table: its name, and the states that take most part.
     pub fn label(&self) -> String {
         let states = self.states.join(", ");
-        match &self.segment {
-            Some(segment) => format!("{states} [{segment}]"),
+        let name = match self.name {
+            Some(name) => format!("{} ({states})", name.words()),
             None => states,
+        };
+        match &self.segment {
+            Some(segment) => format!("{name} [{segment}]"),
+            None => name,
         }
     }
 

@@ -3,6 +3,7 @@
 use super::equation_error::equation_error_start;
 use super::found::Start;
 use super::shooting::multiple_shooting;
+use crate::estimate::evaluation::evaluate::Evaluate;
 use crate::estimate::evaluation::evaluator::Evaluator;
 use crate::estimate::likelihood::constants::cost_of_constants;
 use crate::estimate::likelihood::weighting::Weighting;

@@ -1,7 +1,8 @@
 //! What a spec's options and names must be, beyond their types.
 
+use super::structure;
 use super::unknown_name::unknown_name;
-use crate::estimate::{Estimator, Noise, Options, Problem, Role, StartMethod, has_equation_error};
+use crate::estimate::{Noise, Options, Problem, Role, StartMethod, has_equation_error};
 use crate::flight::Fault;
 use crate::job::no_start::no_measured_state;
 use crate::job::spec::{JobKind, JobSpec, ManeuverUse, ModelSource};
@@ -57,6 +58,7 @@ pub(super) fn check_kind(spec: &JobSpec, faults: &mut Vec<Fault>) {
         let message = "only a diagnosis tries candidates; say \"kind\": \"diagnose\", or put the edits into \"edits\"";
         faults.push(Fault::new("/candidates", "bad_option", message));
     }
+    structure::check_kind(spec, faults);
 }
 
 pub(super) fn too_many_edits(pointer: &str, count: usize) -> Fault {
@@ -149,8 +151,8 @@ fn check_own_names(index: usize, usage: &ManeuverUse, model: &Model, faults: &mu
 /// Equation error needs states that are measured.
 pub(super) fn check_estimator(problem: &Problem) -> Result<(), Vec<Fault>> {
     let options = &problem.options;
-    let asked = options.estimator == Estimator::EquationError
-        || options.start == StartMethod::EquationError {};
+    let asked =
+        options.estimator.is_equation_error() || options.start == StartMethod::EquationError {};
     if asked && !has_equation_error(problem) {
         return Err(vec![no_measured_state(problem)]);
     }

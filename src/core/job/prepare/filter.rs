@@ -113,6 +113,6 @@ pub(super) fn check_data(
 pub(super) fn process_noise(problem: &Problem) -> Vec<String> {
     match problem.options.estimator {
         Estimator::FilterError => process_noise_names(problem),
-        Estimator::OutputError | Estimator::EquationError => Vec::new(),
+        _ => Vec::new(),
     }
 }

@@ -8,6 +8,7 @@ mod document;
 mod elsewhere;
 mod filter;
 mod flown;
+mod frequency;
 mod gaps;
 mod initial;
 mod knowledge;
@@ -17,11 +18,14 @@ mod recorded;
 mod resolve;
 mod start;
 mod stretch;
+mod structure;
 mod study;
+mod to_predict;
 mod twice;
 mod unknown_name;
 
 pub use checks::MOST_MANEUVERS;
+pub(super) use to_predict::prepare_prediction;
 
 use std::sync::Arc;
 
@@ -74,12 +78,16 @@ pub fn prepare(
     let fitted = fitted.map(|(segment, stretch)| (segment, stretch.index));
     let (segments, from): (Vec<Segment>, Vec<usize>) = fitted.unzip();
     check_samples(&model, &segments, &unknowns, &spec.options, &mut findings)?;
-    bounds::check_unknowns(&model, &segments, &unknowns, &spec.options)?;
+    // a structure determination brings parameters of its own
+    if spec.kind != JobKind::Structure || !unknowns.is_empty() {
+        bounds::check_unknowns(&model, &segments, &unknowns, &spec.options)?;
+    }
     let validation = resolved.predicted.into_iter();
     let validation: Vec<Validation> = validation
         .map(|held_out| to_predict(spec, &model, &initial, held_out))
         .collect::<Result<_, _>>()?;
     filter::check_data(&model, &segments, &unknowns, &spec.options)?;
+    frequency::check_data(&model, &segments, &unknowns, &spec.options, &mut findings)?;
     findings.extend(plausible::findings(&model, &segments));
     refuse_if_any(spec.strict.faults(&findings))?;
 
@@ -94,7 +102,11 @@ pub fn prepare(
             let flights = resolved.flights;
             Some(diagnosis::case(spec, &document, &problem, flights)?)
         }
-        JobKind::Estimate | JobKind::DerivativeStudy => None,
+        JobKind::Estimate | JobKind::DerivativeStudy | JobKind::Structure => None,
+    };
+    let terms = match &spec.structure {
+        Some(options) => Some(structure::terms(options, &problem, &mut findings)?),
+        None => None,
     };
     Ok(Plan {
         prepared: prepared(&problem, &validation, findings),
@@ -103,6 +115,7 @@ pub fn prepare(
         from,
         validation,
         case,
+        terms,
         strict: spec.strict.clone(),
     })
 }
@@ -158,6 +171,7 @@ fn refuse_if_any(faults: Vec<Fault>) -> Result<(), Vec<Fault>> {
 fn check_settings(spec: &JobSpec, model: &Model, faults: &mut Vec<Fault>) {
     checks::check_options(&spec.options, model, faults);
     filter::check_options(&spec.options, model, faults);
+    frequency::check_options(spec, model, faults);
     checks::check_names(spec, model, faults);
     faults.extend(spec.strict.unknown());
 }

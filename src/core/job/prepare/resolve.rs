@@ -57,6 +57,40 @@ pub(super) fn segment(
     }
 }
 
+/// As [`segment`], of a recording that may have inputs alone: an output that is not recorded has no values.
+pub(super) fn to_predict(
+    spec: &JobSpec,
+    model: &Model,
+    stretch: &Stretch<'_>,
+    index: usize,
+    faults: &mut Vec<Fault>,
+) -> Segment {
+    let inputs = (model.inputs.iter())
+        .map(|input| samples(spec, input, Side::Input, stretch, index, faults))
+        .collect();
+    let mut output = |output: &Quantity| {
+        let mut found = Vec::new();
+        let values = samples(spec, output, Side::Output, stretch, index, &mut found);
+        let is_absent = |fault: &Fault| fault.code == UNKNOWN_CHANNEL;
+        if found.iter().any(is_absent) {
+            return vec![f64::NAN; stretch.len()];
+        }
+        faults.extend(found);
+        values
+    };
+    Segment {
+        inputs,
+        measured: model.outputs.iter().map(&mut output).collect(),
+        label: stretch.label.clone(),
+        time: stretch.time().to_vec(),
+        steps: stretch.steps.clone(),
+        substeps: Substeps::default(),
+    }
+}
+
+/// The code of a formula that names what is not recorded.
+const UNKNOWN_CHANNEL: &str = "unknown_channel";
+
 /// What a channel is to the model.
 #[derive(Clone, Copy, PartialEq)]
 enum Side {

@@ -32,6 +32,7 @@ pub fn run_diagnosis(
                 histories: conclusion.histories,
                 study: None,
                 diagnosis: Some(conclusion.diagnosis),
+                structure: None,
             },
         ),
         Err(Inconclusive::Unfit(why)) => {

@@ -1,5 +1,5 @@
 //! What jobs of one kind alone find: `/v1/jobs/{id}/derivative-study`, and `/v1/jobs/{id}/diagnosis`: what the model of a
-//! job lacks.
+//! job lacks; `/v1/jobs/{id}/structure`: which terms an equation needs.
 
 use axum::http::HeaderMap;
 use axum::response::Response;
@@ -18,11 +18,13 @@ use crate::http::request::query::JobId;
 use crate::http::service::{Server, Service};
 use crate::job::Status;
 use crate::store::Part;
+use crate::structure::Structure;
 
 pub(crate) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(get_derivative_study))
         .routes(routes!(get_diagnosis))
+        .routes(routes!(get_structure))
 }
 
 /// Derivative techniques compared on the job's problem, of jobs of the kind `derivative_study`.
@@ -60,6 +62,25 @@ async fn get_diagnosis(
 ) -> Result<Response, Problem> {
     let of_another_kind = "the job is not a diagnosis; submit it again with \"kind\": \"diagnose\"";
     found(&service, id, &headers, Part::Diagnosis, of_another_kind).await
+}
+
+/// Which terms the equation of an output needs, step by step, of jobs of the kind `structure`.
+#[utoipa::path(get, path = "/v1/jobs/{id}/structure", tag = "Results", operation_id = "getStructure",
+    params(("id" = Uuid, Path)),
+    responses(
+        (status = 200, description = "The structure, and the steps by which it was found.", body = Structure),
+        (status = 304, description = "As the `ETag` in `If-None-Match`."),
+        (status = 404, description = "`unknown_job`, `no_result`", body = ProblemDocument, content_type = "application/problem+json"),
+        (status = 409, description = "`not_finished`", body = ProblemDocument, content_type = "application/problem+json"),
+    ))]
+async fn get_structure(
+    service: Service,
+    JobId(id): JobId,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let of_another_kind =
+        "the job is not a structure determination; submit it again with \"kind\": \"structure\"";
+    found(&service, id, &headers, Part::Structure, of_another_kind).await
 }
 
 /// A part of a result that only one kind of job has.

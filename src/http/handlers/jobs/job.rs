@@ -86,6 +86,9 @@ struct JobLinks {
     /// Of a job of the kind `diagnose`.
     #[serde(skip_serializing_if = "Option::is_none")]
     diagnosis: Option<String>,
+    /// Of a job of the kind `structure`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    structure: Option<String>,
 }
 
 impl JobLinks {
@@ -105,6 +108,7 @@ impl JobLinks {
             trajectories: under("trajectories"),
             model: under("model"),
             diagnosis: (kind == JobKind::Diagnose.name()).then(|| under("diagnosis")),
+            structure: (kind == JobKind::Structure.name()).then(|| under("structure")),
             this,
         }
     }

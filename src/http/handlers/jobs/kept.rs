@@ -17,16 +17,16 @@ use crate::model::ModelDocument;
 use crate::store::Part;
 
 /// All that was kept of a finished job.
-pub(super) struct Kept {
-    spec: JobSpec,
+pub(crate) struct Kept {
+    pub(crate) spec: JobSpec,
     declared: ModelDocument,
-    estimated: ModelDocument,
-    pub(super) estimate: Estimate,
-    pub(super) maneuvers: Vec<Arc<Maneuver>>,
+    pub(crate) estimated: ModelDocument,
+    pub(crate) estimate: Estimate,
+    pub(crate) maneuvers: Vec<Arc<Maneuver>>,
 }
 
 impl Kept {
-    pub(super) async fn of(service: &Service, id: Uuid) -> Result<Self, Problem> {
+    pub(crate) async fn of(service: &Service, id: Uuid) -> Result<Self, Problem> {
         let estimate = results::part(service, id, Part::Estimate).await?;
         let estimated = results::part(service, id, Part::Model).await?;
         let submitted = service.store.submitted(id).await?;
@@ -45,6 +45,13 @@ impl Kept {
 
     pub(super) fn plan(&self) -> Result<Plan, Problem> {
         job::plan_again(&self.spec, &self.declared, &self.maneuvers, &self.estimated).map_err(none)
+    }
+
+    /// The plan, if it is that of the estimate.
+    pub(crate) fn plan_of_estimate(&self) -> Result<Plan, Problem> {
+        let plan = self.plan()?;
+        job::check_parameters(&plan, &self.estimate).map_err(none)?;
+        Ok(plan)
     }
 }
 

@@ -204,7 +204,15 @@ async fn resolve_model(
     service: &Service,
     spec: &JobSpec,
 ) -> Result<Result<ModelDocument, Fault>, Problem> {
-    let name = match &spec.model {
+    find_model(service, &spec.model).await
+}
+
+/// The document that a source stands for.
+pub(crate) async fn find_model(
+    service: &Service,
+    source: &ModelSource,
+) -> Result<Result<ModelDocument, Fault>, Problem> {
+    let name = match source {
         ModelSource::Document(document) => return Ok(Ok((**document).clone())),
         ModelSource::Reference(name) => name,
     };

@@ -80,7 +80,7 @@ fn what_the_document_fixes_comes_first() {
     assert!(!freed.parameters["Cmad"].fixed);
     // the steady flight, starts of maneuvers and what is read off the data are no candidates
     for (model, wanted) in [
-        ("lateral-directional-4", vec![]),
+        ("lateral-directional-4", vec!["Yp", "Yr"]),
         ("lateral-directional-2", vec!["da_bias", "dr_bias"]),
         ("longitudinal", vec!["Xde"]),
         ("flight-path-reconstruction", vec![]),

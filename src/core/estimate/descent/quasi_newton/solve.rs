@@ -57,7 +57,7 @@ pub(crate) fn descend<'p>(
     theta: Vec<f64>,
     scaling: Scaling,
     observer: &mut Observer<'_>,
-) -> Result<Descent<'p>, Unusable> {
+) -> Result<Descent<Evaluator<'p>>, Unusable> {
     let unknowns = &problem.unknowns;
     let mut evaluator = Evaluator::new(problem);
     let mut adjoint = CostAndGradient::new(problem);

@@ -10,18 +10,18 @@ use crate::model::ModelDocument;
 use crate::simulate::Steps;
 
 /// ẋ = f(x, u, t, flight)
-pub(super) type Motion<'a> = &'a dyn Fn(&[f64], &[f64], f64, usize) -> Vec<f64>;
+pub(in crate::diagnose) type Motion<'a> = &'a dyn Fn(&[f64], &[f64], f64, usize) -> Vec<f64>;
 /// y = g(x, u, t)
-pub(super) type Sensors<'a> = &'a dyn Fn(&[f64], &[f64], f64) -> Vec<f64>;
+pub(in crate::diagnose) type Sensors<'a> = &'a dyn Fn(&[f64], &[f64], f64) -> Vec<f64>;
 
 /// Noise of lag-1 autocorrelation `colour`, by output of these standard deviations.
 #[derive(Clone, Debug)]
-pub(super) struct Noise {
+pub(in crate::diagnose) struct Noise {
     pub colour: f64,
     pub deviations: Vec<f64>,
 }
 
-pub(super) struct Truth<'a> {
+pub(in crate::diagnose) struct Truth<'a> {
     pub document: ModelDocument,
     pub start: Vec<f64>,
     pub motion: Motion<'a>,
@@ -34,10 +34,10 @@ pub(super) struct Truth<'a> {
 }
 
 /// Uniform numbers from a small generator.
-pub(super) struct Chance(pub u64);
+pub(in crate::diagnose) struct Chance(pub u64);
 
 impl Chance {
-    pub(super) fn uniform(&mut self) -> f64 {
+    pub(in crate::diagnose) fn uniform(&mut self) -> f64 {
         self.0 = (self.0)
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(1_442_695_040_888_963_407);
@@ -45,14 +45,14 @@ impl Chance {
     }
 
     /// Standard normal, as good as twelve uniform ones make it.
-    pub(super) fn normal(&mut self) -> f64 {
+    pub(in crate::diagnose) fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
     }
 }
 
 impl Truth<'_> {
     /// A case of flights in these roles.
-    pub(super) fn fly(&self, roles: &[Role], seed: u64) -> Case {
+    pub(in crate::diagnose) fn fly(&self, roles: &[Role], seed: u64) -> Case {
         let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) + 1);
         (0..20).for_each(|_| {
             chance.uniform();
@@ -138,7 +138,7 @@ impl Truth<'_> {
 }
 
 /// Steps one after another, each reached smoothly within 0.3 s: (begin, end, size).
-pub(super) fn steps(t: f64, all: &[(f64, f64, f64)]) -> f64 {
+pub(in crate::diagnose) fn steps(t: f64, all: &[(f64, f64, f64)]) -> f64 {
     let reached = |since: f64| {
         let share = (since / 0.3).clamp(0.0, 1.0);
         share * share * (3.0 - 2.0 * share)

@@ -1,0 +1,118 @@
+//! What a campaign is asked, and what it answers.
+
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::estimate::Estimate;
+
+/// A job of a campaign.
+pub struct Flown {
+    /// Its id, or file.
+    pub job: String,
+    /// For people.
+    pub name: String,
+    /// By name: what tags of the form `alpha=5` say.
+    pub conditions: IndexMap<String, String>,
+    /// What came of it.
+    pub estimate: Estimate,
+}
+
+/// What is asked of a campaign.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct CampaignQuestion {
+    /// Conditions with numbers, over which parameters are curves; none: weighted means.
+    pub by: Vec<String>,
+    /// Conditions with words, each of whose values has curves of its own.
+    pub group: Vec<String>,
+    /// Parameters by name; empty: all that are shared and have a standard error.
+    pub parameters: Vec<String>,
+    /// Highest degree of the polynomials, 0 to 3; 2 where absent.
+    pub degree: Option<usize>,
+}
+
+/// Parameters over the conditions of many jobs.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct Campaign {
+    /// By parameter, then group.
+    pub curves: Vec<CampaignCurve>,
+    /// Jobs that could not be used, and why.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// One parameter in one group of jobs.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct CampaignCurve {
+    /// The parameter's name.
+    #[schema(example = "Ma")]
+    pub parameter: String,
+    /// Its own unit.
+    #[schema(example = "1/s^2")]
+    pub unit: String,
+    /// The conditions that all of these have in common, of those that were asked for.
+    #[schema(example = json!({"flaps": "14"}))]
+    pub group: IndexMap<String, String>,
+    /// The polynomial's terms with their coefficients, in the parameter's unit and those of the conditions.
+    pub terms: Vec<CampaignTerm>,
+    /// Of those that are no outliers.
+    #[schema(example = 31.2)]
+    pub chi_squared: f64,
+    /// How many these are, less the terms.
+    #[schema(example = 34)]
+    pub degrees_of_freedom: usize,
+    /// How often chance alone makes a χ² as large: flights differ by more than their bounds say where it is small. Absent without
+    /// degrees of freedom.
+    #[schema(example = 0.6)]
+    pub probability: Option<f64>,
+    /// √(χ²/ν), not below 1: what bounds of the curve are widened by.
+    pub scatter: f64,
+    /// One of each job.
+    pub points: Vec<CampaignPoint>,
+}
+
+/// A term of a polynomial.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct CampaignTerm {
+    /// Powers of the conditions: `1`, `alpha`, `alpha*mach`, `alpha^2`.
+    #[schema(example = "alpha^2")]
+    pub term: String,
+    /// Its coefficient.
+    pub value: f64,
+    /// Widened by the scatter.
+    pub standard_error: f64,
+}
+
+/// What one job says of a parameter.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct CampaignPoint {
+    /// Its id.
+    pub job: String,
+    /// For people.
+    pub name: String,
+    /// Conditions of the curve.
+    pub conditions: IndexMap<String, f64>,
+    /// As it was estimated.
+    pub estimate: f64,
+    /// As it was estimated.
+    pub standard_error: f64,
+    /// The curve there.
+    pub curve: f64,
+    /// Widened by the scatter.
+    pub curve_standard_error: f64,
+    /// From the curve that the others make, in standard errors of the difference.
+    pub deviation: f64,
+    /// Whether it is so improbable that it does not count.
+    pub is_outlier: bool,
+}
+
+/// A job that could not be used.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct LeftOut {
+    /// Its id.
+    pub job: String,
+    /// For people.
+    pub name: String,
+    /// Why.
+    #[schema(example = "it has no tag mach=...")]
+    pub reason: String,
+}

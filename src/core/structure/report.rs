@@ -1,0 +1,112 @@
+//! What a structure determination answers.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::options::StructureMethod;
+
+/// The terms that an equation needs, and how they were found.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct Structure {
+    /// The output whose equation it is.
+    #[schema(example = "Cm")]
+    pub output: String,
+    /// How terms were chosen.
+    pub method: StructureMethod,
+    /// How many terms there were to choose from, the constant not counted.
+    #[schema(example = 9)]
+    pub candidates: usize,
+    /// Samples, over all segments.
+    #[schema(example = 501)]
+    pub samples: usize,
+    /// Each step, from the constant alone on.
+    pub steps: Vec<StructureStep>,
+    /// Number of the step whose terms were kept.
+    #[schema(example = 3)]
+    pub kept: usize,
+    /// The terms with their estimates by least squares, the constant (`1`) first.
+    pub terms: Vec<Term>,
+    /// The equation with its parameters by name, as the model has it.
+    #[schema(example = "Cm_1 + Cm_alpha*alpha + Cm_de*de")]
+    pub equation: String,
+    /// Why there are no more terms and no fewer.
+    pub reason: String,
+    /// Terms that others explain, so that they were never in question, and terms that are not numbers everywhere.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<String>,
+}
+
+/// One step of a structure determination.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct StructureStep {
+    /// From 0.
+    #[schema(example = 1)]
+    pub number: usize,
+    /// What was done.
+    pub verdict: Verdict,
+    /// The term that came in or went out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = "alpha")]
+    pub term: Option<String>,
+    /// Its partial F: of a term that came in, with it in the model; of one that went out, before that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = 812.4)]
+    pub partial_f: Option<f64>,
+    /// Correlation of the term that came in with what was left of the output, both less what the terms before it explain.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = 0.94)]
+    pub partial_correlation: Option<f64>,
+    /// Coefficient of determination, R².
+    #[schema(example = 0.871)]
+    pub r_squared: f64,
+    /// Mean squared error of the fit.
+    pub mse: f64,
+    /// s², the variance of the residual: Σe²/(N - p).
+    pub variance: f64,
+    /// Predicted squared error.
+    pub pse: f64,
+    /// Prediction sum of squares, each sample predicted from all others.
+    pub press: f64,
+    /// The terms after the step, the constant (`1`) first.
+    pub terms: Vec<Term>,
+}
+
+/// What was done in a step.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// The model before the first term.
+    Start,
+    /// A term came in.
+    Entered,
+    /// A term went out.
+    Removed,
+}
+
+impl Verdict {
+    /// As it is written in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::Entered => "entered",
+            Self::Removed => "removed",
+        }
+    }
+}
+
+/// A term and its parameter.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct Term {
+    /// As it is written; `1` is the constant.
+    #[schema(example = "alpha*de")]
+    pub term: String,
+    /// The least-squares estimate of its parameter, SI.
+    #[schema(example = -0.742)]
+    pub estimate: f64,
+    /// For white residuals: s √((XᵀX)⁻¹_ii).
+    #[schema(example = 0.011)]
+    pub standard_error: f64,
+    /// (estimate/standard_error)²
+    #[schema(example = 4550.1)]
+    pub partial_f: f64,
+}
