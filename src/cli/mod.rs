@@ -16,6 +16,7 @@ mod file_rows;
 mod fit;
 mod health;
 mod inspect;
+mod join;
 mod key;
 mod linear;
 mod linear_tables;
@@ -83,6 +84,7 @@ enum Command {
     Watch(watch::Watch),
     Simulate(simulate::Simulate),
     Inspect(inspect::Inspect),
+    Join(join::Join),
     Segments(segments::Segments),
     #[command(name = "maneuver")]
     Maneuvers(maneuver::Maneuvers),
@@ -114,6 +116,7 @@ pub fn main() -> ExitCode {
         Command::Watch(watch) => block_on(watch.run()),
         Command::Simulate(simulate) => simulate.run(),
         Command::Inspect(inspect) => inspect.run(),
+        Command::Join(join) => join.run(),
         Command::Segments(segments) => segments.run(),
         Command::Maneuvers(maneuvers) => block_on(maneuvers.run()),
         Command::Response(response) => response.run(),

@@ -36,6 +36,8 @@ macro_rules! codes {
 }
 
 codes! {
+    /// The body is not one of several files, or says something of a file that is not in it.
+    InvalidMultipart "invalid_multipart" BAD_REQUEST "The body is not one of several files";
     /// The body is not JSON. `detail` names line and column.
     InvalidJson "invalid_json" BAD_REQUEST "The body is not JSON";
     /// The body is not TOML. `detail` names line and column.

@@ -31,7 +31,9 @@ fn degrees(maneuver: &Maneuver, name: &str) -> Vec<f64> {
 
 #[test]
 fn channels_say_their_units_and_groups_their_times() {
-    let Reading { maneuver, findings } = reading("groups");
+    let Reading {
+        maneuver, findings, ..
+    } = reading("groups");
     assert_eq!(maneuver.len(), 6, "two rates, of which one time is one");
     assert_eq!(degrees(&maneuver, "alpha"), [1.5, 2.5, 3.5, 4.5]);
     assert_eq!(degrees(&maneuver, "q"), [10.0, -20.0, 30.0, -40.0, 50.0]);
@@ -91,7 +93,9 @@ fn records_of_several_kinds_may_stand_between_each_other() {
 #[test]
 fn what_a_table_of_texts_converts_are_numbers() {
     // as asammdf reads them
-    let Reading { maneuver, findings } = reading("texts");
+    let Reading {
+        maneuver, findings, ..
+    } = reading("texts");
     assert_eq!(maneuver.len(), 5);
     assert_eq!(degrees(&maneuver, "alpha"), [-4.0, -3.0, -2.0]);
     assert_eq!(degrees(&maneuver, "beta"), [3.0, 5.0, 7.0]);
@@ -106,7 +110,9 @@ fn a_file_that_is_cut_off_has_what_is_there() {
     let count = of_group + 24 + 6 * 8 + 8;
     assert_eq!(bytes[count..count + 8], 5u64.to_le_bytes());
     bytes[count] = 50;
-    let Reading { maneuver, findings } = read(&bytes, None).unwrap();
+    let Reading {
+        maneuver, findings, ..
+    } = read(&bytes, None).unwrap();
     assert_eq!(degrees(&maneuver, "q"), [10.0, -20.0, 30.0, -40.0, 50.0]);
     let cut_off = |findings: &[Finding]| {
         let found = findings.iter().find(|finding| finding.code == "cut_off");
@@ -116,7 +122,9 @@ fn a_file_that_is_cut_off_has_what_is_there() {
     assert!(told.contains("'IMU' has 5 of 50 samples"), "{told}");
     let text = r#"{"channels": {"q": {"from": "IMU.q", "unit": "deg/s"}}}"#;
     let mapping = Mapping::from_json(text).unwrap();
-    let Reading { maneuver, findings } = read(&bytes, Some(&mapping)).unwrap();
+    let Reading {
+        maneuver, findings, ..
+    } = read(&bytes, Some(&mapping)).unwrap();
     assert_eq!(maneuver.len(), 5);
     assert_eq!(cut_off(&findings), Some(told));
     let whole = reading("groups").findings;

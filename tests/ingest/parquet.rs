@@ -62,7 +62,9 @@ fn every_way_to_pack_and_to_write_is_read() {
 
 #[test]
 fn numbers_of_every_kind_are_read() {
-    let Reading { maneuver, findings } = reading("kinds");
+    let Reading {
+        maneuver, findings, ..
+    } = reading("kinds");
     assert_eq!(known(&maneuver, "gear"), [1.0, 0.0, -1.0, 1.0, 0.0]);
     assert_eq!(known(&maneuver, "mode"), [1.0, 2.0, -1.0, 4.0, 255.0]);
     assert_eq!(values(&maneuver, "count")[4], 2f64.powi(63));
@@ -85,7 +87,9 @@ fn numbers_of_every_kind_are_read() {
         values(&maneuver, "total"),
         counts.map(|count| count * 2f64.powi(32))
     );
-    let Reading { maneuver, findings } = reading("nested");
+    let Reading {
+        maneuver, findings, ..
+    } = reading("nested");
     assert_eq!(known(&maneuver, "air_p"), [1.0, 2.0, -1.0, 4.0, 5.0]);
     assert_eq!(known(&maneuver, "air_T"), [-1.0, 5.0, -1.0, 1.0, 2.0]);
     assert_eq!(values(&maneuver, "mass"), [1.0, 2.0, 3.0, 4.0, 5.0]);
@@ -104,7 +108,9 @@ fn times_are_read_to_their_last_digit() {
             assert!((time - expected).abs() < 1e-15, "{name}");
         }
     }
-    let Reading { maneuver, findings } = reading("texts");
+    let Reading {
+        maneuver, findings, ..
+    } = reading("texts");
     assert_eq!(maneuver.time()[4], 0.16);
     assert_eq!(known(&maneuver, "alpha"), [1.5, 2.5, -1.0, -1.0, 4.5]);
     let left_out = findings.iter().find(|finding| finding.code == "left_out");

@@ -47,7 +47,9 @@ fn channels_say_their_units_and_times() {
 
 #[test]
 fn groups_of_several_rates_are_one_recording() {
-    let Reading { maneuver, findings } = reading("waveforms");
+    let Reading {
+        maneuver, findings, ..
+    } = reading("waveforms");
     assert_eq!(degrees(&maneuver, "alpha"), [1.5, 2.5, 3.5, 4.5]);
     assert_eq!(
         degrees(&maneuver, "Pitch_Rate"),

@@ -49,5 +49,6 @@ mod predictions;
 mod published_cases;
 mod real_flights;
 mod segments;
+mod several;
 mod structure;
 mod webhooks;

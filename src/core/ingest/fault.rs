@@ -141,6 +141,7 @@ pub mod code {
         FORMAT_NOT_READ = "format_not_read", "The file is of a format that is not read; the message says which and how to convert it.";
         UNPACKED_TOO_LARGE = "unpacked_too_large", "A packed file unpacks to more than the longest body that is taken.";
         SEVERAL_FILES = "several_files", "An archive has no file in it, or more than one.";
+        OTHER_CLOCK = "other_clock", "Files that are to be one recording are told by different clocks, or have no time in common.";
         DAMAGED_FILE = "damaged_file", "The file contradicts itself or is cut off.";
     }
 }

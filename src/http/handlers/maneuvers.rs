@@ -12,7 +12,7 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::mappings;
+use super::{mappings, several};
 use crate::flight::{Flown, Maneuver};
 use crate::http::answer::format::{Format, cacheable};
 use crate::http::code::Code;
@@ -126,6 +126,9 @@ struct AnyFile(Vec<u8>);
 /// have no value at the times of the others. Where a choice is to be made, the answer has the draft of a mapping that makes
 /// it, as `mapping`. Values are converted to SI. Content that is here already answers 200 with the maneuver it was first
 /// uploaded as.
+///
+/// Several files of `multipart/form-data` are one recording: each keeps its times, put together by their time stamps, and by
+/// `offsets` where there are none or clocks are off; nothing is interpolated.
 #[utoipa::path(post, path = "/v1/maneuvers", tag = "Maneuvers", operation_id = "uploadManeuver",
     params(UploadQuery),
     request_body(content(
@@ -133,11 +136,13 @@ struct AnyFile(Vec<u8>);
         (ingest::Recording = "application/json"),
         (MatFile = "application/x-matlab-data"),
         (AnyFile = "application/octet-stream"),
+        (several::SeveralFiles = "multipart/form-data"),
         (String = "text/plain", example = "0.00  1.2  0.0\n0.04  1.2  0.1\n0.08  1.3  0.4\n"),
     )),
     responses(
         (status = 201, description = "It is new.", body = ManeuverResource, headers(("Location" = String, description = "Its path."))),
         (status = 200, description = "The same content was here before.", body = ManeuverResource, headers(("Location" = String, description = "Its path."))),
+        (status = 400, description = "`invalid_multipart`", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 413, description = "`body_too_large`", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 415, description = "`unsupported_media_type`", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 422, description = "`invalid_maneuver`: `errors` lists all faults, by column and row or JSON pointer.", body = ProblemDocument, content_type = "application/problem+json"),
@@ -148,13 +153,16 @@ async fn upload_maneuver(
     headers: HeaderMap,
     body: Body,
 ) -> Result<Response, Problem> {
+    // with its parameters, of which the charset is one, and the boundary
+    let content_type = body::content_type(&headers).to_owned();
     let media_type = body::media_type(&headers);
-    let Some(format) = ingest::Format::from_content_type(&media_type) else {
-        return Err(body::unsupported(
-            &media_type,
-            &ingest::Format::CONTENT_TYPES,
-        ));
-    };
+    let format = ingest::Format::from_content_type(&media_type);
+    let is_several = media_type == several::MEDIA_TYPE;
+    if format.is_none() && !is_several {
+        let known = ingest::Format::CONTENT_TYPES.iter().copied();
+        let known: Vec<&str> = known.chain([several::MEDIA_TYPE]).collect();
+        return Err(body::unsupported(&media_type, &known));
+    }
     let name = query.name.unwrap_or_default();
     if name.chars().count() > LONGEST_NAME {
         let detail = format!("name: longer than {LONGEST_NAME} characters");
@@ -167,19 +175,28 @@ async fn upload_maneuver(
     let limit = service.config.max_maneuver_body;
     let body = body::read(&headers, body, limit, "--max-maneuver-body", &service.room).await?;
     let (bytes, mut room) = (body.bytes, body.room);
-    if ingest::is_packed(&bytes) {
+    if is_several || ingest::is_packed(&bytes) {
         service.room.extend(&mut room, limit).await?;
     }
+    let said = match is_several {
+        true => Some(several::said(&service, &content_type, &bytes).await?),
+        false => None,
+    };
     let _room = room;
     let limits = ingest::Limits {
         max_bytes: limit,
         ..service.config.recording
     };
-    // with its parameters, of which the charset is one
-    let content_type = body::content_type(&headers).to_owned();
     let read = move || {
-        let charset = ingest::Format::charset(&content_type);
-        let read = ingest::read_recording(&bytes, format, charset, mapping.as_ref(), &limits)?;
+        let mapping = mapping.as_ref();
+        let read = match &said {
+            Some(said) => several::read(&content_type, &bytes, said, mapping, &limits)?,
+            None => {
+                let format = format.unwrap_or(ingest::Format::Unstated);
+                let charset = ingest::Format::charset(&content_type);
+                ingest::read_recording(&bytes, format, charset, mapping, &limits)?
+            }
+        };
         let mut summary = ingest::summary(&read.maneuver);
         summary.findings.splice(0..0, read.findings);
         let summary = serde_json::to_string(&summary)?;

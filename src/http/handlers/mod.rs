@@ -15,6 +15,7 @@ mod metrics;
 mod problems;
 mod retention;
 mod segments;
+mod several;
 mod simulations;
 mod webhooks;
 

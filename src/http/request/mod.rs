@@ -2,5 +2,6 @@
 
 pub(super) mod body;
 pub(super) mod json;
+pub(super) mod multipart;
 pub(super) mod prefer;
 pub(super) mod query;

@@ -1,8 +1,9 @@
 //! The time of a row, from its cells.
 
 use super::super::{
+    Origin,
     cell::{Decimal, Marks, is_missing, number, unquote},
-    stamp::{Stamp, Stopwatch},
+    stamp::{ClockKind, Stamp, Stopwatch},
     text::quoted,
 };
 use super::{
@@ -97,6 +98,32 @@ impl Clock {
             *number = Some(value as i64);
         }
         Ok(numbers)
+    }
+
+    /// What the zero of the times is that were read.
+    pub(super) fn origin(&self) -> Option<Origin> {
+        match self.time {
+            Time::Even { .. } | Time::Numbers { .. } => Some(Origin::OWN),
+            Time::Epoch { unit, .. } => {
+                // a second has many of its units, or it has many seconds
+                let (many, of_many) = ((1.0 / unit.scale).round(), unit.scale.round());
+                let first = match unit.scale < 1.0 {
+                    true => self.first? / many as i128,
+                    false => self.first?.checked_mul(of_many as i128)?,
+                };
+                Some(Origin::at(ClockKind::Utc, first))
+            }
+            Time::Week { .. } => {
+                let week = self.first?;
+                Some(Origin::at(
+                    ClockKind::Gps,
+                    week * WEEK as i128 * 1_000_000_000,
+                ))
+            }
+            Time::Stamps { .. } | Time::Dated { .. } | Time::Parts(_) => {
+                Origin::of_stamp(self.watch.first()?)
+            }
+        }
     }
 
     fn number(&self, cell: &str) -> Result<f64, Option<String>> {

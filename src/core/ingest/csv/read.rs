@@ -104,8 +104,13 @@ pub(super) fn of_samples(
     IngestError::refuse(faults.into_iter().map(|(_, fault)| fault).collect())?;
     let mut findings = report::findings(described, &plan, &left_out);
     findings.append(&mut samples.findings);
+    let origin = samples.origin;
     let maneuver = own_times::maneuver(plan.columns, samples, limits)?;
-    Ok(Reading { maneuver, findings })
+    Ok(Reading {
+        maneuver,
+        findings,
+        origin,
+    })
 }
 
 fn not_readable(column: &Column, unreadable: &Unreadable) -> Fault {

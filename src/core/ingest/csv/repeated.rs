@@ -254,6 +254,7 @@ mod tests {
             rows: (1..).take(time.len()).collect(),
             unreadable: vec![None],
             findings: Vec::new(),
+            origin: None,
             faults: Vec::new(),
         }
     }

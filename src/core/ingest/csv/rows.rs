@@ -92,6 +92,7 @@ impl<'a> Reader<'a> {
                 rows: Vec::with_capacity(capacity),
                 unreadable: vec![None; plan.columns.len()],
                 findings: Vec::new(),
+                origin: None,
                 faults: Vec::new(),
             },
             row: vec![f64::NAN; plan.columns.len()],
@@ -321,6 +322,7 @@ impl<'a> Reader<'a> {
 
     fn samples(self) -> Samples {
         let mut samples = self.samples;
+        samples.origin = self.clock.origin();
         let told = self.troubles.iter().take(CELLS_LISTED);
         let fault = |(row, line, trouble): &(usize, Line, Trouble)| {
             (*row, trouble.fault(*row, line, self.written))

@@ -1,5 +1,6 @@
 //! What was read of a table's rows.
 
+use super::super::Origin;
 use crate::flight::{Fault, Finding};
 
 /// The samples of a table, as recorded.
@@ -15,6 +16,8 @@ pub(super) struct Samples {
     /// For each column of the plan: what in it is neither a number nor a sign for no value.
     pub(super) unreadable: Vec<Option<Unreadable>>,
     pub(super) findings: Vec<Finding>,
+    /// What the zero of their times is, where it can be told.
+    pub(super) origin: Option<Origin>,
     /// Of rows and times, by row.
     pub(super) faults: Vec<(usize, Fault)>,
 }

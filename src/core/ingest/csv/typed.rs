@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::super::{
-    IngestError, Limits,
+    IngestError, Limits, Origin,
     cell::{Marks, number, unquote},
     code,
     columns::{Cells, Columns, NONE},
@@ -11,6 +11,7 @@ use super::super::{
     lines::Line,
     mapping::{Mapping, NoValue},
     reading::Reading,
+    stamp::ClockKind,
     text::quoted,
 };
 use super::{
@@ -139,6 +140,7 @@ struct Times {
     rows: Vec<u32>,
     /// Rows before the first that has a time.
     before: usize,
+    origin: Option<Origin>,
     faults: Vec<(usize, Fault)>,
 }
 
@@ -198,6 +200,10 @@ fn times(plan: &Plan, columns: &Columns, name: &str) -> Times {
             }
         }
     }
+    times.origin = match first {
+        Some(first) => Some(Origin::at(ClockKind::Instant, first.into())),
+        None => clock.origin(),
+    };
     times
 }
 
@@ -230,6 +236,7 @@ fn samples(plan: &Plan, columns: &mut Columns, times: Times) -> Samples {
         rows: times.rows,
         unreadable: Vec::with_capacity(plan.columns.len()),
         findings: ending::no_time_yet(times.before).into_iter().collect(),
+        origin: times.origin,
         faults: times.faults,
     };
     for column in &plan.columns {

@@ -9,7 +9,7 @@ use super::super::note;
 use super::super::reading::Reading;
 use super::super::text::quoted;
 use super::super::union::Union;
-use super::super::{IngestError, Limits, code};
+use super::super::{IngestError, Limits, Origin, code};
 use super::archive::{self, Source, even};
 use super::group::{Group, Groups, Samples, Time};
 use super::plan::Plan;
@@ -41,7 +41,11 @@ pub(in super::super) fn read<S: Samples>(
     let mut findings = plan.findings(&groups.left_out);
     let maneuver = maneuver(&mut groups, plan, limits)?;
     findings.extend(cut_off(&groups.groups));
-    Ok(Reading { maneuver, findings })
+    Ok(Reading {
+        maneuver,
+        findings,
+        origin: Some(Origin::OWN),
+    })
 }
 
 /// That groups have fewer samples than the file says.

@@ -64,7 +64,9 @@ fn reading(mapping: Option<&Mapping>) -> Result<Reading, IngestError> {
 
 #[test]
 fn groups_of_several_rates_are_one_recording() {
-    let Reading { maneuver, findings } = reading(None).unwrap();
+    let Reading {
+        maneuver, findings, ..
+    } = reading(None).unwrap();
     assert_eq!(maneuver.len(), 5);
     let names: Vec<&String> = maneuver.channels().keys().collect();
     assert_eq!(names, ["q", "Alpha_vane", "Air_Data_q", "T"]);

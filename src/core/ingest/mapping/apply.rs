@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::super::{
-    IngestError, Limits, code,
+    IngestError, Limits, Origin, code,
     fault::pointer,
     note,
     reading::Reading,
@@ -62,6 +62,7 @@ impl Mapping {
         Ok(Reading {
             maneuver,
             findings: note::absent(&absent).into_iter().collect(),
+            origin: Some(Origin::OWN),
         })
     }
 

@@ -6,8 +6,8 @@ use super::date::number;
 
 pub(super) const SECOND: i64 = 1_000_000_000;
 pub(super) const MINUTE: i64 = 60 * SECOND;
-pub(super) const HOUR: i64 = 60 * MINUTE;
-pub(super) const DAY: i64 = 24 * HOUR;
+pub(in super::super) const HOUR: i64 = 60 * MINUTE;
+pub(in super::super) const DAY: i64 = 24 * HOUR;
 
 /// Nanoseconds since midnight of `hh:mm:ss`, `hh:mm:ss.fff`, `hh:mm:ss:fff`, each perhaps with AM or PM.
 pub(super) fn time_of_day(text: &str) -> Option<i64> {

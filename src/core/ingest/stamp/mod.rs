@@ -7,6 +7,7 @@ mod parts;
 mod stopwatch;
 mod value;
 
+pub(super) use clock::{DAY, HOUR};
 pub(super) use parts::PARTS;
 pub(super) use stopwatch::Stopwatch;
-pub(super) use value::Stamp;
+pub(super) use value::{ClockKind, Stamp};

@@ -12,6 +12,11 @@ pub(in super::super) struct Stopwatch {
 }
 
 impl Stopwatch {
+    /// The stamp that others are counted from.
+    pub(in super::super) fn first(&self) -> Option<Stamp> {
+        self.first
+    }
+
     /// The seconds from the first stamp to this one. A time of day that falls by more than half a day has
     /// passed midnight, and minutes that fall by more than half an hour the full hour.
     ///

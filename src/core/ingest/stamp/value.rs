@@ -30,6 +30,23 @@ pub(super) enum Kind {
     Elapsed,
 }
 
+/// By what a recording's time is told.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(in super::super) enum ClockKind {
+    /// Seconds since the recorder's own beginning.
+    Own,
+    Utc,
+    /// Dates and times of a table of types, of which the zone is not looked at.
+    Instant,
+    /// Dates and times without a zone.
+    Civil,
+    DayOfYear,
+    TimeOfDay,
+    OfHour,
+    /// Weeks and seconds of the satellites.
+    Gps,
+}
+
 const LONGEST_STAMP: usize = 48;
 
 impl Stamp {
@@ -74,6 +91,26 @@ impl Stamp {
             && text.len() <= LONGEST_STAMP
             && text.contains(['-', '/', '.', ' '])
             && date(text).is_some()
+    }
+
+    /// By which clock it is told.
+    pub(in super::super) fn clock(self) -> ClockKind {
+        match self.kind {
+            Kind::Zoned => ClockKind::Utc,
+            Kind::Civil => ClockKind::Civil,
+            Kind::TimeOfDay => ClockKind::TimeOfDay,
+            Kind::DayOfYear => ClockKind::DayOfYear,
+            Kind::OfHour => ClockKind::OfHour,
+            Kind::Elapsed => ClockKind::Own,
+        }
+    }
+
+    /// Nanoseconds since its clock's beginning; `None` where the day and the month in it are not told apart.
+    pub(in super::super) fn nanoseconds(self) -> Option<i64> {
+        match self.nanoseconds {
+            [Some(one), Some(other)] => (one == other).then_some(one),
+            [one, other] => one.or(other),
+        }
     }
 
     pub(in super::super) fn is_time_of_day(self) -> bool {

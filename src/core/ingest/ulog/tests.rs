@@ -270,7 +270,9 @@ fn one_wrong_time_costs_one_message() {
         log.data(2, 4000 * (k % 2), &[0.0]);
     }
     let reading = read_recording(&log.0, Format::Unstated, None, None, &Limits::default());
-    let Reading { maneuver, findings } = reading.unwrap();
+    let Reading {
+        maneuver, findings, ..
+    } = reading.unwrap();
     assert_eq!((maneuver.len(), maneuver.duration()), (999, 3.996));
     assert_eq!(maneuver.channels()["V_true"].values[10], 11.0);
     let [finding] = &findings[..] else {
