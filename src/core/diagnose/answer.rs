@@ -122,6 +122,8 @@ pub(super) fn answer(
     let is_shown = verdict == Verdict::Unexplained;
     let mut remarks = remarks.clone();
     remarks.extend(remarks::of(case, &fits, &after.solution));
+    let hint = unmodelled.as_ref().filter(|_| !is_shown);
+    remarks.extend(hint.map(remarks::of_force));
     let effects: Vec<NamedEffect> = found
         .accepted
         .iter()

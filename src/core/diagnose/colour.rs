@@ -120,6 +120,8 @@ impl Autoregression {
     /// Prediction errors over their standard deviations: `w = (x_k − Σ a_m x_(k−m))/σ`, of the order that the finite
     /// samples of `mask` before k allow; 0 where `mask` is not finite. Returns the sum of ln σ².
     pub(super) fn whiten(&self, mask: &[f64], x: &[f64], to: &mut [f64]) -> f64 {
+        let scales: Vec<f64> = self.variances.iter().map(|v| v.sqrt().recip()).collect();
+        let ln_variances: Vec<f64> = self.variances.iter().map(|v| v.ln()).collect();
         let mut ln_variance = 0.0;
         let mut known = 0;
         for k in 0..x.len() {
@@ -131,8 +133,8 @@ impl Autoregression {
             let predicted: f64 = (self.predictors[order].iter().enumerate())
                 .map(|(m, a)| a * x[k - 1 - m])
                 .sum();
-            to[k] = (x[k] - predicted) / self.variances[order].sqrt();
-            ln_variance += self.variances[order].ln();
+            to[k] = (x[k] - predicted) * scales[order];
+            ln_variance += ln_variances[order];
             known += 1;
         }
         ln_variance

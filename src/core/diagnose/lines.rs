@@ -26,6 +26,9 @@ const WORTH_ONE: f64 = 2.0;
 /// Independent series are as coherent as one that drives the other once in so many inputs.
 const BY_CHANCE: f64 = 0.01;
 
+/// An input whose own line stands out so far drives what swings with it.
+const SWINGS_TOO: f64 = 4.0;
+
 /// Where windows overlap by half, so many of their degrees of freedom are their own (Welch, 1967).
 const OWN: f64 = 0.75;
 
@@ -103,10 +106,15 @@ impl<'h> Look<'h> {
     fn clearest(&self, output: usize) -> Option<(f64, Line)> {
         let residuals = self.histories.iter().map(|h| &*h.outputs[output].residual);
         let spectra = self.windows.spectra(residuals);
-        let power = power(&spectra);
+        let power = power_of(&spectra);
         let count = self.own * spectra.iter().flatten().count() as f64;
         let is_driven = |line: usize| {
-            (self.inputs.iter()).any(|input| coherence(&spectra, input, line) > by_chance(count))
+            let drives = |input: &Vec<Spectrum>| match count > 1.0 {
+                true => coherence(&spectra, input, line) > by_chance(count),
+                // one window is coherent with any other
+                false => ratio(&power_of(input), line) > SWINGS_TOO,
+            };
+            self.inputs.iter().any(drives)
         };
         let line = (AROUND..power.len().saturating_sub(AROUND))
             .max_by(|&a, &b| ratio(&power, a).total_cmp(&ratio(&power, b)))?;
@@ -128,7 +136,7 @@ impl<'h> Look<'h> {
 type Spectrum = Option<Vec<Complex64>>;
 
 /// Mean power by line.
-fn power(spectra: &[Spectrum]) -> Vec<f64> {
+fn power_of(spectra: &[Spectrum]) -> Vec<f64> {
     let whole = || spectra.iter().flatten();
     let count = whole().count().max(1) as f64;
     let lines = whole().next().map_or(0, Vec::len);
@@ -283,5 +291,12 @@ mod tests {
         let driven = |t: f64| 1.2 * (3.0 * std::f64::consts::TAU * t).sin();
         assert_eq!(found(driven, 1), []);
         assert_eq!(lines(&[]), []);
+        // one window alone
+        let one = lines(&[flight(3, swing)]);
+        assert!(
+            one.iter().any(|line| (line.frequency - 4.3).abs() < 0.1),
+            "{one:?}"
+        );
+        assert_eq!(lines(&[flight(3, driven)]), []);
     }
 }

@@ -70,8 +70,20 @@ pub(super) fn least_squares(
     Some(&eigen.eigenvectors * inverse.component_mul(&(eigen.eigenvectors.transpose() * moment)))
 }
 
+/// Sums beside each other: one sum waits for each of its additions.
+const SUMS: usize = 8;
+
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+    let (a, rest_of_a) = a.as_chunks::<SUMS>();
+    let (b, rest_of_b) = b.as_chunks::<SUMS>();
+    let mut sums = [0.0; SUMS];
+    for (a, b) in a.iter().zip(b) {
+        for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
+            *sum += a * b;
+        }
+    }
+    let rest = rest_of_a.iter().zip(rest_of_b).map(|(a, b)| a * b);
+    sums.iter().sum::<f64>() + rest.sum::<f64>()
 }
 
 pub(super) fn norm(a: &[f64]) -> f64 {

@@ -3,6 +3,7 @@
 use super::case::Case;
 use super::lines::{Line, lines};
 use super::report::FitChange;
+use super::unmodelled::Unmodelled;
 use crate::estimate::{Estimate, Role, Solution, TimeHistory, five_digits};
 use crate::flight::{Shown, shown_in};
 
@@ -63,6 +64,14 @@ fn swings(line: &Line) -> String {
         line.output,
         line.frequency,
         five_digits(line.amplitude * scale)
+    )
+}
+
+/// A force that is more than white noise makes, and no more than slow noise may.
+pub(super) fn of_force(force: &Unmodelled) -> String {
+    format!(
+        "what is left may hold a force in the equation of {}: it explains more than white noise would (2 ln L = {:.0}, where noise comes to {:.0} once in a thousand diagnoses), but slow noise of an instrument explains as much; another maneuver that moves it more would decide",
+        force.equation, force.likelihood_ratio, force.threshold
     )
 }
 
