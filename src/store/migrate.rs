@@ -16,6 +16,7 @@ const STEPS: &[&str] = &[
     include_str!("migrations/0007_mappings.sql"),
     include_str!("migrations/0008_key_lifetimes.sql"),
     include_str!("migrations/0009_flown.sql"),
+    include_str!("migrations/0010_probe.sql"),
 ];
 
 /// Brings the schema up to date. Processes that start at once do not disturb each other: all steps are looked for and
@@ -23,8 +24,10 @@ const STEPS: &[&str] = &[
 pub(super) async fn run(store: &Store) -> Result<(), StoreError> {
     let table = "CREATE TABLE IF NOT EXISTS schema_steps (version BIGINT PRIMARY KEY NOT NULL, applied TEXT NOT NULL)";
     let mut writing = store.begin().await?;
-    if let Some(lock) = store.engine.lock_of_schema() {
-        sqlx::query(lock).execute(writing.connection()).await?;
+    for preparation in store.engine.before_schema() {
+        sqlx::query(*preparation)
+            .execute(writing.connection())
+            .await?;
     }
     sqlx::query(table).execute(writing.connection()).await?;
     let row = sqlx::query("SELECT MAX(version) AS version FROM schema_steps")
@@ -68,6 +71,7 @@ mod tests {
         "286817a4153ddb4a",
         "60f30e3c820afbf3",
         "6afee731f25bbcee",
+        "a08af6eb2edbafd4",
     ];
 
     #[test]

@@ -35,6 +35,7 @@ mod page;
 mod project;
 mod queue;
 mod reactor;
+mod readiness;
 mod record;
 mod results;
 mod retention;

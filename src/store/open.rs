@@ -10,6 +10,7 @@ use super::clock::Clock;
 use super::database::Store;
 use super::engine::Engine;
 use super::error::StoreError;
+use super::readiness::Readiness;
 use super::signal::Signals;
 use super::{migrate, neighbours};
 
@@ -40,7 +41,7 @@ impl Store {
                 Err(StoreError::Database(error)) => {
                     return Err(StoreError::Address {
                         address: without_password(address),
-                        why: error.to_string(),
+                        why: engine.why_not_opened(&error),
                     });
                 }
                 opened => return opened,
@@ -51,6 +52,7 @@ impl Store {
     async fn connect(engine: Engine, url: &str, clock: &Clock) -> Result<Self, StoreError> {
         // a pool tries until its patience ends, and then does not say why
         let mut first = AnyConnection::connect(url).await?;
+        engine.try_to_lock(&mut first).await?;
         engine.prepare(&mut first).await?;
         first.close().await?;
         let writer = engine.pool(engine.writers()).connect(url).await?;
@@ -66,6 +68,7 @@ impl Store {
             writer,
             clock: clock.clone(),
             signals,
+            readiness: Readiness::default(),
             _neighbours: neighbours,
         };
         migrate::run(&store).await?;

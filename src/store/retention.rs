@@ -8,6 +8,7 @@ use std::time::Duration;
 use sqlx::{AnyConnection, AssertSqlSafe, Row};
 use uuid::Uuid;
 
+use super::writing::Writing;
 use super::{Project, Store, StoreError};
 
 /// What became of the wish to delete something.
@@ -72,6 +73,7 @@ impl Project {
             return Ok(Deleted::Unknown);
         }
         let mut writing = self.store.begin().await?;
+        hold(&self.store, &mut writing, &self.name, id).await?;
         let sql =
             "SELECT COUNT(*) AS jobs FROM jobs WHERE project = $1 AND spec LIKE '%' || $2 || '%'";
         let row = sqlx::query(sql)
@@ -163,13 +165,7 @@ impl Store {
             }
             writing.commit().await?;
         }
-        let delete = format!("DELETE FROM maneuvers WHERE {unused}");
-        sqlx::query(AssertSqlSafe(delete))
-            .bind(&rule.before)
-            .bind(&rule.keep_tag)
-            .bind(of_one)
-            .execute(&self.writer)
-            .await?;
+        self.delete_unused(rule, &unused).await?;
         let told = format!(
             "DELETE FROM deliveries WHERE next IS NULL AND created < $1 \
              AND webhook IN (SELECT id FROM webhooks WHERE project {is_wanted} $2)"
@@ -181,6 +177,55 @@ impl Store {
             .await?;
         Ok(expired)
     }
+}
+
+impl Store {
+    /// Deletes maneuvers of which `unused` holds with what the rule says as $1, $2 and $3. Each by itself: a job that is
+    /// submitted meanwhile holds its maneuvers, and is seen once it does not.
+    async fn delete_unused(&self, rule: &Rule, unused: &str) -> Result<(), StoreError> {
+        let of_one = rule.project.as_deref().unwrap_or_default();
+        let select = format!("SELECT project, id FROM maneuvers WHERE {unused}");
+        let seen = sqlx::query(AssertSqlSafe(select))
+            .bind(&rule.before)
+            .bind(&rule.keep_tag)
+            .bind(of_one)
+            .fetch_all(&self.readers)
+            .await?;
+        let delete = format!("DELETE FROM maneuvers WHERE {unused} AND project = $4 AND id = $5");
+        for row in seen {
+            let (project, id): (&str, &str) = (row.try_get("project")?, row.try_get("id")?);
+            let mut writing = self.begin().await?;
+            hold(self, &mut writing, project, id).await?;
+            sqlx::query(AssertSqlSafe(delete.as_str()))
+                .bind(&rule.before)
+                .bind(&rule.keep_tag)
+                .bind(of_one)
+                .bind(project)
+                .bind(id)
+                .execute(writing.connection())
+                .await?;
+            writing.commit().await?;
+        }
+        Ok(())
+    }
+}
+
+/// Waits for those who submit jobs with this maneuver; the next statement sees their jobs, and those that come later find it
+/// gone.
+async fn hold(
+    store: &Store,
+    writing: &mut Writing,
+    project: &str,
+    id: &str,
+) -> Result<(), StoreError> {
+    let locking = store.engine.locking();
+    let sql = format!("SELECT id FROM maneuvers WHERE project = $1 AND id = $2 {locking}");
+    sqlx::query(AssertSqlSafe(sql))
+        .bind(project)
+        .bind(id)
+        .fetch_optional(writing.connection())
+        .await?;
+    Ok(())
 }
 
 async fn delete(connection: &mut AnyConnection, job: &str) -> Result<(), StoreError> {
