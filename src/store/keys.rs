@@ -167,9 +167,15 @@ impl Store {
     /// # Errors
     /// The database cannot be written.
     pub async fn add_key(&self, new: &NewKey) -> Result<(KeyRecord, Key), StoreError> {
+        self.add_key_as(self.clock.new_id(), new).await
+    }
+
+    /// As [`Store::add_key`]. Made again under the same id it gets another secret: the first was shown to nobody, since its
+    /// maker died before it answered.
+    async fn add_key_as(&self, id: Uuid, new: &NewKey) -> Result<(KeyRecord, Key), StoreError> {
         let key = Key::new()?;
         let record = KeyRecord {
-            id: self.clock.new_id(),
+            id,
             project: new.project.clone(),
             name: new.name.clone(),
             scopes: new.scopes.clone(),
@@ -183,7 +189,7 @@ impl Store {
         let names: Vec<&str> = record.scopes.iter().map(|scope| scope.name()).collect();
         sqlx::query(
             "INSERT INTO keys (id, project, name, digest, scopes, max_priority, created, lifetime, expires) \
-             VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9)",
+             VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9) ON CONFLICT (id) DO UPDATE SET digest = excluded.digest",
         )
         .bind(record.id.to_string())
         .bind(&record.project)
@@ -288,6 +294,17 @@ impl Store {
         id: Uuid,
         overlap: Duration,
     ) -> Result<Option<(KeyRecord, Key)>, StoreError> {
+        let new = self.clock.new_id();
+        self.rotate_key_as(project, id, new, overlap).await
+    }
+
+    async fn rotate_key_as(
+        &self,
+        project: Option<&str>,
+        id: Uuid,
+        new_id: Uuid,
+        overlap: Duration,
+    ) -> Result<Option<(KeyRecord, Key)>, StoreError> {
         let now = self.clock.now_text();
         let is_good = |key: &KeyRecord| {
             key.revoked.is_none() && key.expires.as_ref().is_none_or(|at| *at > now)
@@ -302,7 +319,7 @@ impl Store {
             max_priority: old.max_priority,
             lifetime: old.lifetime,
         };
-        let made = self.add_key(&new).await?;
+        let made = self.add_key_as(new_id, &new).await?;
         let until = self.clock.text_after(overlap);
         sqlx::query(
             "UPDATE keys SET expires = $2 WHERE id = $1 AND (expires IS NULL OR expires > $2)",
@@ -335,9 +352,17 @@ impl Project {
     }
 
     /// # Errors
+    /// The database does not answer.
+    pub async fn key(&self, id: Uuid) -> Result<Option<KeyRecord>, StoreError> {
+        self.store.key(Some(&self.name), id).await
+    }
+
+    /// Makes a key of this id; made again it gets another secret.
+    ///
+    /// # Errors
     /// As [`Store::add_key`].
-    pub async fn add_key(&self, new: &NewKey) -> Result<(KeyRecord, Key), StoreError> {
-        self.store.add_key(new).await
+    pub async fn add_key(&self, id: Uuid, new: &NewKey) -> Result<(KeyRecord, Key), StoreError> {
+        self.store.add_key_as(id, new).await
     }
 
     /// # Errors
@@ -346,13 +371,18 @@ impl Project {
         self.store.revoke_key(Some(&self.name), id).await
     }
 
+    /// Replaces key `id` by one whose id is `new`.
+    ///
     /// # Errors
     /// As [`Store::rotate_key`].
     pub async fn rotate_key(
         &self,
         id: Uuid,
+        new: Uuid,
         overlap: Duration,
     ) -> Result<Option<(KeyRecord, Key)>, StoreError> {
-        self.store.rotate_key(Some(&self.name), id, overlap).await
+        self.store
+            .rotate_key_as(Some(&self.name), id, new, overlap)
+            .await
     }
 }

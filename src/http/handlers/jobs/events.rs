@@ -70,7 +70,8 @@ struct EventsQuery {
 /// With `Accept: text/event-stream` the answer is a stream of server-sent events: `id` is the event's
 /// number, `event` its type, `data` the event as JSON. A client that was cut off goes on where it stopped
 /// by sending the last number it saw as `Last-Event-ID` (browsers do so by themselves): nothing is lost,
-/// nothing comes twice. Behind the last event the stream is closed; asking on is answered 204.
+/// nothing comes twice. Behind the last event the stream is closed; asking on is answered 204. A number behind the last event so
+/// far counts as that one's.
 ///
 /// Otherwise the answer is a page of the same events.
 #[utoipa::path(get, path = "/v1/jobs/{id}/events", tag = "Jobs", operation_id = "listEvents",
@@ -97,7 +98,10 @@ async fn list_events(
         }
     };
     // the job first: if it is over now, all its events are there
-    let over = job::find(&service, id).await?.status.is_over();
+    let job = job::find(&service, id).await?;
+    let over = job.status.is_over();
+    // of another job, or of a database that has gone back to a backup: what comes from now on is told, and so the end
+    let after = after.min(job.last_seq);
     let page = service.store.events(id, after, limit).await?;
     if format == Format::Json {
         let complete = over && page.next_cursor.is_none();
