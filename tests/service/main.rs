@@ -31,6 +31,7 @@ mod coefficients;
 mod derivatives;
 mod diagnosis;
 mod dynamics;
+mod edge_numbers;
 mod events;
 mod exports;
 mod filter_error;

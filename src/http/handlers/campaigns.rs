@@ -131,11 +131,19 @@ async fn flown(service: &Service, tag: &str) -> Result<Vec<Flown>, Problem> {
         let Some(text) = service.store.result_part(record.id, Part::Estimate).await? else {
             continue;
         };
+        let estimate = match serde_json::from_str(&text) {
+            Ok(estimate) => estimate,
+            // one of many: the others are shown
+            Err(error) => {
+                tracing::error!(%error, job = %record.id, "its estimate cannot be read");
+                continue;
+            }
+        };
         flown.push(Flown {
             job: record.id.to_string(),
             name: record.name,
             conditions: conditions_of(&record.tags),
-            estimate: serde_json::from_str(&text)?,
+            estimate,
         });
     }
     Ok(flown)
