@@ -281,6 +281,12 @@ pub fn unknown_route() -> Problem {
     )
 }
 
+pub fn no_connection_left() -> Problem {
+    let detail = "all connections are taken (--max-connections, --max-connections-per-peer); try again in a moment";
+    let seconds = HeaderValue::from_static("1");
+    Problem::new(Code::Busy, detail).with_header(header::RETRY_AFTER, seconds)
+}
+
 pub fn method_not_allowed() -> Problem {
     Problem::new(
         Code::MethodNotAllowed,

@@ -58,7 +58,7 @@ pub fn is_missing(address: &str) -> bool {
     !is_postgres(address) && !Path::new(path(address)).exists()
 }
 
-fn path(address: &str) -> &str {
+pub(super) fn path(address: &str) -> &str {
     let path = address.strip_prefix("sqlite:");
     path.map_or(address, |rest| rest.strip_prefix("//").unwrap_or(rest))
 }

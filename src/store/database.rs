@@ -8,6 +8,7 @@ use tokio_util::sync::DropGuard;
 use super::clock::Clock;
 use super::engine::Engine;
 use super::error::StoreError;
+use super::looked::Looked;
 use super::readiness::Readiness;
 use super::signal::{Listener, Signals};
 
@@ -20,6 +21,7 @@ pub struct Store {
     pub(super) clock: Clock,
     pub(super) signals: Signals,
     pub(super) readiness: Readiness,
+    pub(super) looked: Looked,
     /// Kept as long as signals of other processes are to be heard.
     pub(super) _neighbours: Option<Arc<DropGuard>>,
 }

@@ -124,6 +124,7 @@ impl Engine {
             Some(8) if self == Self::Sqlite => {
                 "it cannot be written; see to the permissions of the file and its directory"
             }
+            Some(11) if self == Self::Sqlite => "it is damaged; restore a backup",
             Some(13) if self == Self::Sqlite => "its disk is full; make room there",
             Some(14) if self == Self::Sqlite => {
                 "it cannot be opened; see to the permissions of the file and its directory"

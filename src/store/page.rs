@@ -17,21 +17,15 @@ pub struct Page<T> {
 pub struct BadCursor;
 
 impl<T> Page<T> {
-    /// From rows, one more than `limit` where there are so many. One that cannot be read is left out, and said in the log: it
-    /// takes no others down.
+    /// From rows, one more than `limit` where there are so many; see [`readable`].
     pub(super) fn readable(
         rows: &[AnyRow],
         limit: usize,
         read: impl Fn(&AnyRow) -> Result<T, StoreError>,
         cursor: impl Fn(&T) -> String,
     ) -> Self {
-        let entries = rows.iter().take(limit).filter_map(|row| {
-            let read = read(row);
-            read.inspect_err(|error| tracing::error!(%error, "left out of a list"))
-                .ok()
-        });
-        let entries: Vec<T> = entries.collect();
         let more = rows.len() > limit;
+        let entries = readable(&rows[..rows.len().min(limit)], read);
         let next_cursor = entries.last().filter(|_| more).map(cursor);
         Self {
             entries,
@@ -53,6 +47,17 @@ impl<T> Page<T> {
             next_cursor,
         }
     }
+}
+
+/// The entries of a list. One that cannot be read is left out, and said in the log: it takes no others down.
+pub(super) fn readable<T>(
+    rows: &[AnyRow],
+    read: impl Fn(&AnyRow) -> Result<T, StoreError>,
+) -> Vec<T> {
+    let entries = rows.iter().map(read);
+    let entries = entries
+        .map(|entry| entry.inspect_err(|error| tracing::error!(%error, "left out of a list")));
+    entries.filter_map(Result::ok).collect()
 }
 
 /// The number of rows to fetch for [`Page::new`].

@@ -8,6 +8,7 @@ use std::time::Duration;
 use sqlx::{AnyConnection, AssertSqlSafe, Row};
 use uuid::Uuid;
 
+use super::audit::{self, Actor, Deed};
 use super::writing::Writing;
 use super::{Project, Store, StoreError};
 
@@ -59,7 +60,9 @@ impl Project {
             Some((status, _)) if !status.is_over() => return Ok(Deleted::NotOver),
             Some(_) => {}
         }
-        delete(writing.connection(), &id.to_string()).await?;
+        let name = id.to_string();
+        delete(writing.connection(), &name).await?;
+        self.note(&mut writing, Deed::JobDeleted, &name).await?;
         writing.commit().await?;
         Ok(Deleted::Gone)
     }
@@ -90,6 +93,7 @@ impl Project {
             .bind(id)
             .execute(writing.connection())
             .await?;
+        self.note(&mut writing, Deed::ManeuverDeleted, id).await?;
         writing.commit().await?;
         Ok(Deleted::Gone)
     }
@@ -109,7 +113,7 @@ impl Project {
             before: self.store.clock.text_before(age),
             keep_tag: keep_tag.to_string(),
         };
-        self.store.expire(&rule, dry_run).await
+        self.store.expire_as(&rule, dry_run, &self.submitter).await
     }
 }
 
@@ -120,6 +124,15 @@ impl Store {
     /// # Errors
     /// The database cannot be written.
     pub async fn expire(&self, rule: &Rule, dry_run: bool) -> Result<Expired, StoreError> {
+        self.expire_as(rule, dry_run, "").await
+    }
+
+    async fn expire_as(
+        &self,
+        rule: &Rule,
+        dry_run: bool,
+        key: &str,
+    ) -> Result<Expired, StoreError> {
         // all projects have a name: that is what `of_one` is compared with where none is asked for
         let is_wanted = if rule.project.is_some() { "=" } else { "<>" };
         let of_one = rule.project.as_deref().unwrap_or_default();
@@ -158,6 +171,7 @@ impl Store {
         if dry_run {
             return Ok(expired);
         }
+        self.note_expiry(rule, expired, key).await?;
         for some in jobs.chunks(AT_ONCE) {
             let mut writing = self.begin().await?;
             for job in some {
@@ -180,6 +194,28 @@ impl Store {
 }
 
 impl Store {
+    /// Before it begins: what is deleted by one that is broken off is written down, too.
+    async fn note_expiry(
+        &self,
+        rule: &Rule,
+        expired: Expired,
+        key: &str,
+    ) -> Result<(), StoreError> {
+        let Expired {
+            jobs, maneuvers, ..
+        } = expired;
+        let subject = format!(
+            "{jobs} jobs and {maneuvers} maneuvers from before {}",
+            rule.before
+        );
+        let project = rule.project.as_deref().unwrap_or_default();
+        let actor = Actor { project, key };
+        let mut writing = self.begin().await?;
+        let connection = writing.connection();
+        audit::note(connection, &self.clock, actor, Deed::Expired, &subject).await?;
+        writing.commit().await
+    }
+
     /// Deletes maneuvers of which `unused` holds with what the rule says as $1, $2 and $3. Each by itself: a job that is
     /// submitted meanwhile holds its maneuvers, and is seen once it does not.
     async fn delete_unused(&self, rule: &Rule, unused: &str) -> Result<(), StoreError> {

@@ -268,6 +268,12 @@ async fn an_entry_that_cannot_be_read_takes_no_list_down() {
         let answer = server.post_json("/v1/models", &model).await;
         models.push(answer.json()["id"].as_str().unwrap().to_string());
     }
+    let mut hooks = Vec::new();
+    for _ in 0..2 {
+        let order = json!({"url": "https://example.org/hook"});
+        let answer = server.post_json("/v1/webhooks", &order).await;
+        hooks.push(answer.json()["id"].as_str().unwrap().to_string());
+    }
     let mut database = connection(&server).await;
     for (sql, id) in [
         (
@@ -284,6 +290,7 @@ async fn an_entry_that_cannot_be_read_takes_no_list_down() {
             "UPDATE models SET document = '{}' WHERE id = $1",
             &models[0],
         ),
+        ("UPDATE webhooks SET events = '{' WHERE id = $1", &hooks[0]),
     ] {
         let changed = sqlx::query(sql).bind(id).execute(&mut database).await;
         assert!(changed.unwrap().rows_affected() > 0, "{sql}");
@@ -295,10 +302,13 @@ async fn an_entry_that_cannot_be_read_takes_no_list_down() {
         ("/v1/jobs", &jobs[1]),
         ("/models", &models[1]),
         ("/v1/models?limit=100", &models[1]),
+        ("/v1/webhooks", &hooks[1]),
         ("/v1/campaigns?tag=edge&parameters=Ma", &jobs[1]),
     ] {
         let answer = server.get(path).await;
         assert_eq!(answer.status, 200, "{path}: {}", answer.text());
         assert!(answer.text().contains(whole.as_str()), "{path}");
     }
+    // nor the end of a job, which is told to those who can be told
+    done(&server, &spec).await;
 }

@@ -125,7 +125,8 @@ async fn flown(service: &Service, tag: &str) -> Result<Vec<Flown>, Problem> {
             break;
         }
     }
-    records.sort_by(|a, b| a.created.cmp(&b.created));
+    // in the order in which they were submitted
+    records.sort_by_key(|record| record.id);
     let mut flown = Vec::new();
     for record in records {
         let Some(text) = service.store.result_part(record.id, Part::Estimate).await? else {

@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 use std::time::Duration;
 
-use axum::http::{HeaderMap, StatusCode, header};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::sse::{self, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use futures_util::Stream;
@@ -118,11 +118,15 @@ async fn list_events(
         return Ok(StatusCode::NO_CONTENT.into_response());
     }
     let keep_alive = KeepAlive::new().interval(KEEP_ALIVE);
-    Ok(no_store(
-        Sse::new(follow(service, id, after))
-            .keep_alive(keep_alive)
-            .into_response(),
-    ))
+    let stream = Sse::new(follow(service, id, after)).keep_alive(keep_alive);
+    let mut response = no_store(stream.into_response());
+    // nginx would gather events and send many at once, late
+    let passing = (
+        HeaderName::from_static("x-accel-buffering"),
+        HeaderValue::from_static("no"),
+    );
+    response.headers_mut().extend([passing]);
+    Ok(response)
 }
 
 fn last_event_id(headers: &HeaderMap) -> Result<Option<u64>, Problem> {
@@ -144,7 +148,7 @@ fn raw(event: &StoredEvent) -> serde_json::Result<Box<RawValue>> {
 }
 
 pub(super) fn no_store(mut response: Response) -> Response {
-    let value = header::HeaderValue::from_static("no-store");
+    let value = HeaderValue::from_static("no-store");
     response.headers_mut().insert(header::CACHE_CONTROL, value);
     response
 }
