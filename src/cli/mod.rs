@@ -3,6 +3,8 @@
 //!
 //! Invariant: results go to the standard output and all else to the standard error; a failure is one message and exit code 1.
 
+mod audit;
+mod backup;
 mod campaign;
 mod changes;
 mod client;
@@ -95,6 +97,10 @@ enum Command {
     #[command(name = "key")]
     Keys(key::Keys),
     Retain(retain::Retain),
+    Audit(audit::Audit),
+    Backup(backup::Backup),
+    Restore(backup::Restore),
+    Check(backup::Check),
     /// Print the OpenAPI document of the API.
     Openapi,
 }
@@ -125,6 +131,10 @@ pub fn main() -> ExitCode {
         Command::Health(health) => block_on(health.run()),
         Command::Keys(keys) => block_on(keys.run()),
         Command::Retain(retain) => block_on(retain.run()),
+        Command::Audit(audit) => block_on(audit.run()),
+        Command::Backup(backup) => block_on(backup.run()),
+        Command::Restore(restore) => block_on(restore.run()),
+        Command::Check(check) => block_on(check.run()),
         Command::Openapi => openapi(),
     };
     match done {

@@ -11,6 +11,7 @@ use tracing_subscriber::prelude::*;
 
 use super::Failure;
 use crate::store::{self, Store};
+use crate::work::Workers;
 
 /// The service ends within this time, even if its database does not answer any more.
 const LONGEST_END: Duration = Duration::from_millis(4200);
@@ -34,6 +35,10 @@ pub(super) struct Database {
 }
 
 impl Database {
+    pub(super) fn address(&self) -> &str {
+        &self.database
+    }
+
     /// Its address, without its password.
     pub(super) fn shown(&self) -> String {
         store::without_password(&self.database)
@@ -58,6 +63,10 @@ pub(super) struct Process {
     #[arg(long, env = "TRIMTAB_WORKERS", value_name = "N")]
     workers: Option<usize>,
 
+    /// Seconds that a job may take; then it ends with what it has come to, and the outcome `budget`. Without, it takes as long as it takes.
+    #[arg(long, env = "TRIMTAB_MAX_JOB_SECONDS", value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    max_job_seconds: Option<u64>,
+
     /// What is logged, to standard error: a level, or levels by module (`info,trimtab=debug`).
     #[arg(
         long,
@@ -79,9 +88,12 @@ enum LogFormat {
 }
 
 impl Process {
-    pub(super) fn workers(&self) -> usize {
+    pub(super) fn workers(&self) -> Workers {
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-        self.workers.unwrap_or_else(cores)
+        Workers {
+            count: self.workers.unwrap_or_else(cores),
+            longest_job: self.max_job_seconds.map(Duration::from_secs),
+        }
     }
 
     /// Runs `command`, whose token says when it has to end, and does not wait for it much longer.

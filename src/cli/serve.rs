@@ -50,9 +50,17 @@ pub(super) struct Serve {
     #[arg(long, env = "TRIMTAB_MAX_JOB_VALUES", value_name = "N", default_value_t = http::Config::default().max_job_values)]
     max_job_values: usize,
 
-    /// Connections at a time; those beyond wait.
+    /// Connections at a time; those beyond are told that the service is busy (503), and `/health` is answered all the same.
     #[arg(long, env = "TRIMTAB_MAX_CONNECTIONS", value_name = "N", default_value_t = http::Config::default().max_connections)]
     max_connections: usize,
+
+    /// Connections of one address at a time; 0: as many as there are, as behind a proxy, where all come from one.
+    #[arg(long, env = "TRIMTAB_MAX_CONNECTIONS_PER_PEER", value_name = "N", default_value_t = http::Config::default().max_connections_per_peer)]
+    max_connections_per_peer: usize,
+
+    /// Believe `X-Forwarded-Host` and `X-Forwarded-Proto`: a proxy stands before the service and sets both.
+    #[arg(long, env = "TRIMTAB_TRUST_PROXY")]
+    trust_proxy: bool,
 
     /// Jobs that wait, of everybody; beyond, submissions are refused for the time being (429).
     #[arg(long, env = "TRIMTAB_MAX_QUEUED", value_name = "N", default_value_t = http::Config::default().max_queued)]
@@ -107,7 +115,7 @@ impl Serve {
         tracing::info!(
             url,
             database = self.process.database.shown(),
-            workers,
+            workers = workers.count,
             "ready"
         );
         let config = self.config();
@@ -135,6 +143,8 @@ impl Serve {
             },
             max_job_values: self.max_job_values,
             max_connections: self.max_connections,
+            max_connections_per_peer: self.max_connections_per_peer,
+            trusts_proxy: self.trust_proxy,
             max_queued: self.max_queued,
             max_queued_per_key: self.max_queued_per_key,
             max_requests_per_second: self.max_requests_per_second,

@@ -21,15 +21,16 @@ impl Work {
 
     async fn work(&self, shutdown: CancellationToken) -> Result<(), Failure> {
         let workers = self.process.workers();
-        if workers == 0 {
+        let count = workers.count;
+        if count == 0 {
             return Err(Failure::new(
                 "with --workers 0 there is nothing to do; leave it out for one worker on each core",
             ));
         }
         let store = self.process.database.open().await?;
         let database = self.process.database.shown();
-        println!("{workers} workers on {database}");
-        tracing::info!(database, workers, "ready");
+        println!("{count} workers on {database}");
+        tracing::info!(database, workers = count, "ready");
         work::run(store.clone(), workers, shutdown).await;
         store.close().await;
         Ok(())

@@ -19,7 +19,7 @@
 //!
 //! [`job`] is what may be asked of all this in one document, and the events by which its progress is told. Arrows go
 //! one way: `job → diagnose → estimate → simulate → model → flight`, `job → dynamics → estimate`,
-//! `estimate, response → spectral`, `job → structure`, `ingest → flight`. Everything here is synchronous
+//! `estimate, response → spectral`, `job → structure`, `ingest, structure → flight`. Everything here is synchronous
 //! and deterministic: no server, no database, no clock, no environment, no hidden randomness. The service around it
 //! is the crate `trimtab`.
 //!

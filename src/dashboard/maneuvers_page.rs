@@ -27,7 +27,8 @@ pub struct ManeuverRow {
     pub name: String,
     /// RFC 3339, UTC.
     pub created: String,
-    pub summary: Summary,
+    /// `None`: what is kept of it cannot be read.
+    pub summary: Option<Summary>,
 }
 
 /// The whole page as HTML.
@@ -131,11 +132,15 @@ fn row(maneuver: &ManeuverRow) -> Markup {
         tr {
             td { input type="checkbox" name="estimation" value=(id) aria-label={ "use " (title) }; }
             th scope="row" { a href={ "/maneuvers/" (id) } { (title) } }
-            td.number { (number(summary.duration)) }
-            td.number { (summary.samples) }
-            td.number { (number(summary.rate)) }
-            td.soft.names { (channels(summary)) }
-            td { (count(&summary.findings)) }
+            @if let Some(summary) = summary {
+                td.number { (number(summary.duration)) }
+                td.number { (summary.samples) }
+                td.number { (number(summary.rate)) }
+                td.soft.names { (channels(summary)) }
+                td { (count(&summary.findings)) }
+            } @else {
+                td colspan="5" { "what was summed up of it cannot be read; upload it again" }
+            }
             td { (moment(&maneuver.created)) }
         }
     }

@@ -50,7 +50,7 @@ pub(super) fn needed(method: &Method, path: &str) -> Option<Scope> {
     if under("/metrics") {
         return Some(Scope::Metrics);
     }
-    let is_admins = ["/v1/keys", "/v1/webhooks", "/v1/retention"]
+    let is_admins = ["/v1/keys", "/v1/webhooks", "/v1/retention", "/v1/audit"]
         .into_iter()
         .any(under);
     if is_admins || *method == Method::DELETE {

@@ -142,7 +142,8 @@ codes! {
     InvalidResponse "invalid_response" UNPROCESSABLE_ENTITY "The frequency responses cannot be worked out";
     /// The service failed: a defect of ours. Report it with the `request_id`.
     Internal "internal" INTERNAL_SERVER_ERROR "The service failed";
-    /// The service holds as much of what is being sent to it as it may. Send it again after `Retry-After` seconds.
+    /// The service holds as much of what is being sent to it, or as many connections, as it may. Send it again after
+    /// `Retry-After` seconds.
     Busy "busy" SERVICE_UNAVAILABLE "The service is busy";
     /// The database does not answer in time. Nothing was lost that was accepted; try again.
     StoreUnavailable "store_unavailable" SERVICE_UNAVAILABLE "The store does not answer";

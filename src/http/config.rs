@@ -17,8 +17,12 @@ pub struct Config {
     pub recording: ingest::Limits,
     /// Values (samples times channels, time included) that the maneuvers of one job may hold.
     pub max_job_values: usize,
-    /// Connections at a time; those beyond wait.
+    /// Connections at a time; those beyond are told that the service is busy.
     pub max_connections: usize,
+    /// Connections of one address at a time; 0: as many as there are.
+    pub max_connections_per_peer: usize,
+    /// Whether a proxy stands before the service that says by which host and protocol it was asked.
+    pub trusts_proxy: bool,
     /// Jobs that wait, of everybody; beyond, submissions are refused for the time being.
     pub max_queued: usize,
     /// Jobs that wait, of one key.
@@ -42,6 +46,8 @@ impl Default for Config {
             recording: ingest::Limits::default(),
             max_job_values: 100_000_000,
             max_connections: 1024,
+            max_connections_per_peer: 512,
+            trusts_proxy: false,
             max_queued: 20_000,
             max_queued_per_key: 10_000,
             max_requests_per_second: 200,

@@ -24,6 +24,7 @@ mod rates;
 mod request;
 mod room;
 mod routes;
+mod seats;
 mod serve;
 mod service;
 

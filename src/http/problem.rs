@@ -164,6 +164,9 @@ impl From<IngestError> for Problem {
 
 impl From<StoreError> for Problem {
     fn from(error: StoreError) -> Self {
+        if let StoreError::ManeuverGone { place, .. } = error {
+            return Self::of_faults(Code::InvalidJob, vec![maneuver_gone(place)]);
+        }
         tracing::error!(%error, "store");
         // its text may name files and tables: that is for the log
         let (code, detail) = match error.trouble() {
@@ -184,6 +187,15 @@ impl From<StoreError> for Problem {
         let seconds = HeaderValue::from_static("5");
         Self::new(code, detail).with_header(header::RETRY_AFTER, seconds)
     }
+}
+
+/// Of a job that was checked while somebody deleted what it needs.
+fn maneuver_gone(place: usize) -> Fault {
+    Fault::new(
+        format!("/maneuvers/{place}/id"),
+        "unknown_maneuver",
+        "the maneuver was deleted while the job was being submitted; upload it again",
+    )
 }
 
 impl From<serde_json::Error> for Problem {
@@ -267,6 +279,12 @@ pub fn unknown_route() -> Problem {
         Code::UnknownRoute,
         "there is nothing here; /docs shows what there is",
     )
+}
+
+pub fn no_connection_left() -> Problem {
+    let detail = "all connections are taken (--max-connections, --max-connections-per-peer); try again in a moment";
+    let seconds = HeaderValue::from_static("1");
+    Problem::new(Code::Busy, detail).with_header(header::RETRY_AFTER, seconds)
 }
 
 pub fn method_not_allowed() -> Problem {

@@ -52,6 +52,20 @@ pub(super) fn router(server: Server) -> Router {
         .layer(map_request(drop_unfit_request_id))
 }
 
+/// What is answered over a connection on reserve: whether the service is there, and else that it is busy.
+pub(super) fn reserve(server: Server) -> Router {
+    let (health, _) = handlers::health::router().split_for_parts();
+    let request_id = HeaderName::from_static("x-request-id");
+    health
+        .with_state(server)
+        .fallback(async || problem::no_connection_left())
+        .layer(from_fn(problem::render))
+        .layer(from_fn(headers::guard))
+        .layer(PropagateRequestIdLayer::new(request_id.clone()))
+        .layer(SetRequestIdLayer::new(request_id, OwnRequestId))
+        .layer(map_request(drop_unfit_request_id))
+}
+
 /// Refuses what a page of another site has a browser send, other than of these.
 fn forgery_guard(origins: &[Origin]) -> CsrfLayer {
     let mut guard = CsrfLayer::new();

@@ -9,7 +9,6 @@ use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::server::graceful::GracefulShutdown;
 use hyper_util::service::TowerToHyperService;
 use tokio::net::{TcpListener, TcpStream, lookup_host};
-use tokio::sync::Semaphore;
 use tokio_io_timeout::TimeoutStream;
 use tokio_util::sync::CancellationToken;
 
@@ -19,12 +18,16 @@ use super::metrics::Metrics;
 use super::rates::Rates;
 use super::room::Room;
 use super::routes;
+use super::seats::{Seat, Seats};
 use super::service::Server;
 use crate::store::{Store, StoreError};
 
 /// A client that sends the head of a request more slowly than this is hung up on, and so is one that
 /// keeps a connection open this long without a request.
 const HEAD_TIMEOUT: Duration = Duration::from_secs(30);
+
+/// A connection on reserve has so long for its one request.
+const RESERVE_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// A client that does not read its answer is hung up on: when nothing more of it could be sent for this long. A stream of
 /// events with nothing to send is not meant.
@@ -80,7 +83,7 @@ fn fault(address: &str) -> impl Fn(std::io::Error) -> BindError {
 /// Serves the API on `listener` until `shutdown`, and then at most a few seconds longer. Tests and
 /// production run this same function.
 pub async fn run(config: Config, listener: TcpListener, store: Store, shutdown: CancellationToken) {
-    let connections = Arc::new(Semaphore::new(config.max_connections));
+    let seats = Seats::new(config.max_connections, config.max_connections_per_peer);
     // one body of each kind must fit in any case
     let least = config.max_maneuver_body + config.max_json_body;
     let room = Room::new(config.max_body_memory.max(2 * least));
@@ -94,21 +97,25 @@ pub async fn run(config: Config, listener: TcpListener, store: Store, shutdown: 
         rates,
         shutdown: shutdown.clone(),
     };
+    let on_reserve = routes::reserve(server.clone());
     let router = routes::router(server);
     let open = GracefulShutdown::new();
     let accept = async {
         loop {
-            let Ok(permit) = connections.clone().acquire_owned().await else {
-                return;
-            };
             match listener.accept().await {
-                Ok((stream, _)) => {
-                    let serve = serve(&open, stream, router.clone());
-                    tokio::spawn(async move {
-                        let _permit = permit;
-                        serve.await;
-                    });
-                }
+                Ok((stream, peer)) => match seats.take(peer.ip()) {
+                    Some(seat @ Seat::Whole { .. }) => {
+                        spawn(
+                            serve(&open, stream, router.clone(), HEAD_TIMEOUT, true),
+                            seat,
+                        );
+                    }
+                    Some(seat @ Seat::Reserve { .. }) => {
+                        let router = on_reserve.clone();
+                        spawn(serve(&open, stream, router, RESERVE_TIMEOUT, false), seat);
+                    }
+                    None => tracing::warn!(%peer, "hung up: there are too many connections"),
+                },
                 // out of file descriptors, most likely: some will be closed
                 Err(error) => {
                     tracing::warn!(%error, "cannot accept a connection");
@@ -127,11 +134,20 @@ pub async fn run(config: Config, listener: TcpListener, store: Store, shutdown: 
     }
 }
 
+fn spawn(connection: impl Future<Output = ()> + Send + 'static, seat: Seat) {
+    tokio::spawn(async move {
+        let _seat = seat;
+        connection.await;
+    });
+}
+
 /// One connection. Axum's own loop has no timeout for the head of a request.
 fn serve(
     open: &GracefulShutdown,
     stream: TcpStream,
     router: Router,
+    head_timeout: Duration,
+    keeps_alive: bool,
 ) -> impl Future<Output = ()> + use<> {
     // answers are written whole: waiting for more to fill a packet only delays events
     let _ = stream.set_nodelay(true);
@@ -140,7 +156,8 @@ fn serve(
     let stream = Box::pin(stream);
     let connection = http1::Builder::new()
         .timer(TokioTimer::new())
-        .header_read_timeout(HEAD_TIMEOUT)
+        .header_read_timeout(head_timeout)
+        .keep_alive(keeps_alive)
         .serve_connection(TokioIo::new(stream), TowerToHyperService::new(router));
     let connection = open.watch(connection);
     async move {

@@ -58,7 +58,7 @@ pub fn is_missing(address: &str) -> bool {
     !is_postgres(address) && !Path::new(path(address)).exists()
 }
 
-fn path(address: &str) -> &str {
+pub(super) fn path(address: &str) -> &str {
     let path = address.strip_prefix("sqlite:");
     path.map_or(address, |rest| rest.strip_prefix("//").unwrap_or(rest))
 }
@@ -67,20 +67,30 @@ fn is_postgres(address: &str) -> bool {
     address.starts_with("postgres:") || address.starts_with("postgresql:")
 }
 
-/// An address as it may be shown and logged.
+/// An address as it may be shown and logged, however it is misspelt: nothing between a ':' and an '@' is shown, nor
+/// parameters.
 #[must_use]
 pub fn without_password(address: &str) -> String {
-    let Some((scheme, rest)) = address.split_once("://").filter(|_| is_postgres(address)) else {
-        return address.to_string();
+    let (scheme, rest) = address.split_once("://").unwrap_or(("", address));
+    let begin = match scheme {
+        "" => String::new(),
+        scheme => format!("{scheme}://"),
     };
-    // parameters may have one, too
-    let rest = rest.split('?').next().unwrap_or_default();
-    match rest.rsplit_once('@') {
-        Some((user, host)) => {
-            let user = user.split(':').next().unwrap_or_default();
-            format!("{scheme}://{user}@{host}")
+    let (rest, parameters) = rest.split_once('?').unwrap_or((rest, ""));
+    // a password with a '?' in it, most likely, or parameters with an '@': what is what cannot be told
+    if parameters.contains('@') {
+        return format!("{begin}…");
+    }
+    let Some((user, host)) = rest.rsplit_once('@') else {
+        return format!("{begin}{rest}");
+    };
+    match user.split_once(':') {
+        // an address without "//", or with too much before it
+        Some((user, _)) if scheme.is_empty() || user.contains('/') => {
+            format!("{begin}{user}:…@{host}")
         }
-        None => format!("{scheme}://{rest}"),
+        Some((user, _)) => format!("{begin}{user}@{host}"),
+        None => format!("{begin}{rest}"),
     }
 }
 
@@ -124,5 +134,33 @@ mod tests {
         let refusal = connection("postgres://lab:s3cret@host:nonsense/x").unwrap_err();
         assert!(!refusal.to_string().contains("s3cret"), "{refusal}");
         assert_eq!(without_password("/data/a@b.db"), "/data/a@b.db");
+        assert_eq!(
+            without_password("postgres://host/db?user=lab"),
+            "postgres://host/db"
+        );
+    }
+
+    /// As an address is mistyped: each of these was shown whole.
+    #[test]
+    fn a_misspelt_address_does_not_show_its_password_either() {
+        for address in [
+            "postgre://lab:s3cret@host/trimtab",
+            "Postgres://lab:s3cret@host/trimtab",
+            "postgres//lab:s3cret@host/trimtab",
+            "postgres:/lab:s3cret@host/trimtab",
+            "postgres:lab:s3cret@host/trimtab",
+            "lab:s3cret@host/trimtab",
+            "mysql://host/trimtab?user=lab&password=s3cret",
+            "postgres://lab:a?s3cret@host/trimtab",
+            "postgres://lab:s3cret@a?b@host/trimtab",
+            "postgres://host/trimtab?password=a@s3cret",
+            "sqlite:lab:s3cret@host",
+        ] {
+            let shown = without_password(address);
+            assert!(!shown.contains("s3cret"), "{shown}");
+            if let Err(refusal) = connection(address) {
+                assert!(!refusal.to_string().contains("s3cret"), "{refusal}");
+            }
+        }
     }
 }

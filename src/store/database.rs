@@ -1,19 +1,16 @@
 //! The database, open: what all that is kept is read from and written to.
 
 use std::sync::Arc;
-use std::time::Duration;
 
 use sqlx::AnyPool;
-use tokio::time::timeout;
 use tokio_util::sync::DropGuard;
 
 use super::clock::Clock;
 use super::engine::Engine;
 use super::error::StoreError;
+use super::looked::Looked;
+use super::readiness::Readiness;
 use super::signal::{Listener, Signals};
-
-/// A probe that takes longer is of a database that does not answer.
-const PROBE: Duration = Duration::from_secs(3);
 
 /// A handle; clones share one database.
 #[derive(Clone)]
@@ -23,6 +20,8 @@ pub struct Store {
     pub(super) writer: AnyPool,
     pub(super) clock: Clock,
     pub(super) signals: Signals,
+    pub(super) readiness: Readiness,
+    pub(super) looked: Looked,
     /// Kept as long as signals of other processes are to be heard.
     pub(super) _neighbours: Option<Arc<DropGuard>>,
 }
@@ -37,20 +36,18 @@ impl Store {
         self.signals.listen()
     }
 
-    /// Whether the database answers and can be written: what is accepted has to be kept.
+    /// Whether the database answers and can be written: what is accepted has to be kept. Known to a second.
     ///
     /// # Errors
-    /// It does not, or cannot, within some seconds.
+    /// It does not, or cannot, within two seconds.
     pub async fn ping(&self) -> Result<(), StoreError> {
+        // SQLite does not write a row again that is what it was
+        let now = format!("{} {}", self.clock.now_text(), self.clock.new_id());
         let probe = async {
-            // changes nothing, and is written nevertheless
-            sqlx::query("UPDATE schema_steps SET applied = applied WHERE version = 1")
-                .execute(&self.writer)
-                .await
+            let probe = sqlx::query("UPDATE probe SET at = $1").bind(now);
+            probe.execute(&self.writer).await.map(drop)
         };
-        let in_time = timeout(PROBE, probe).await;
-        in_time.unwrap_or(Err(sqlx::Error::PoolTimedOut))?;
-        Ok(())
+        self.readiness.known_or(probe).await
     }
 
     /// Writes back and closes; what is under way is awaited.

@@ -34,6 +34,14 @@ impl Engine {
         }
     }
 
+    /// Behind a `SELECT`: nobody else changes or deletes these rows until the transaction ends, and others may say the same.
+    pub(super) fn sharing(self) -> &'static str {
+        match self {
+            Self::Sqlite => "",
+            Self::Postgres => "FOR SHARE",
+        }
+    }
+
     /// As [`Engine::locking`], passing over rows that another has locked.
     pub(super) fn locking_the_next(self) -> &'static str {
         match self {
@@ -53,11 +61,15 @@ impl Engine {
         }
     }
 
-    /// Locks the schema for the transaction: only one process at a time brings it up to date.
-    pub(super) fn lock_of_schema(self) -> Option<&'static str> {
+    /// Before a transaction looks at the schema: only one process at a time brings it up to date, and that a table is there
+    /// already is no news.
+    pub(super) fn before_schema(self) -> &'static [&'static str] {
         match self {
-            Self::Sqlite => None,
-            Self::Postgres => Some("SELECT pg_advisory_xact_lock(20261121)"),
+            Self::Sqlite => &[],
+            Self::Postgres => &[
+                "SET LOCAL client_min_messages = warning",
+                "SELECT pg_advisory_xact_lock(20261121)",
+            ],
         }
     }
 
@@ -88,6 +100,39 @@ impl Engine {
             Self::Sqlite => pool.idle_timeout(None).max_lifetime(None),
             Self::Postgres => pool,
         }
+    }
+
+    /// Finds out, within some seconds, whether the database can be written at all. Who starts is not kept waiting as one whose work is
+    /// waited for.
+    pub(super) async fn try_to_lock(self, connection: &mut AnyConnection) -> sqlx::Result<()> {
+        if self == Self::Sqlite {
+            for step in ["PRAGMA busy_timeout = 2500", "BEGIN IMMEDIATE", "ROLLBACK"] {
+                connection.execute(step).await?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Why a database could not be opened, and what to do.
+    pub(super) fn why_not_opened(self, error: &sqlx::Error) -> String {
+        let code = error.as_database_error().and_then(|error| error.code());
+        let code = code.and_then(|code| code.parse::<u32>().ok());
+        let remedy = match code.map(|code| code & 0xff) {
+            Some(5 | 6) if self == Self::Sqlite => {
+                "another process holds it locked; wait until it is done, or end it"
+            }
+            Some(8) if self == Self::Sqlite => {
+                "it cannot be written; see to the permissions of the file and its directory"
+            }
+            Some(11) if self == Self::Sqlite => "it is damaged; restore a backup",
+            Some(13) if self == Self::Sqlite => "its disk is full; make room there",
+            Some(14) if self == Self::Sqlite => {
+                "it cannot be opened; see to the permissions of the file and its directory"
+            }
+            Some(26) if self == Self::Sqlite => "it is a file of another kind; name another",
+            _ => return error.to_string(),
+        };
+        format!("{remedy} ({error})")
     }
 
     pub(super) async fn prepare(self, connection: &mut AnyConnection) -> sqlx::Result<()> {

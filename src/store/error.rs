@@ -17,6 +17,14 @@ pub enum StoreError {
     Unwritable { what: String, why: String },
     #[error("the lease of the job was lost to another worker")]
     LeaseLost,
+    #[error("the database does not take a write: {why}")]
+    NotWritten {
+        trouble: Option<Trouble>,
+        why: String,
+    },
+    /// By its number among those submitted together, and the maneuver's place in it.
+    #[error("maneuver {place} of job {job} is not there any more")]
+    ManeuverGone { job: usize, place: usize },
 }
 
 /// Trouble of a database that may pass, with nothing wrong with what was asked of it.
@@ -46,6 +54,7 @@ impl StoreError {
             Self::Database(sqlx::Error::Database(error)) => {
                 error.code().and_then(|code| Trouble::of_code(&code))
             }
+            Self::NotWritten { trouble, .. } => *trouble,
             _ => None,
         }
     }

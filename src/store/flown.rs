@@ -114,10 +114,8 @@ impl Project {
             query = query.bind(value);
         }
         let rows = query.fetch_all(&self.store.readers).await?;
-        let records = rows.iter().map(read_record).collect::<Result<_, _>>()?;
-        Ok(Ok(Page::new(records, limit, |record| {
-            format!("{}~{}", record.created, record.id)
-        })))
+        let cursor = |record: &ManeuverRecord| format!("{}~{}", record.created, record.id);
+        Ok(Ok(Page::readable(&rows, limit, read_record, cursor)))
     }
 
     /// What was flown in recordings, in the order of `ids`; nothing of one that is not there.

@@ -10,7 +10,7 @@ use super::record::record;
 use super::row::read_id;
 use super::writing::Writing;
 use super::{BadCursor, Page, Project, Signal, StoreError, queue};
-use crate::job::{EventBody, Status};
+use crate::job::{EventBody, JobSpec, Status};
 
 /// What is kept of a job that was checked.
 #[derive(Clone, PartialEq, Debug)]
@@ -19,6 +19,8 @@ pub struct NewJob {
     pub name: String,
     pub tags: Vec<String>,
     pub priority: i32,
+    /// What the spec names, in its order.
+    pub maneuvers: Vec<String>,
     /// JSON of the spec, as submitted.
     pub spec: String,
     /// JSON of the model document that the spec names or holds: what it means today it means forever.
@@ -38,6 +40,8 @@ pub struct JobRecord {
     pub started: Option<String>,
     pub finished: Option<String>,
     pub attempt: u32,
+    /// The number of the last event.
+    pub last_seq: u64,
     /// The last event of a job that is over.
     pub ending: Option<EventBody>,
 }
@@ -61,7 +65,7 @@ pub enum CancelReply {
     Unknown,
 }
 
-const COLUMNS: &str = "j.id, j.kind, j.name, j.tags, j.priority, j.status, j.created, j.started, j.finished, j.attempt, e.body AS ending \
+const COLUMNS: &str = "j.id, j.kind, j.name, j.tags, j.priority, j.status, j.created, j.started, j.finished, j.attempt, j.last_seq, e.body AS ending \
      FROM jobs j LEFT JOIN events e ON e.job = j.id AND e.seq = j.last_seq";
 
 fn read_job(row: &AnyRow) -> Result<JobRecord, StoreError> {
@@ -83,6 +87,7 @@ fn read_job(row: &AnyRow) -> Result<JobRecord, StoreError> {
         started: row.try_get("started")?,
         finished: row.try_get("finished")?,
         attempt: u32::try_from(row.try_get::<i64, _>("attempt")?).unwrap_or(u32::MAX),
+        last_seq: u64::try_from(row.try_get::<i64, _>("last_seq")?).unwrap_or(0),
         ending,
     })
 }
@@ -92,7 +97,7 @@ impl Project {
     /// is what it was.
     ///
     /// # Errors
-    /// The database cannot be written.
+    /// As [`Project::submit_all`].
     pub async fn submit(&self, id: Uuid, job: &NewJob) -> Result<JobRecord, StoreError> {
         let accepted = self.submit_all(&[(id, job)]).await?.pop();
         accepted.ok_or_else(|| StoreError::corrupt("a job", "it vanished"))
@@ -101,12 +106,16 @@ impl Project {
     /// Accepts all of these jobs, or none.
     ///
     /// # Errors
-    /// The database cannot be written.
+    /// The database cannot be written. [`StoreError::ManeuverGone`]: a maneuver was deleted in the meantime.
     pub async fn submit_all(&self, jobs: &[(Uuid, &NewJob)]) -> Result<Vec<JobRecord>, StoreError> {
         let mut writing = self.store.begin().await?;
         let mut accepted = Vec::new();
-        for (id, job) in jobs {
-            accepted.push(self.accept(&mut writing, *id, job).await?);
+        for (number, (id, job)) in jobs.iter().enumerate() {
+            let new = self.accept(&mut writing, *id, job).await?;
+            if new.is_some() {
+                self.hold_maneuvers(&mut writing, number, job).await?;
+            }
+            accepted.push(new);
         }
         writing.tell(Signal::Work);
         writing.commit().await?;
@@ -119,6 +128,31 @@ impl Project {
             records.push(record.ok_or_else(|| StoreError::corrupt("a job", "it vanished"))?);
         }
         Ok(records)
+    }
+
+    /// Makes sure that the maneuvers of a job are there and stay: one may have been deleted since the job was checked, and
+    /// nobody deletes it from here on, since the job is seen when the lock is gone.
+    async fn hold_maneuvers(
+        &self,
+        writing: &mut Writing,
+        number: usize,
+        job: &NewJob,
+    ) -> Result<(), StoreError> {
+        let sql = format!(
+            "SELECT id FROM maneuvers WHERE project = $1 AND id = $2 {}",
+            self.store.engine.sharing()
+        );
+        for (place, id) in job.maneuvers.iter().enumerate() {
+            let held = sqlx::query(AssertSqlSafe(sql.as_str()))
+                .bind(&*self.name)
+                .bind(id)
+                .fetch_optional(writing.connection())
+                .await?;
+            if held.is_none() {
+                return Err(StoreError::ManeuverGone { job: number, place });
+            }
+        }
+        Ok(())
     }
 
     /// `None`: there is one of this id.
@@ -177,6 +211,7 @@ impl Project {
             started: None,
             finished: None,
             attempt: 0,
+            last_seq: u64::try_from(head.last_seq).unwrap_or(0),
             ending: None,
         }))
     }
@@ -206,9 +241,11 @@ impl Project {
             .fetch_optional(&self.store.readers)
             .await?;
         let Some(row) = row else { return Ok(None) };
-        let tags = serde_json::from_str(row.try_get("tags")?)
-            .map_err(|error| StoreError::corrupt(format!("job {id}"), error))?;
+        let corrupt = |error| StoreError::corrupt(format!("job {id}"), error);
+        let tags = serde_json::from_str(row.try_get("tags")?).map_err(corrupt)?;
+        let spec: JobSpec = serde_json::from_str(row.try_get("spec")?).map_err(corrupt)?;
         Ok(Some(NewJob {
+            maneuvers: spec.maneuvers.into_iter().map(|used| used.id).collect(),
             kind: row.try_get("kind")?,
             name: row.try_get("name")?,
             tags,
@@ -279,8 +316,8 @@ impl Project {
             .bind(one_more(limit))
             .fetch_all(&self.store.readers)
             .await?;
-        let jobs = rows.iter().map(read_job).collect::<Result<_, _>>()?;
-        Ok(Ok(Page::new(jobs, limit, |job| job.id.to_string())))
+        let cursor = |job: &JobRecord| job.id.to_string();
+        Ok(Ok(Page::readable(&rows, limit, read_job, cursor)))
     }
 
     /// Asks to stop a job. Asking twice is asking once.

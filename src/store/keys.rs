@@ -1,122 +1,20 @@
 //! Keys: who may do what in which project. A key is shown once, when it is made; what is kept is its digest.
 
-use std::collections::BTreeSet;
-use std::fmt;
 use std::time::Duration;
 
-use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 use sqlx::any::AnyRow;
 use sqlx::{AssertSqlSafe, Row};
-use utoipa::ToSchema;
 use uuid::Uuid;
 
+use super::audit::{self, Actor, Deed};
+use super::key::{Key, KeyCheck, KeyRecord, NewKey, digest};
+use super::page::readable;
 use super::row::read_id;
+use super::writing::Writing;
 use super::{Clock, Project, Store, StoreError};
-
-/// What every key begins with: tools that look for leaked secrets find it by that.
-const PREFIX: &str = "trimtab_";
 
 /// The use of a key is noted no more often than this.
 const NOTED_EVERY: Duration = Duration::from_secs(600);
-
-/// Something that a key allows.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Scope {
-    /// See what the project has.
-    Read,
-    /// Upload, submit and cancel.
-    Submit,
-    /// Make and revoke the project's keys, and delete what it has.
-    Admin,
-    /// See what the service does: numbers over all projects, and no data of any.
-    Metrics,
-}
-
-impl Scope {
-    pub const ALL: [Self; 4] = [Self::Read, Self::Submit, Self::Admin, Self::Metrics];
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Read => "read",
-            Self::Submit => "submit",
-            Self::Admin => "admin",
-            Self::Metrics => "metrics",
-        }
-    }
-}
-
-/// The secret itself.
-#[derive(Clone, PartialEq, Eq)]
-pub struct Key(String);
-
-impl Key {
-    fn new() -> Result<Self, StoreError> {
-        let mut secret = [0; 32];
-        getrandom::fill(&mut secret).map_err(|error| StoreError::Unwritable {
-            what: "a key".into(),
-            why: error.to_string(),
-        })?;
-        Ok(Self(format!("{PREFIX}{}", hex::encode(secret))))
-    }
-
-    /// For whom it was made for, and for nobody else.
-    pub fn reveal(&self) -> &str {
-        &self.0
-    }
-}
-
-impl fmt::Debug for Key {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{PREFIX}…")
-    }
-}
-
-/// With 256 random bits in a key, its digest need be neither salted nor slow; and how long the database looks for one tells
-/// nothing of a key, since nobody can choose what digest a guess has.
-fn digest(key: &str) -> String {
-    hex::encode(Sha256::digest(key))
-}
-
-/// A key to be made.
-#[derive(Clone, PartialEq, Debug)]
-pub struct NewKey {
-    pub project: String,
-    /// For people: what it is used by.
-    pub name: String,
-    pub scopes: BTreeSet<Scope>,
-    /// The highest priority of jobs that are submitted with it.
-    pub max_priority: i32,
-    /// For ever, if there is none.
-    pub lifetime: Option<Duration>,
-}
-
-/// A key without its secret.
-#[derive(Clone, PartialEq, Debug)]
-pub struct KeyRecord {
-    pub id: Uuid,
-    pub project: String,
-    pub name: String,
-    pub scopes: BTreeSet<Scope>,
-    pub max_priority: i32,
-    pub created: String,
-    /// As it was asked for.
-    pub lifetime: Option<Duration>,
-    pub expires: Option<String>,
-    pub revoked: Option<String>,
-    /// When it was last used, to ten minutes.
-    pub used: Option<String>,
-}
-
-/// What there is to say to somebody who shows a key.
-#[derive(Clone, PartialEq, Debug)]
-pub enum KeyCheck {
-    Good(Box<KeyRecord>),
-    Unknown,
-    Revoked,
-    Expired,
-}
 
 const COLUMNS: &str =
     "id, project, name, scopes, max_priority, created, lifetime, expires, revoked, used FROM keys";
@@ -167,9 +65,50 @@ impl Store {
     /// # Errors
     /// The database cannot be written.
     pub async fn add_key(&self, new: &NewKey) -> Result<(KeyRecord, Key), StoreError> {
+        self.add_key_as(self.clock.new_id(), new, "").await
+    }
+
+    async fn add_key_as(
+        &self,
+        id: Uuid,
+        new: &NewKey,
+        actor: &str,
+    ) -> Result<(KeyRecord, Key), StoreError> {
+        let mut writing = self.begin().await?;
+        let made = self.insert_key(&mut writing, id, new).await?;
+        self.note_key(&mut writing, &made.0, Deed::KeyMade, actor, "")
+            .await?;
+        writing.commit().await?;
+        Ok(made)
+    }
+
+    async fn note_key(
+        &self,
+        writing: &mut Writing,
+        key: &KeyRecord,
+        deed: Deed,
+        actor: &str,
+        more: &str,
+    ) -> Result<(), StoreError> {
+        let actor = Actor {
+            project: &key.project,
+            key: actor,
+        };
+        let subject = format!("{} '{}'{more}", key.id, key.name);
+        audit::note(writing.connection(), &self.clock, actor, deed, &subject).await
+    }
+
+    /// Made again under the same id a key gets another secret: the first was shown to nobody, since its maker died before it
+    /// answered.
+    async fn insert_key(
+        &self,
+        writing: &mut Writing,
+        id: Uuid,
+        new: &NewKey,
+    ) -> Result<(KeyRecord, Key), StoreError> {
         let key = Key::new()?;
         let record = KeyRecord {
-            id: self.clock.new_id(),
+            id,
             project: new.project.clone(),
             name: new.name.clone(),
             scopes: new.scopes.clone(),
@@ -183,7 +122,7 @@ impl Store {
         let names: Vec<&str> = record.scopes.iter().map(|scope| scope.name()).collect();
         sqlx::query(
             "INSERT INTO keys (id, project, name, digest, scopes, max_priority, created, lifetime, expires) \
-             VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9)",
+             VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9) ON CONFLICT (id) DO UPDATE SET digest = excluded.digest",
         )
         .bind(record.id.to_string())
         .bind(&record.project)
@@ -194,7 +133,7 @@ impl Store {
         .bind(&record.created)
         .bind(new.lifetime.map_or(0, |time| i64::try_from(time.as_secs().max(1)).unwrap_or(i64::MAX)))
         .bind(&record.expires)
-        .execute(&self.writer)
+        .execute(writing.connection())
         .await?;
         Ok((record, key))
     }
@@ -254,7 +193,7 @@ impl Store {
             .bind(i64::from(project.is_none()))
             .fetch_all(&self.readers)
             .await?;
-        rows.iter().map(read_key).collect()
+        Ok(readable(&rows, read_key))
     }
 
     /// Revokes a key from now on; of this project, if one is named. `None`: there is none. Twice is once.
@@ -266,14 +205,29 @@ impl Store {
         project: Option<&str>,
         id: Uuid,
     ) -> Result<Option<KeyRecord>, StoreError> {
-        if self.key(project, id).await?.is_none() {
+        self.revoke_key_as(project, id, "").await
+    }
+
+    async fn revoke_key_as(
+        &self,
+        project: Option<&str>,
+        id: Uuid,
+        actor: &str,
+    ) -> Result<Option<KeyRecord>, StoreError> {
+        let Some(key) = self.key(project, id).await? else {
             return Ok(None);
-        }
+        };
+        let mut writing = self.begin().await?;
         sqlx::query("UPDATE keys SET revoked = COALESCE(revoked, $2) WHERE id = $1")
             .bind(id.to_string())
             .bind(self.clock.now_text())
-            .execute(&self.writer)
+            .execute(writing.connection())
             .await?;
+        if key.revoked.is_none() {
+            self.note_key(&mut writing, &key, Deed::KeyRevoked, actor, "")
+                .await?;
+        }
+        writing.commit().await?;
         self.key(project, id).await
     }
 
@@ -288,6 +242,17 @@ impl Store {
         id: Uuid,
         overlap: Duration,
     ) -> Result<Option<(KeyRecord, Key)>, StoreError> {
+        let new = self.clock.new_id();
+        self.rotate_key_as(project, (id, new), overlap, "").await
+    }
+
+    async fn rotate_key_as(
+        &self,
+        project: Option<&str>,
+        (id, new_id): (Uuid, Uuid),
+        overlap: Duration,
+        actor: &str,
+    ) -> Result<Option<(KeyRecord, Key)>, StoreError> {
         let now = self.clock.now_text();
         let is_good = |key: &KeyRecord| {
             key.revoked.is_none() && key.expires.as_ref().is_none_or(|at| *at > now)
@@ -296,21 +261,26 @@ impl Store {
             return Ok(None);
         };
         let new = NewKey {
-            project: old.project,
-            name: old.name,
-            scopes: old.scopes,
+            project: old.project.clone(),
+            name: old.name.clone(),
+            scopes: old.scopes.clone(),
             max_priority: old.max_priority,
             lifetime: old.lifetime,
         };
-        let made = self.add_key(&new).await?;
+        let mut writing = self.begin().await?;
+        let made = self.insert_key(&mut writing, new_id, &new).await?;
         let until = self.clock.text_after(overlap);
         sqlx::query(
             "UPDATE keys SET expires = $2 WHERE id = $1 AND (expires IS NULL OR expires > $2)",
         )
         .bind(id.to_string())
         .bind(until)
-        .execute(&self.writer)
+        .execute(writing.connection())
         .await?;
+        let by = format!(" by {new_id}");
+        self.note_key(&mut writing, &old, Deed::KeyRotated, actor, &by)
+            .await?;
+        writing.commit().await?;
         Ok(Some(made))
     }
 
@@ -335,24 +305,39 @@ impl Project {
     }
 
     /// # Errors
+    /// The database does not answer.
+    pub async fn key(&self, id: Uuid) -> Result<Option<KeyRecord>, StoreError> {
+        self.store.key(Some(&self.name), id).await
+    }
+
+    /// Makes a key of this id; made again it gets another secret.
+    ///
+    /// # Errors
     /// As [`Store::add_key`].
-    pub async fn add_key(&self, new: &NewKey) -> Result<(KeyRecord, Key), StoreError> {
-        self.store.add_key(new).await
+    pub async fn add_key(&self, id: Uuid, new: &NewKey) -> Result<(KeyRecord, Key), StoreError> {
+        self.store.add_key_as(id, new, &self.submitter).await
     }
 
     /// # Errors
     /// As [`Store::revoke_key`].
     pub async fn revoke_key(&self, id: Uuid) -> Result<Option<KeyRecord>, StoreError> {
-        self.store.revoke_key(Some(&self.name), id).await
+        self.store
+            .revoke_key_as(Some(&self.name), id, &self.submitter)
+            .await
     }
 
+    /// Replaces key `id` by one whose id is `new`.
+    ///
     /// # Errors
     /// As [`Store::rotate_key`].
     pub async fn rotate_key(
         &self,
         id: Uuid,
+        new: Uuid,
         overlap: Duration,
     ) -> Result<Option<(KeyRecord, Key)>, StoreError> {
-        self.store.rotate_key(Some(&self.name), id, overlap).await
+        self.store
+            .rotate_key_as(Some(&self.name), (id, new), overlap, &self.submitter)
+            .await
     }
 }

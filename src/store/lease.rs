@@ -5,25 +5,24 @@
 //! results (no fence); and it has no way to cancel a job that runs in another process. Checks of our own on its table would
 //! mend both, but then only claim and heartbeat would be left of it, which are two statements here.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use sqlx::any::AnyRow;
-use sqlx::{AnyConnection, AssertSqlSafe, Row};
+use sqlx::{AssertSqlSafe, Row};
 use uuid::Uuid;
 
 use super::log::{Head, read_status};
+use super::look::Look;
+use super::losses::Losses;
 use super::record::record;
 use super::row::read_id;
 use super::writing::Writing;
-use super::{ResultParts, Signal, Store, StoreError, queue, results};
+use super::{ResultParts, Signal, Store, StoreError, results};
 use crate::job::{EventBody, Fault, JobSpec, Status};
 use crate::model::ModelDocument;
 
 /// How long a job stays with a worker that says nothing. Heartbeats come three times as often.
 pub const LEASE: Duration = Duration::from_secs(15);
-
-/// A job whose workers vanished this often is given up: it is likelier to be what kills them than not.
-pub const MOST_LOST_WORKERS: u32 = 3;
 
 /// The right to write to a job, until another claims it.
 #[derive(Clone, PartialEq, Debug)]
@@ -38,10 +37,9 @@ pub struct Claim {
     pub model: ModelDocument,
     /// The job was asked to stop before this worker got it.
     pub cancelling: bool,
+    /// Workers were lost with it: it is to run alone ([`Store::run_alone`]).
+    pub is_suspect: bool,
 }
-
-const COLUMNS: &str =
-    "id, status, last_seq, attempt, lost, lease_owner, project, spec, model FROM jobs";
 
 impl Store {
     /// A job that a worker has left behind, or the first in line. A worker has one job at a time: one that is its own
@@ -52,8 +50,9 @@ impl Store {
     pub async fn claim(&self, worker: &str) -> Result<Option<Claim>, StoreError> {
         // an idle worker should not take a lock each time it looks
         let mut reader = self.readers.acquire().await?;
-        let now = self.clock.now_text();
-        if claimable(&mut reader, worker, &now, "").await?.is_none() {
+        let is_taking_over = self.looked.tells(Instant::now());
+        let look = Look::of(worker, &self.clock, is_taking_over);
+        if look.claimable(&mut reader, "").await?.is_none() {
             return Ok(None);
         }
         drop(reader);
@@ -61,7 +60,8 @@ impl Store {
         loop {
             let now = self.clock.now_text();
             let mut writing = self.begin().await?;
-            let row = claimable(writing.connection(), worker, &now, locking).await?;
+            let look = Look::of(worker, &self.clock, is_taking_over);
+            let row = look.claimable(writing.connection(), locking).await?;
             let Some(row) = row else { return Ok(None) };
             let job = read_id(&row, "id")?;
             let status = read_status(row.try_get("status")?)?;
@@ -69,16 +69,12 @@ impl Store {
                 status: Some(status),
                 last_seq: row.try_get("last_seq")?,
             };
-            let was_lost = row.try_get::<Option<&str>, _>("lease_owner")?.is_some();
-            let lost = row.try_get::<i64, _>("lost")? + i64::from(was_lost);
+            let losses = Losses::found_by(worker, &row)?;
             let attempts = row.try_get::<i64, _>("attempt")?;
 
             let readable = read_task(&row);
-            let refusal = match &readable {
-                _ if lost >= i64::from(MOST_LOST_WORKERS) => Some(given_up(lost)),
-                Err(fault) => Some(fault.clone()),
-                Ok(_) => None,
-            };
+            let unreadable = readable.as_ref().err().cloned();
+            let refusal = losses.verdict().or(unreadable);
             let claimed = refusal.is_none();
             let attempt = attempts + i64::from(claimed);
             let event = match refusal {
@@ -92,13 +88,16 @@ impl Store {
             };
             record(writing.connection(), job, &mut head, &now, &[event]).await?;
             sqlx::query(
-                "UPDATE jobs SET attempt = $2, lost = $3, written = 0, lease_owner = $4, lease_until = $5 WHERE id = $1",
+                "UPDATE jobs SET attempt = $2, lost = $3, lost_alone = $4, counted = $5, alone = 0, written = 0, \
+                 lease_owner = $6, lease_until = $7 WHERE id = $1",
             )
             .bind(job.to_string())
             .bind(attempt)
-            .bind(lost)
+            .bind(losses.beside)
+            .bind(losses.alone)
+            .bind(losses.counted)
             .bind(claimed.then_some(worker))
-            .bind(claimed.then(|| self.clock.text_after(LEASE)))
+            .bind(claimed.then(|| self.clock.lease_text(LEASE)))
             .execute(writing.connection())
             .await?;
             writing.tell(Signal::Log(job));
@@ -112,9 +111,48 @@ impl Store {
                     spec,
                     model,
                     cancelling: status == Status::Cancelling,
+                    is_suspect: losses.is_suspect(),
                 }));
             }
         }
+    }
+
+    /// Says that nothing runs beside the job from now on: if its worker is lost, it is the job's doing, most likely.
+    ///
+    /// # Errors
+    /// [`StoreError::LeaseLost`]: the job has another worker or is over.
+    pub async fn run_alone(&self, claim: &Claim) -> Result<(), StoreError> {
+        let (mut writing, _) = self.begin_as(claim).await?;
+        sqlx::query("UPDATE jobs SET alone = 1 WHERE id = $1")
+            .bind(claim.job.to_string())
+            .execute(writing.connection())
+            .await?;
+        writing.commit().await
+    }
+
+    /// Takes back that the worker was lost: it was only away, and its job has another by now.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub async fn was_not_lost(&self, claim: &Claim) -> Result<(), StoreError> {
+        let attempt = i64::from(claim.attempt);
+        for (sql, counted) in [
+            (
+                "UPDATE jobs SET lost = lost - 1, counted = 0 WHERE id = $1 AND counted = $2",
+                attempt,
+            ),
+            (
+                "UPDATE jobs SET lost_alone = lost_alone - 1, counted = 0 WHERE id = $1 AND counted = $2",
+                -attempt,
+            ),
+        ] {
+            sqlx::query(sql)
+                .bind(claim.job.to_string())
+                .bind(counted)
+                .execute(&self.writer)
+                .await?;
+        }
+        Ok(())
     }
 
     /// Says that the worker is alive, and hears whether the job was asked to stop.
@@ -257,39 +295,12 @@ impl Store {
     ) -> Result<(), StoreError> {
         sqlx::query("UPDATE jobs SET lease_until = $2, written = $3 WHERE id = $1")
             .bind(claim.job.to_string())
-            .bind(self.clock.text_after(LEASE))
+            .bind(self.clock.lease_text(LEASE))
             .bind(i64::try_from(written).unwrap_or(i64::MAX))
             .execute(writing.connection())
             .await?;
         Ok(())
     }
-}
-
-/// A job that a worker has left behind or was given without hearing of it; otherwise the first in line.
-async fn claimable(
-    connection: &mut AnyConnection,
-    worker: &str,
-    now: &str,
-    locking: &str,
-) -> Result<Option<AnyRow>, StoreError> {
-    let left_behind = format!(
-        "SELECT {COLUMNS} WHERE status IN ('running', 'cancelling') \
-         AND (lease_until IS NULL OR lease_until < $1 OR lease_owner = $2) ORDER BY id LIMIT 1 {locking}"
-    );
-    let left_behind = sqlx::query(AssertSqlSafe(left_behind))
-        .bind(now)
-        .bind(worker)
-        .fetch_optional(&mut *connection)
-        .await?;
-    if left_behind.is_some() {
-        return Ok(left_behind);
-    }
-    let in_line = queue::IN_LINE;
-    let waiting =
-        format!("SELECT {COLUMNS} WHERE status = 'queued' ORDER BY {in_line} LIMIT 1 {locking}");
-    Ok(sqlx::query(AssertSqlSafe(waiting))
-        .fetch_optional(connection)
-        .await?)
 }
 
 /// What a claim that stands finds.
@@ -335,11 +346,4 @@ fn read_task(row: &AnyRow) -> Result<(JobSpec, ModelDocument), Fault> {
     let model =
         serde_json::from_str(text("model")?).map_err(|error| unreadable(error.to_string()))?;
     Ok((spec, model))
-}
-
-fn given_up(lost: i64) -> Fault {
-    let message = format!(
-        "{lost} workers vanished while they ran this job, most likely for want of memory; try it with fewer samples, outputs or parameters"
-    );
-    Fault::new("", "workers_lost", message)
 }

@@ -50,14 +50,15 @@ pub(super) async fn append(
     events: &[EventBody],
 ) -> Result<(), StoreError> {
     let job = job.to_string();
+    let now = &not_before_the_last(connection, &job, head.last_seq, now).await?;
     let (mut started, mut finished) = (None, None);
     for event in events {
         head.last_seq += 1;
         let status = Status::after(head.status, event);
         head.status = Some(status);
         match event {
-            EventBody::Claimed { .. } => started = Some(now),
-            _ if status.is_over() => finished = Some(now),
+            EventBody::Claimed { .. } => started = Some(now.as_str()),
+            _ if status.is_over() => finished = Some(now.as_str()),
             _ => {}
         }
         let body = serde_json::to_string(event).map_err(|error| StoreError::Unwritable {
@@ -87,6 +88,24 @@ pub(super) async fn append(
     .execute(&mut *connection)
     .await?;
     Ok(())
+}
+
+/// `now`, or the time of the last event, if that is later: the clock has gone back since.
+async fn not_before_the_last(
+    connection: &mut AnyConnection,
+    job: &str,
+    last_seq: i64,
+    now: &str,
+) -> Result<String, StoreError> {
+    let row = sqlx::query("SELECT at FROM events WHERE job = $1 AND seq = $2")
+        .bind(job)
+        .bind(last_seq)
+        .fetch_optional(connection)
+        .await?;
+    let last = row.map(|row| row.try_get::<String, _>("at")).transpose()?;
+    Ok(last
+        .filter(|last| **last > *now)
+        .unwrap_or_else(|| now.to_string()))
 }
 
 pub(super) fn read_status(text: &str) -> Result<Status, StoreError> {

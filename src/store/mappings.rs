@@ -3,6 +3,8 @@
 use sqlx::Row;
 use sqlx::any::AnyRow;
 
+use super::audit::Deed;
+use super::page::readable;
 use super::{Project, StoreError};
 
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -65,7 +67,7 @@ impl Project {
             .bind(&*self.name)
             .fetch_all(&self.store.readers)
             .await?;
-        rows.iter().map(read_mapping).collect()
+        Ok(readable(&rows, read_mapping))
     }
 
     /// Whether there was one.
@@ -74,11 +76,17 @@ impl Project {
     /// The database cannot be written.
     pub async fn delete_mapping(&self, name: &str) -> Result<bool, StoreError> {
         let sql = "DELETE FROM mappings WHERE project = $1 AND name = $2";
+        let mut writing = self.store.begin().await?;
         let deleted = sqlx::query(sql)
             .bind(&*self.name)
             .bind(name)
-            .execute(&self.store.writer)
+            .execute(writing.connection())
             .await?;
-        Ok(deleted.rows_affected() > 0)
+        if deleted.rows_affected() == 0 {
+            return Ok(false);
+        }
+        self.note(&mut writing, Deed::MappingDeleted, name).await?;
+        writing.commit().await?;
+        Ok(true)
     }
 }

@@ -89,7 +89,7 @@ impl Project {
             .bind(one_more(limit))
             .fetch_all(&self.store.readers)
             .await?;
-        let models = rows.iter().map(read_model).collect::<Result<_, _>>()?;
-        Ok(Page::new(models, limit, |model| model.id.to_string()))
+        let cursor = |model: &ModelRecord| model.id.to_string();
+        Ok(Page::readable(&rows, limit, read_model, cursor))
     }
 }

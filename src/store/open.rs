@@ -2,14 +2,17 @@
 
 use std::time::Duration;
 
-use sqlx::{AnyConnection, Connection};
+use sqlx::{AnyConnection, Connection, Row};
 use tokio::time::{Instant, sleep};
+use uuid::Uuid;
 
 use super::address::{connection, without_password};
 use super::clock::Clock;
 use super::database::Store;
 use super::engine::Engine;
 use super::error::StoreError;
+use super::looked::Looked;
+use super::readiness::Readiness;
 use super::signal::Signals;
 use super::{migrate, neighbours};
 
@@ -40,7 +43,7 @@ impl Store {
                 Err(StoreError::Database(error)) => {
                     return Err(StoreError::Address {
                         address: without_password(address),
-                        why: error.to_string(),
+                        why: engine.why_not_opened(&error),
                     });
                 }
                 opened => return opened,
@@ -51,6 +54,7 @@ impl Store {
     async fn connect(engine: Engine, url: &str, clock: &Clock) -> Result<Self, StoreError> {
         // a pool tries until its patience ends, and then does not say why
         let mut first = AnyConnection::connect(url).await?;
+        engine.try_to_lock(&mut first).await?;
         engine.prepare(&mut first).await?;
         first.close().await?;
         let writer = engine.pool(engine.writers()).connect(url).await?;
@@ -66,9 +70,28 @@ impl Store {
             writer,
             clock: clock.clone(),
             signals,
+            readiness: Readiness::default(),
+            looked: Looked::default(),
             _neighbours: neighbours,
         };
         migrate::run(&store).await?;
+        store.go_on_from_the_last().await?;
         Ok(store)
+    }
+
+    /// Lists are in the order of ids: what is made from now on comes behind what is there, though the clock may have gone
+    /// back since.
+    async fn go_on_from_the_last(&self) -> Result<(), StoreError> {
+        for sql in [
+            "SELECT MAX(id) AS id FROM jobs",
+            "SELECT MAX(id) AS id FROM models",
+        ] {
+            let row = sqlx::query(sql).fetch_one(&self.readers).await?;
+            let last = row.try_get::<Option<&str>, _>("id")?;
+            if let Some(Ok(id)) = last.map(Uuid::parse_str) {
+                self.clock.go_on_from(id);
+            }
+        }
+        Ok(())
     }
 }

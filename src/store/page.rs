@@ -1,6 +1,10 @@
 //! Pages of lists: a cursor says behind what the next page begins, so that a list stays in order
 //! while entries are added.
 
+use sqlx::any::AnyRow;
+
+use super::error::StoreError;
+
 /// Some entries, and the cursor of the page behind them; `None` is the only end.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Page<T> {
@@ -13,6 +17,22 @@ pub struct Page<T> {
 pub struct BadCursor;
 
 impl<T> Page<T> {
+    /// From rows, one more than `limit` where there are so many; see [`readable`].
+    pub(super) fn readable(
+        rows: &[AnyRow],
+        limit: usize,
+        read: impl Fn(&AnyRow) -> Result<T, StoreError>,
+        cursor: impl Fn(&T) -> String,
+    ) -> Self {
+        let more = rows.len() > limit;
+        let entries = readable(&rows[..rows.len().min(limit)], read);
+        let next_cursor = entries.last().filter(|_| more).map(cursor);
+        Self {
+            entries,
+            next_cursor,
+        }
+    }
+
     /// From one entry more than `limit` asks for, where there are so many.
     pub(crate) fn new(mut entries: Vec<T>, limit: usize, cursor: impl Fn(&T) -> String) -> Self {
         let more = entries.len() > limit;
@@ -27,6 +47,17 @@ impl<T> Page<T> {
             next_cursor,
         }
     }
+}
+
+/// The entries of a list. One that cannot be read is left out, and said in the log: it takes no others down.
+pub(super) fn readable<T>(
+    rows: &[AnyRow],
+    read: impl Fn(&AnyRow) -> Result<T, StoreError>,
+) -> Vec<T> {
+    let entries = rows.iter().map(read);
+    let entries = entries
+        .map(|entry| entry.inspect_err(|error| tracing::error!(%error, "left out of a list")));
+    entries.filter_map(Result::ok).collect()
 }
 
 /// The number of rows to fetch for [`Page::new`].

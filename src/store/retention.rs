@@ -8,6 +8,8 @@ use std::time::Duration;
 use sqlx::{AnyConnection, AssertSqlSafe, Row};
 use uuid::Uuid;
 
+use super::audit::{self, Actor, Deed};
+use super::writing::Writing;
 use super::{Project, Store, StoreError};
 
 /// What became of the wish to delete something.
@@ -58,7 +60,9 @@ impl Project {
             Some((status, _)) if !status.is_over() => return Ok(Deleted::NotOver),
             Some(_) => {}
         }
-        delete(writing.connection(), &id.to_string()).await?;
+        let name = id.to_string();
+        delete(writing.connection(), &name).await?;
+        self.note(&mut writing, Deed::JobDeleted, &name).await?;
         writing.commit().await?;
         Ok(Deleted::Gone)
     }
@@ -72,6 +76,7 @@ impl Project {
             return Ok(Deleted::Unknown);
         }
         let mut writing = self.store.begin().await?;
+        hold(&self.store, &mut writing, &self.name, id).await?;
         let sql =
             "SELECT COUNT(*) AS jobs FROM jobs WHERE project = $1 AND spec LIKE '%' || $2 || '%'";
         let row = sqlx::query(sql)
@@ -88,6 +93,7 @@ impl Project {
             .bind(id)
             .execute(writing.connection())
             .await?;
+        self.note(&mut writing, Deed::ManeuverDeleted, id).await?;
         writing.commit().await?;
         Ok(Deleted::Gone)
     }
@@ -107,7 +113,7 @@ impl Project {
             before: self.store.clock.text_before(age),
             keep_tag: keep_tag.to_string(),
         };
-        self.store.expire(&rule, dry_run).await
+        self.store.expire_as(&rule, dry_run, &self.submitter).await
     }
 }
 
@@ -118,6 +124,15 @@ impl Store {
     /// # Errors
     /// The database cannot be written.
     pub async fn expire(&self, rule: &Rule, dry_run: bool) -> Result<Expired, StoreError> {
+        self.expire_as(rule, dry_run, "").await
+    }
+
+    async fn expire_as(
+        &self,
+        rule: &Rule,
+        dry_run: bool,
+        key: &str,
+    ) -> Result<Expired, StoreError> {
         // all projects have a name: that is what `of_one` is compared with where none is asked for
         let is_wanted = if rule.project.is_some() { "=" } else { "<>" };
         let of_one = rule.project.as_deref().unwrap_or_default();
@@ -156,6 +171,7 @@ impl Store {
         if dry_run {
             return Ok(expired);
         }
+        self.note_expiry(rule, expired, key).await?;
         for some in jobs.chunks(AT_ONCE) {
             let mut writing = self.begin().await?;
             for job in some {
@@ -163,13 +179,7 @@ impl Store {
             }
             writing.commit().await?;
         }
-        let delete = format!("DELETE FROM maneuvers WHERE {unused}");
-        sqlx::query(AssertSqlSafe(delete))
-            .bind(&rule.before)
-            .bind(&rule.keep_tag)
-            .bind(of_one)
-            .execute(&self.writer)
-            .await?;
+        self.delete_unused(rule, &unused).await?;
         let told = format!(
             "DELETE FROM deliveries WHERE next IS NULL AND created < $1 \
              AND webhook IN (SELECT id FROM webhooks WHERE project {is_wanted} $2)"
@@ -181,6 +191,77 @@ impl Store {
             .await?;
         Ok(expired)
     }
+}
+
+impl Store {
+    /// Before it begins: what is deleted by one that is broken off is written down, too.
+    async fn note_expiry(
+        &self,
+        rule: &Rule,
+        expired: Expired,
+        key: &str,
+    ) -> Result<(), StoreError> {
+        let Expired {
+            jobs, maneuvers, ..
+        } = expired;
+        let subject = format!(
+            "{jobs} jobs and {maneuvers} maneuvers from before {}",
+            rule.before
+        );
+        let project = rule.project.as_deref().unwrap_or_default();
+        let actor = Actor { project, key };
+        let mut writing = self.begin().await?;
+        let connection = writing.connection();
+        audit::note(connection, &self.clock, actor, Deed::Expired, &subject).await?;
+        writing.commit().await
+    }
+
+    /// Deletes maneuvers of which `unused` holds with what the rule says as $1, $2 and $3. Each by itself: a job that is
+    /// submitted meanwhile holds its maneuvers, and is seen once it does not.
+    async fn delete_unused(&self, rule: &Rule, unused: &str) -> Result<(), StoreError> {
+        let of_one = rule.project.as_deref().unwrap_or_default();
+        let select = format!("SELECT project, id FROM maneuvers WHERE {unused}");
+        let seen = sqlx::query(AssertSqlSafe(select))
+            .bind(&rule.before)
+            .bind(&rule.keep_tag)
+            .bind(of_one)
+            .fetch_all(&self.readers)
+            .await?;
+        let delete = format!("DELETE FROM maneuvers WHERE {unused} AND project = $4 AND id = $5");
+        for row in seen {
+            let (project, id): (&str, &str) = (row.try_get("project")?, row.try_get("id")?);
+            let mut writing = self.begin().await?;
+            hold(self, &mut writing, project, id).await?;
+            sqlx::query(AssertSqlSafe(delete.as_str()))
+                .bind(&rule.before)
+                .bind(&rule.keep_tag)
+                .bind(of_one)
+                .bind(project)
+                .bind(id)
+                .execute(writing.connection())
+                .await?;
+            writing.commit().await?;
+        }
+        Ok(())
+    }
+}
+
+/// Waits for those who submit jobs with this maneuver; the next statement sees their jobs, and those that come later find it
+/// gone.
+async fn hold(
+    store: &Store,
+    writing: &mut Writing,
+    project: &str,
+    id: &str,
+) -> Result<(), StoreError> {
+    let locking = store.engine.locking();
+    let sql = format!("SELECT id FROM maneuvers WHERE project = $1 AND id = $2 {locking}");
+    sqlx::query(AssertSqlSafe(sql))
+        .bind(project)
+        .bind(id)
+        .fetch_optional(writing.connection())
+        .await?;
+    Ok(())
 }
 
 async fn delete(connection: &mut AnyConnection, job: &str) -> Result<(), StoreError> {

@@ -1,12 +1,16 @@
 //! One claimed job, from its data to one of its ends.
 
+use std::convert::Infallible;
+use std::future::pending;
 use std::sync::Arc;
-use std::time::Duration;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
 
 use tokio::sync::mpsc;
 use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
 use tokio_util::sync::CancellationToken;
 
+use super::company::{Company, Seat};
 use super::persist::persist;
 use super::solve::{Answer, Unanswered, solve};
 use super::stop::{Reason, Stop};
@@ -24,10 +28,20 @@ const MOMENT: Duration = Duration::from_millis(20);
 /// How many events may wait to be written before the solver waits for them.
 const LOG_CAPACITY: usize = 256;
 
-/// Runs a job. However this ends, the job is over, back in the queue, or another worker's.
-pub(super) async fn run_job(store: &Store, claim: Claim, shutdown: &CancellationToken) {
+/// Runs a job, with the seat that its worker has. However this ends, the job is over, back in the queue, or another worker's.
+pub(super) async fn run_job(
+    store: &Store,
+    claim: Claim,
+    (company, seat): (&Company, Seat),
+    shutdown: &CancellationToken,
+) {
     let claim = Arc::new(claim);
-    let written = match work_on(store, &claim, shutdown).await {
+    let (began, samples) = (Instant::now(), AtomicUsize::new(0));
+    // kept until the end is written
+    let mut seat = Some(seat);
+    let settled = work_on(store, &claim, (company, &mut seat), &samples, shutdown).await;
+    let how = how_it_ended(&settled);
+    let written = match settled {
         Settled::Ended(ending) => end(store, &claim, ending).await,
         Settled::Released => {
             let release = || store.release(&claim, "the server is shutting down");
@@ -36,12 +50,44 @@ pub(super) async fn run_job(store: &Store, claim: Claim, shutdown: &Cancellation
         Settled::Abandoned => Err(StoreError::LeaseLost),
     };
     match written {
-        Ok(()) => {}
+        Ok(()) => tracing::info!(
+            job = %claim.job,
+            project = claim.project,
+            worker = claim.worker,
+            attempt = claim.attempt,
+            seconds = began.elapsed().as_secs_f64(),
+            samples = samples.into_inner(),
+            how,
+            "job left"
+        ),
         Err(StoreError::LeaseLost) => {
             tracing::warn!(job = %claim.job, "the job was taken over by another worker");
+            if let Err(error) = store.was_not_lost(&claim).await {
+                tracing::warn!(job = %claim.job, %error, "this worker counts as lost, and is not");
+            }
         }
         // the lease runs out, and the next worker starts the job anew
         Err(error) => tracing::error!(job = %claim.job, %error, "the job's end was not written"),
+    }
+}
+
+/// The outcome of a job that came to a result; else its last event.
+fn how_it_ended(settled: &Settled) -> String {
+    match settled {
+        Settled::Ended(JobEnd { event, .. }) => match event {
+            EventBody::Succeeded { outcome, .. } => outcome.name().to_string(),
+            event => event.name().to_string(),
+        },
+        Settled::Released => "released".to_string(),
+        Settled::Abandoned => "abandoned".to_string(),
+    }
+}
+
+/// Ends a job on which the worker itself failed: it would do so again.
+pub(super) async fn give_up(store: &Store, claim: &Claim) {
+    let ending = failed("worker", &"its log tells more").event;
+    if let Err(error) = store.finish(claim, 0, &[], ending, None).await {
+        tracing::error!(job = %claim.job, %error, "the job's end was not written");
     }
 }
 
@@ -76,23 +122,39 @@ struct Told {
     events: Vec<EventBody>,
 }
 
-async fn work_on(store: &Store, claim: &Arc<Claim>, shutdown: &CancellationToken) -> Settled {
+async fn work_on(
+    store: &Store,
+    claim: &Arc<Claim>,
+    (company, seat): (&Company, &mut Option<Seat>),
+    samples: &AtomicUsize,
+    shutdown: &CancellationToken,
+) -> Settled {
     if claim.cancelling {
         let event = EventBody::cancelled_without_result();
         return Settled::Ended(JobEnd::without_result(event));
     }
     let stop = Stop::default();
     let run = async {
+        if claim.is_suspect
+            && let Err(error) = be_alone(store, claim, company, seat).await
+        {
+            return (Err(error.into()), Told::default());
+        }
         let maneuvers = match load(store, claim).await {
             Ok(maneuvers) => maneuvers,
             Err(unanswered) => return (Err(unanswered), Told::default()),
         };
+        let all = maneuvers.iter().map(|maneuver| maneuver.len()).sum();
+        samples.store(all, Ordering::Relaxed);
         let (log, events) = mpsc::channel(LOG_CAPACITY);
         let solver = tokio::task::spawn_blocking({
             let (claim, stop) = (claim.clone(), stop.clone());
             move || solve(&claim.spec, &claim.model, &maneuvers, &stop, &log)
         });
-        let told = record(store, claim, events, &stop).await;
+        let told = tokio::select! {
+            told = record(store, claim, events, &stop) => told,
+            never = end_in_time(company, &stop) => match never {},
+        };
         let answered = solver.await;
         (answered.unwrap_or_else(|error| Err(error.into())), told)
     };
@@ -100,6 +162,27 @@ async fn work_on(store: &Store, claim: &Arc<Claim>, shutdown: &CancellationToken
         (answered, told) = run => settle(answered, told, stop.asked()),
         settled = watch_over(store, claim, &stop, shutdown) => settled,
     }
+}
+
+/// Asks to stop when the job has taken as long as one may.
+async fn end_in_time(company: &Company, stop: &Stop) -> Infallible {
+    company.time_is_up().await;
+    stop.ask(Reason::Budget);
+    pending().await
+}
+
+/// A job under suspicion waits until nothing runs beside it.
+async fn be_alone(
+    store: &Store,
+    claim: &Claim,
+    company: &Company,
+    seat: &mut Option<Seat>,
+) -> Result<(), StoreError> {
+    // nobody could be alone who waits with one
+    seat.take();
+    *seat = Some(company.alone().await);
+    tracing::info!(job = %claim.job, "it has lost workers before, and runs alone");
+    persist("run alone", || store.run_alone(claim)).await
 }
 
 /// The maneuvers of the spec, in its order.

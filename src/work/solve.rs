@@ -8,8 +8,8 @@ use tokio::task::JoinError;
 
 use super::clock::ThreadClock;
 use super::maker::this_program;
-use super::stop::Stop;
-use crate::estimate::Outcome;
+use super::stop::{Reason, Stop};
+use crate::estimate::{Estimate, Outcome};
 use crate::flight::{FindingTally, Maneuver};
 use crate::job::{self, EventBody, Faults, JobKind, JobSpec, StructureProgress, StudyProgress};
 use crate::model::ModelDocument;
@@ -90,7 +90,10 @@ pub(super) fn solve(
             tell(step.map(|step| EventBody::Diagnosis(step.clone())))
         }),
     };
-    let result = result.map_err(Unanswered::Refused)?;
+    let mut result = result.map_err(Unanswered::Refused)?;
+    if stop.asked() == Some(Reason::Budget) {
+        out_of_time(&mut result.estimate);
+    }
     let parts = ResultParts::encode(&result, this_program())?;
     let outcome = result.estimate.outcome;
     let findings = FindingTally::of(&result.estimate.findings);
@@ -107,12 +110,22 @@ pub(super) fn solve(
     })
 }
 
+/// What was not cancelled by anybody, but has taken as long as a job may.
+fn out_of_time(estimate: &mut Estimate) {
+    if estimate.outcome == Outcome::Cancelled {
+        estimate.outcome = Outcome::Budget;
+        estimate.reason = format!(
+            "the job has taken as long as one may (--max-job-seconds); {}",
+            estimate.reason
+        );
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::model::{Model, catalog};
     use crate::simulate::Scenario;
-    use crate::work::stop::Reason;
 
     /// Events that come when the wish to stop is known once so many iterations have been told of, and the outcome.
     fn stopped_after(iterations: usize) -> (Vec<EventBody>, Outcome) {

@@ -12,6 +12,8 @@ pub(super) enum Reason {
     Shutdown = 2,
     /// The job has another worker: nothing may be written any more.
     LeaseLost = 3,
+    /// The job has taken as long as one may: what there is of a result is kept.
+    Budget = 4,
 }
 
 /// One flag for the solver's thread and those that watch over it. The first reason stands.
@@ -27,7 +29,8 @@ impl Stop {
     }
 
     pub(super) fn asked(&self) -> Option<Reason> {
-        [Reason::Cancel, Reason::Shutdown, Reason::LeaseLost]
+        use Reason::{Budget, Cancel, LeaseLost, Shutdown};
+        [Cancel, Shutdown, LeaseLost, Budget]
             .into_iter()
             .find(|reason| *reason as u8 == self.0.load(Ordering::Relaxed))
     }

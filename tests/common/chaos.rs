@@ -325,7 +325,7 @@ async fn check(url: &str, jobs: &[Followed], report: &mut Report) {
                 assert_eq!(estimate["outcome"], "converged", "{id}");
                 "succeeded".to_string()
             }
-            // three workers were killed with it: it is not tried for ever
+            // workers were killed with it, some that ran nothing else: it is not tried for ever
             "failed" => {
                 assert_eq!(record["faults"][0]["code"], "workers_lost", "{record:#}");
                 "workers lost".to_string()

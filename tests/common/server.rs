@@ -33,7 +33,11 @@ impl Server {
     }
 
     /// With no workers, jobs stay in the queue.
-    pub(crate) async fn start_with(config: http::Config, workers: usize) -> Self {
+    pub(crate) async fn start_with(
+        config: http::Config,
+        workers: impl Into<work::Workers>,
+    ) -> Self {
+        let workers = workers.into();
         let directory = TempDir::new().unwrap();
         let store = Store::open(database(directory.path()).to_str().unwrap())
             .await

@@ -47,6 +47,8 @@ impl Stream {
         }
         assert_eq!(response.status(), 200);
         assert_eq!(response.headers()["content-type"], "text/event-stream");
+        // a proxy passes on what comes when it comes
+        assert_eq!(response.headers()["x-accel-buffering"], "no");
         Some(Self {
             response,
             text: Vec::new(),

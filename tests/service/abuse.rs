@@ -201,7 +201,56 @@ async fn who_does_not_read_is_hung_up_on() {
         silent.push(stream);
     }
     tokio::time::sleep(Duration::from_secs(1)).await;
-    assert_eq!(server.get("/health/ready").await.status, 200);
+    loop {
+        let answer = server.get("/v1/jobs").await;
+        if answer.status == 200 {
+            break;
+        }
+        assert_eq!(answer.problem(503, "busy"), []);
+        assert_eq!(answer.header("retry-after"), "1");
+        tokio::time::sleep(Duration::from_millis(500)).await;
+    }
     let took = began.elapsed();
     assert!((20..60).contains(&took.as_secs()), "{took:?}");
+}
+
+/// A flood of connections shut out everybody, those who watch the service included.
+#[tokio::test]
+async fn whoever_watches_the_service_is_answered_in_a_flood() {
+    let config = Config {
+        max_connections: 20,
+        max_connections_per_peer: 10,
+        ..Config::default()
+    };
+    let server = Server::start_with(config, 0).await;
+    let address = server.url.strip_prefix("http://").unwrap().to_string();
+    let mut flood = Vec::new();
+    for _ in 0..60 {
+        flood.push(TcpStream::connect(&address).await.unwrap());
+    }
+    tokio::time::sleep(Duration::from_millis(200)).await;
+    for path in ["/health/live", "/health/ready"] {
+        let asked = Instant::now();
+        assert_eq!(server.get(path).await.status, 200, "{path}");
+        assert!(asked.elapsed() < Duration::from_secs(2), "{path}");
+    }
+    assert_eq!(server.get("/v1/jobs").await.problem(503, "busy"), []);
+    // of another address there is room: half of the connections are not this peer's
+    let port = address.rsplit_once(':').unwrap().1;
+    let socket = tokio::net::TcpSocket::new_v4().unwrap();
+    socket.bind("127.0.0.77:0".parse().unwrap()).unwrap();
+    let mut other = socket
+        .connect(format!("127.0.0.1:{port}").parse().unwrap())
+        .await
+        .unwrap();
+    let ask = b"GET /v1/jobs HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n\r\n";
+    other.write_all(ask).await.unwrap();
+    let mut answer = Vec::new();
+    other.read_to_end(&mut answer).await.unwrap();
+    let answer = String::from_utf8_lossy(&answer);
+    assert!(answer.starts_with("HTTP/1.1 200"), "{answer}");
+    // what says nothing is hung up on, and those who come are served again
+    drop(flood);
+    tokio::time::sleep(Duration::from_millis(500)).await;
+    assert_eq!(server.get("/v1/jobs").await.status, 200);
 }

@@ -163,3 +163,29 @@ async fn the_header_counts_before_the_query() {
     let answer = server.get_as(&nobody, "text/event-stream").await;
     assert_eq!(answer.problem(404, "unknown_job"), []);
 }
+
+/// A number behind the last event, of another job or from before a backup was put back: who asked with it heard nothing, not
+/// even of the end.
+#[tokio::test]
+async fn whoever_is_ahead_of_the_log_is_told_the_end() {
+    let server = Server::start().await;
+    let maneuver = server.upload(&elevator_of(2000.0, 5)).await;
+    let id = server.submit(&endless_job(&maneuver)).await;
+    let ahead = Stream::open(&server.url, &id, Some(100_000)).await.unwrap();
+    server
+        .post(&format!("/v1/jobs/{id}/cancel"), "application/json", "")
+        .await;
+    let end = tokio::time::timeout(std::time::Duration::from_secs(60), ahead.rest());
+    let events = end.await.expect("the stream ends");
+    assert_eq!(events.last().unwrap().event, "cancelled");
+    // and once it is over there is nothing more
+    assert!(
+        Stream::open(&server.url, &id, Some(100_000))
+            .await
+            .is_none()
+    );
+    let path = format!("/v1/jobs/{id}/events?after=100000");
+    let page = server.get(&path).await.json();
+    assert_eq!(page["complete"], true);
+    assert_eq!(page["next_after"], events.last().unwrap().id);
+}

@@ -145,3 +145,21 @@ async fn jobs_of_a_tag_are_a_campaign() {
         assert_eq!(refused.status, 400, "{wrong}: {}", refused.text());
     }
 }
+
+/// A label that begins like a formula was one in a spreadsheet.
+#[tokio::test]
+async fn a_label_is_no_formula_in_a_table() {
+    let server = Server::start().await;
+    let mut job =
+        crate::common::jobs::job(&server.upload(&crate::common::recordings::elevator()).await);
+    job["maneuvers"][0]["label"] = json!("=HYPERLINK(\"http://evil.example\",1)");
+    let id = server.submit(&job).await;
+    assert_eq!(server.wait(&id).await["status"], "succeeded");
+    let csv = server
+        .get(&format!("/v1/jobs/{id}/time-histories?format=csv"))
+        .await
+        .text();
+    let row = csv.lines().nth(1).unwrap();
+    let expected = "\"'=HYPERLINK(\"\"http://evil.example\"\",1)\",0.0,";
+    assert!(row.starts_with(expected), "{row}");
+}

@@ -8,6 +8,7 @@ use crate::common::recordings::{elevator, elevator_of};
 use crate::common::server::{Server, client, send, wait};
 use crate::common::sse::{Received, Stream};
 use serde_json::{Value, json};
+use sqlx::Connection;
 use tempfile::TempDir;
 use trimtab::http::Config;
 use trimtab::store::{DEFAULT_PROJECT, LEASE};
@@ -325,4 +326,70 @@ async fn an_address_that_others_can_reach_is_refused() {
         );
     }
     assert!(!database.exists(), "a refusal leaves nothing behind");
+}
+
+/// A job that workers were lost with shows whether it was its doing when nothing else runs beside it.
+#[tokio::test]
+async fn a_job_under_suspicion_runs_alone() {
+    let server = Server::start_with(Config::default(), 2).await;
+    let beside = running(&server).await;
+    // both are in line before a worker looks again
+    let maneuver = server.upload(&elevator()).await;
+    let file = crate::common::server::database(server.directory.path());
+    let url = format!("sqlite://{}", file.to_str().unwrap());
+    let mut database = sqlx::AnyConnection::connect(&url).await.unwrap();
+    let trigger = "CREATE TRIGGER suspicion AFTER INSERT ON jobs BEGIN UPDATE jobs SET lost = 2 WHERE id = NEW.id; END";
+    sqlx::query(trigger).execute(&mut database).await.unwrap();
+    let suspect = server.submit(&job(&maneuver)).await;
+    sqlx::query("DROP TRIGGER suspicion")
+        .execute(&mut database)
+        .await
+        .unwrap();
+    let names = async |id: &str| -> Vec<String> {
+        let page = server.get(&format!("/v1/jobs/{id}/events")).await.json();
+        let events = page["events"].as_array().unwrap().iter();
+        events
+            .map(|event| event["type"].as_str().unwrap().to_string())
+            .collect()
+    };
+    let innocent = server.submit(&job(&maneuver)).await;
+    tokio::time::sleep(Duration::from_secs(2)).await;
+    assert_eq!(names(&suspect).await, ["queued", "claimed"]);
+    assert_eq!(names(&innocent).await, ["queued"]);
+    let cancel = format!("/v1/jobs/{beside}/cancel");
+    server.post(&cancel, "text/plain", "").await;
+    for id in [&suspect, &innocent] {
+        assert_eq!(server.wait(id).await["status"], "succeeded");
+    }
+    let times = async |id: &str| server.get(&format!("/v1/jobs/{id}")).await.json();
+    let (suspect, innocent) = (times(&suspect).await, times(&innocent).await);
+    assert!(suspect["finished"].as_str() <= innocent["started"].as_str());
+}
+
+/// It ran for ever, and two of one key held both workers.
+#[tokio::test]
+async fn a_job_that_takes_longer_than_it_may_ends_with_what_it_has() {
+    let workers = trimtab::work::Workers {
+        count: 1,
+        longest_job: Some(Duration::from_secs(2)),
+    };
+    let server = Server::start_with(Config::default(), workers).await;
+    let maneuver = server.upload(&elevator_of(4000.0, 3)).await;
+    let began = Instant::now();
+    let id = server.submit(&endless_job(&maneuver)).await;
+    let done = server.wait(&id).await;
+    assert!(
+        began.elapsed() > Duration::from_secs(2),
+        "{:?}",
+        began.elapsed()
+    );
+    assert_eq!(done["status"], "succeeded", "{done:#}");
+    assert_eq!(done["outcome"], "budget");
+    let reason = done["reason"].as_str().unwrap();
+    assert!(reason.contains("--max-job-seconds"), "{reason}");
+    let estimate = server.get(&format!("/v1/jobs/{id}/estimate")).await.json();
+    assert_eq!(estimate["outcome"], "budget");
+    // a short one is none the worse for it
+    let short = server.submit(&job(&server.upload(&elevator()).await)).await;
+    assert_eq!(server.wait(&short).await["outcome"], "converged");
 }

@@ -6,6 +6,7 @@ use crate::common::server::{Answer, Server, send};
 use reqwest::Method;
 use serde_json::{Value, json};
 use trimtab::http::Config;
+use trimtab::store::{NewKey, Scope};
 
 async fn post_with(server: &Server, path: &str, key: &str, body: &Value) -> Answer {
     let request = server
@@ -130,4 +131,59 @@ async fn an_answer_waits_until_the_job_is_over() {
     let at_once = post(&job(&maneuver), "wait=soon").await;
     assert_eq!(at_once.status, 202);
     assert_eq!(at_once.header("preference-applied"), "");
+}
+
+/// What has a secret was made as often as it was asked for.
+#[tokio::test]
+async fn what_has_a_secret_is_made_once_and_shows_it_once() {
+    let server = Server::start_with(Config::default(), 0).await;
+    let admin = NewKey {
+        project: "default".into(),
+        name: "admin".into(),
+        scopes: [Scope::Admin].into(),
+        max_priority: 0,
+        lifetime: None,
+    };
+    let (id, admin) = server.store.add_key(&admin).await.unwrap();
+    let rotated = format!("/v1/keys/{}/rotate", id.id);
+    let list = async |path: &str| {
+        let request = server
+            .request(Method::GET, path)
+            .bearer_auth(admin.reveal());
+        send(request).await.json()
+    };
+    let made = async |of: &str| {
+        let listed = list(&format!("/v1/{of}")).await;
+        listed[of].as_array().unwrap().len()
+    };
+    let hook = json!({"url": "https://example.org/hook"});
+    for (path, of, body) in [
+        ("/v1/webhooks", "webhooks", hook),
+        ("/v1/keys", "keys", json!({"name": "another"})),
+        (&rotated, "keys", json!({})),
+    ] {
+        let before = made(of).await;
+        let post = async || {
+            let request = server
+                .request(Method::POST, path)
+                .bearer_auth(admin.reveal())
+                .header("content-type", "application/json")
+                .header("idempotency-key", path);
+            send(request.body(body.to_string())).await
+        };
+        let (first, again) = (post().await, post().await);
+        assert_eq!((first.status.as_u16(), again.status.as_u16()), (201, 201));
+        assert_eq!(again.header("idempotency-replayed"), "true", "{path}");
+        assert_eq!(made(of).await, before + 1, "{path}");
+        let mut shown = first.json();
+        let secret = shown.as_object_mut().unwrap().remove("secret").unwrap();
+        assert_eq!(again.json(), shown, "{path}");
+        assert!(!again.text().contains(secret.as_str().unwrap()), "{path}");
+    }
+    let kept = std::fs::read(server.directory.path().join("test.db-wal")).unwrap();
+    let kept = String::from_utf8_lossy(&kept);
+    assert!(
+        !kept.contains("\"secret\":\"trimtab_"),
+        "a key is kept nowhere"
+    );
 }

@@ -97,6 +97,7 @@ pub(crate) fn new_job(name: &str) -> NewJob {
         name: name.into(),
         tags: spec.tags.clone(),
         priority: 0,
+        maneuvers: Vec::new(),
         spec: serde_json::to_string(&spec).unwrap(),
         model: serde_json::to_string(&ModelDocument::default()).unwrap(),
     }

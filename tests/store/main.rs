@@ -8,6 +8,7 @@ mod common {
 
 mod bench;
 mod flown;
+mod in_use;
 mod leases;
 mod projects;
 mod queue;

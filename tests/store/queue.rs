@@ -4,7 +4,9 @@ use std::time::Duration;
 
 use crate::bench::{Bench, new_job, on_both, succeeded};
 use trimtab::job::{EventBody, Status};
-use trimtab::store::{CancelReply, DEFAULT_PROJECT, LEASE, MOST_LOST_WORKERS, NewJob, StoreError};
+use trimtab::store::{
+    CancelReply, DEFAULT_PROJECT, GIVEN_UP_AFTER, LEASE, NewJob, SUSPECTED_AFTER, StoreError,
+};
 
 on_both! {
     jobs_are_claimed_once_and_oldest_first,
@@ -12,7 +14,10 @@ on_both! {
     each_key_is_served_in_turn,
     a_higher_priority_goes_first,
     giving_a_job_back_is_no_loss,
-    a_job_that_kills_its_workers_is_given_up,
+    a_job_that_kills_its_workers_is_given_up_once_it_ran_alone,
+    what_a_process_takes_anew_it_has_not_lost,
+    a_job_is_not_given_up_for_what_befalls_others_too,
+    a_worker_that_comes_back_was_not_lost,
     cancelling_a_queued_job_ends_it_at_once,
     the_wish_to_cancel_outlives_the_worker,
 }
@@ -106,7 +111,7 @@ async fn a_higher_priority_goes_first(bench: Bench) {
 
 async fn giving_a_job_back_is_no_loss(bench: Bench) {
     let job = bench.submit("job").await;
-    for _ in 0..=2 * MOST_LOST_WORKERS {
+    for _ in 0..3 * SUSPECTED_AFTER {
         let claim = bench.claim("w").await;
         bench.store.release(&claim, "shutdown").await.unwrap();
         assert_eq!(bench.status(job).await, Status::Queued);
@@ -114,11 +119,17 @@ async fn giving_a_job_back_is_no_loss(bench: Bench) {
     assert_eq!(bench.claim("w").await.job, job);
 }
 
-async fn a_job_that_kills_its_workers_is_given_up(bench: Bench) {
+async fn a_job_that_kills_its_workers_is_given_up_once_it_ran_alone(bench: Bench) {
     let job = bench.submit("killer").await;
     let mut claims = Vec::new();
-    for _ in 0..MOST_LOST_WORKERS {
-        claims.push(bench.claim("victim").await);
+    let all = SUSPECTED_AFTER + GIVEN_UP_AFTER;
+    for number in 0..all {
+        let claim = bench.claim(&format!("victim{number}/1")).await;
+        assert_eq!(claim.is_suspect, number >= SUSPECTED_AFTER);
+        if claim.is_suspect {
+            bench.store.run_alone(&claim).await.unwrap();
+        }
+        claims.push(claim);
         bench.clock.advance(LEASE + Duration::from_secs(1));
     }
     let innocent = bench.submit("innocent").await;
@@ -129,13 +140,58 @@ async fn a_job_that_kills_its_workers_is_given_up(bench: Bench) {
         panic!("{:?}", job.ending)
     };
     assert_eq!(faults[0].code, "workers_lost");
-    assert_eq!(job.attempt, MOST_LOST_WORKERS, "giving up is no attempt");
+    let told = format!("{all} workers were lost while they ran this job, {GIVEN_UP_AFTER} of them");
+    assert!(
+        faults[0].message.starts_with(&told),
+        "{}",
+        faults[0].message
+    );
+    assert_eq!(job.attempt, all, "giving up is no attempt");
     // the last of them was only slow, and must not take the end for its own
-    let late = bench
-        .store
-        .finish(&claims[2], 0, &[], succeeded(), None)
-        .await;
+    let late = claims.last().unwrap();
+    let late = bench.store.finish(late, 0, &[], succeeded(), None).await;
     assert!(matches!(late, Err(StoreError::LeaseLost)));
+}
+
+/// Outages of the database under one living process gave its jobs up.
+async fn what_a_process_takes_anew_it_has_not_lost(bench: Bench) {
+    let job = bench.submit("job").await;
+    for round in 0..3 * SUSPECTED_AFTER {
+        let claim = bench.claim(&format!("process/{}", round % 2)).await;
+        assert!(claim.job == job && !claim.is_suspect);
+        bench.clock.advance(LEASE + Duration::from_secs(5));
+    }
+}
+
+/// So did processes that were killed with all that they ran: it is under suspicion from then on, and no more.
+async fn a_job_is_not_given_up_for_what_befalls_others_too(bench: Bench) {
+    let job = bench.submit("job").await;
+    for round in 0..10 {
+        let claim = bench.claim(&format!("process{round}/1")).await;
+        assert_eq!((claim.job, claim.attempt), (job, round + 1));
+        assert_eq!(claim.is_suspect, round >= SUSPECTED_AFTER);
+        bench.clock.advance(LEASE + Duration::from_secs(1));
+    }
+}
+
+async fn a_worker_that_comes_back_was_not_lost(bench: Bench) {
+    bench.submit("job").await;
+    for round in 0..3 * SUSPECTED_AFTER {
+        let away = bench.claim(&format!("a{round}/1")).await;
+        bench.clock.advance(LEASE + Duration::from_secs(1));
+        let taken = bench.claim(&format!("b{round}/1")).await;
+        assert!(!taken.is_suspect, "round {round}");
+        // what it says twice counts once
+        bench.store.was_not_lost(&away).await.unwrap();
+        bench.store.was_not_lost(&away).await.unwrap();
+        bench.store.release(&taken, "shutdown").await.unwrap();
+    }
+    // and one that does not is
+    for number in 0..=SUSPECTED_AFTER {
+        let claim = bench.claim(&format!("c{number}/1")).await;
+        assert_eq!(claim.is_suspect, number == SUSPECTED_AFTER);
+        bench.clock.advance(LEASE + Duration::from_secs(1));
+    }
 }
 
 async fn cancelling_a_queued_job_ends_it_at_once(bench: Bench) {

@@ -11,12 +11,15 @@ use crate::model::{Parameter, Prior};
 pub struct Plausible {
     /// Least size, SI, from nothing.
     #[schema(example = -0.3)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub lower: f64,
     /// Largest size, SI, from nothing.
     #[schema(example = 0.3)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub upper: f64,
     /// Standard deviation of sizes that are usual; of what is known, it counts in the estimate.
     #[schema(example = 0.1)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub sd: f64,
     /// Whether the job says it, or the model does by declaring where the sensor is.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]

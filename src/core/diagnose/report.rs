@@ -106,6 +106,7 @@ pub struct EffectParameter {
     pub segment: Option<String>,
     /// In `unit`.
     #[schema(example = 0.0621)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub estimate: f64,
     /// Corrected for coloured residuals.
     pub standard_error: Option<f64>,
@@ -119,6 +120,7 @@ pub struct Member {
     pub effect: Effect,
     /// Share of the group's likelihood; the weights of a group add up to 1.
     #[schema(example = 0.83)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub weight: f64,
 }
 
@@ -127,9 +129,11 @@ pub struct Member {
 pub struct Evidence {
     /// Twice the gain of the colour-aware log-likelihood on the estimation data.
     #[schema(example = 143.2)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub likelihood_ratio: f64,
     /// What it had to pass: the family of candidates errs at this once in a hundred diagnoses.
     #[schema(example = 15.1)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub threshold: f64,
     /// The score (Lagrange multiplier) statistic of the screen; absent of what has no derivative at zero.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -155,6 +159,7 @@ pub struct OutputGain {
     /// The output's name.
     pub output: String,
     /// Negative: this output got worse.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub gain: f64,
 }
 
@@ -229,8 +234,10 @@ pub struct ParameterChange {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub segment: Option<String>,
     /// Its estimate with the declared model.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub before: f64,
     /// Its estimate with the effects added.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub after: f64,
     /// Of the estimate after, corrected for coloured residuals.
     pub standard_error: Option<f64>,
@@ -261,6 +268,7 @@ pub enum Step {
         /// Which round of the diagnosis, from 1; 0 is before the first.
         round: usize,
         /// -ln L at its estimate.
+        #[serde(deserialize_with = "crate::flight::null_as_nan")]
         cost: f64,
         /// Iterations that the fit took.
         iterations: usize,
@@ -281,6 +289,7 @@ pub enum Step {
         /// The candidate.
         name: String,
         /// Twice the gain of the colour-aware log-likelihood.
+        #[serde(deserialize_with = "crate::flight::null_as_nan")]
         likelihood_ratio: f64,
     },
     /// A candidate failed a test.
@@ -301,6 +310,7 @@ pub enum Step {
         /// The effect.
         name: String,
         /// Twice the gain of the colour-aware log-likelihood.
+        #[serde(deserialize_with = "crate::flight::null_as_nan")]
         likelihood_ratio: f64,
         /// The effect in words.
         sentence: String,

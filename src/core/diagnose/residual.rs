@@ -17,10 +17,13 @@ pub struct ResidualAnalysis {
     /// Samples that have a measured value.
     pub samples: usize,
     /// Root mean square, in `unit`.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub rms: f64,
     /// At lags 0, 1, 2, ... samples.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub autocorrelation: Vec<f64>,
     /// White noise stays within ± this at 95 of 100 lags.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub band: f64,
     /// Ljung and Box: whether it is white noise.
     pub portmanteau: Portmanteau,
@@ -40,10 +43,12 @@ pub struct ResidualAnalysis {
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Portmanteau {
     /// Ljung and Box's Q.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub statistic: f64,
     /// Autocorrelations in it.
     pub lags: usize,
     /// Probability of a greater statistic with white noise.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub probability: f64,
 }
 
@@ -53,10 +58,12 @@ pub struct CrossCorrelation {
     /// The input's name.
     pub input: String,
     /// Of the residual at k with the input at k − lag, lags from −`lags` to `lags`.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub values: Vec<f64>,
     /// The largest lag, samples.
     pub lags: usize,
     /// 95 % of the values of independent series are within ± this, their colours considered (Bartlett).
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub band: f64,
 }
 
@@ -64,10 +71,13 @@ pub struct CrossCorrelation {
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct SpectralLine {
     /// Hz
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub frequency: f64,
     /// Power spectral density, SI units squared per Hz.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub density: f64,
     /// Squared coherence with the input that it is most coherent with, 0 to 1.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub coherence: f64,
 }
 
@@ -75,10 +85,13 @@ pub struct SpectralLine {
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Distribution {
     /// 0 of a symmetric distribution.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub skewness: f64,
     /// 0 of a normal distribution.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub excess_kurtosis: f64,
     /// Largest deviation from the mean in standard deviations.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub largest: f64,
 }
 
@@ -88,8 +101,10 @@ pub struct Outlier {
     /// The segment's label.
     pub segment: String,
     /// s
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub time: f64,
     /// Deviation in robust standard deviations (1.4826 times the median deviation).
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub deviation: f64,
 }
 
@@ -99,12 +114,16 @@ pub struct Window {
     /// The segment's label.
     pub segment: String,
     /// s
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub from: f64,
     /// s
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub to: f64,
     /// Root mean square of the residual in it.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub rms: f64,
     /// Over the RMS of all.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub ratio: f64,
 }
 

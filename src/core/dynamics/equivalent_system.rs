@@ -48,6 +48,7 @@ pub struct EquivalentSystem {
     pub form: EquivalentForm,
     /// The range of frequencies that it was fitted over, rad/s.
     #[schema(example = json!([0.1, 10.0]))]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub band: [f64; 2],
     /// K, SI
     pub gain: Measure,
@@ -67,6 +68,7 @@ pub struct EquivalentSystem {
     pub delay: Measure,
     /// M, (20/n) Σ (dB² + 0.01745 deg²): where it is large no system of this form responds alike.
     #[schema(example = 0.8)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub mismatch: f64,
 }
 

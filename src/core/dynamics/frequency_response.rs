@@ -90,14 +90,19 @@ pub struct FrequencyResponse {
     /// In what frequencies are.
     pub frequency_unit: FrequencyUnit,
     /// Evenly spaced on a logarithmic scale.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub frequency: Vec<f64>,
     /// 20 log10 |H|
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub magnitude_db: Vec<f64>,
     /// One standard error of `magnitude_db`.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub magnitude_db_standard_error: Vec<f64>,
     /// arg H, degrees, continuous over all frequencies.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub phase_deg: Vec<f64>,
     /// One standard error of `phase_deg`.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub phase_deg_standard_error: Vec<f64>,
 }
 

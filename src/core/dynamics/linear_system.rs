@@ -57,8 +57,10 @@ pub struct LinearState {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quantity: Option<PhysicalQuantity>,
     /// x0
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub value: f64,
     /// dx/dt at x0 and u0, in the unit per second: zero in a trim.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub rate: f64,
 }
 
@@ -90,6 +92,7 @@ pub struct LinearSignal {
 pub struct MatrixEstimate {
     /// By rows.
     #[schema(example = json!([[-0.74, 0.97], [-3.41, -0.93]]))]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub values: Vec<Vec<f64>>,
     /// By rows; zero where nothing that was estimated is behind an entry, `null` where a parameter behind it has no standard
     /// error.

@@ -34,9 +34,11 @@ pub struct TransferFunction {
     pub poles: Vec<Root>,
     /// Coefficients, highest power first.
     #[schema(example = json!([-5.2, -3.6]))]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub numerator: Vec<f64>,
     /// Coefficients, highest power first, the first is one.
     #[schema(example = json!([1.0, 1.67, 4.0]))]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub denominator: Vec<f64>,
     /// Of input and output together, s.
     pub delay: Measure,

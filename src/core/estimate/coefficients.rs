@@ -18,6 +18,7 @@ pub struct Coefficient {
     pub from: Vec<String>,
     /// A pure number.
     #[schema(example = -0.683)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub value: f64,
     /// From the error bounds of the parameters, correlations included; the aircraft's constants count as known.
     /// Absent where those are not known, or all are fixed.

@@ -27,15 +27,19 @@ pub struct SimulatedQuantity {
     #[schema(example = "rad")]
     pub unit: String,
     /// At each sample, in `unit`.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub values: Vec<f64>,
     /// One standard error of `values`, from the covariance of the parameters to first order; inputs and what belongs to a
     /// maneuver count as known. Empty where it depends on a parameter that has no standard error.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub standard_errors: Vec<f64>,
     /// The 2.5 percentile of the draws; empty where none were asked for, or too few could be followed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub lower: Vec<f64>,
     /// The 97.5 percentile of the draws.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub upper: Vec<f64>,
 }
 

@@ -41,9 +41,11 @@ pub struct TrajectorySeries {
     #[schema(example = "-")]
     pub unit: String,
     /// At each sample, in `unit`.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub values: Vec<f64>,
     /// One standard error of `values`, from the covariance of the parameters; inputs count as known. Empty where it depends
     /// on a parameter that has no standard error, and where the estimate is singular: then the parameters have no covariance.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub standard_errors: Vec<f64>,
 }
 
@@ -54,6 +56,7 @@ pub struct Trajectory {
     #[schema(example = "elevator")]
     pub segment: String,
     /// Seconds of the recording.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub time: Vec<f64>,
     /// States, then definitions, then outputs, in the order of the model.
     pub quantities: Vec<TrajectorySeries>,

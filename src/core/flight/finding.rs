@@ -37,6 +37,7 @@ pub struct Finding {
     /// Recorded time of the first and the last of `rows`, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = json!([110.16, 110.16]))]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub time: Option<[f64; 2]>,
     /// How many rows are concerned in all.
     #[serde(default)]

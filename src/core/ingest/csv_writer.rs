@@ -20,9 +20,11 @@ impl CsvWriter {
         csv
     }
 
-    /// A cell of text, quoted where it must be.
+    /// A cell of text, quoted where it must be. What a spreadsheet would take for a formula has a `'` before it.
     pub fn text(&mut self, cell: &str) {
         self.begin_cell();
+        let escaped = is_formula(cell).then(|| format!("'{cell}"));
+        let cell = escaped.as_deref().unwrap_or(cell);
         if cell.contains(['"', ',', '\n', '\r']) {
             // writing to a string does not fail
             let _ = write!(self.text, "\"{}\"", cell.replace('"', "\"\""));
@@ -60,9 +62,35 @@ impl CsvWriter {
     }
 }
 
+/// Whether a spreadsheet would work out a cell rather than show it: labels are anybody's, and formulas can send what the
+/// sheet has elsewhere. A number with its sign is a number.
+fn is_formula(cell: &str) -> bool {
+    match cell.bytes().next() {
+        Some(b'=' | b'@' | b'\t' | b'\r') => true,
+        Some(b'+' | b'-') => cell.len() > 1 && cell.parse::<f64>().is_err(),
+        _ => false,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_cell_is_a_formula() {
+        let cells = [
+            "=1+1", "+1+1", "-1+1", "@SUM(A1)", "\t=1", "\r=1", "-1.5", "+2e3", "-", "a=b", "",
+        ];
+        let mut csv = CsvWriter::default();
+        for cell in cells {
+            csv.text(cell);
+        }
+        csv.number(-1.0);
+        assert_eq!(
+            csv.finish(),
+            "'=1+1,'+1+1,'-1+1,'@SUM(A1),'\t=1,\"'\r=1\",-1.5,+2e3,-,a=b,,-1.0"
+        );
+    }
 
     #[test]
     fn cells_are_quoted_where_they_must_be() {

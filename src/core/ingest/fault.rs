@@ -128,6 +128,7 @@ pub mod code {
         TIME_UNIT = "time_unit", "The unit of time is not a time.";
         TIME_MISSING = "time_missing", "A sample has no time.";
         TIME_NOT_INCREASING = "time_not_increasing", "Time does not increase.";
+        TIME_RANGE = "time_range", "Time goes on in steps too short, or for too long, to be that of a flight.";
         NOT_A_NUMBER = "not_a_number", "A cell holds neither a number nor a sign for a missing value.";
         ROW_LENGTH = "row_length", "A row does not have as many cells as the header.";
         LENGTH_MISMATCH = "length_mismatch", "A channel does not have as many values as the time axis.";

@@ -59,6 +59,7 @@ mod stored;
 mod summary;
 mod tdms;
 mod text;
+mod time_range;
 mod ulog;
 mod union;
 mod units;
@@ -118,6 +119,18 @@ pub fn read_mapped(
 /// All faults that can be found at once: every fault of a header or a mapping, the first 20 of
 /// the cells. A mapping that is missing, or that is there where the file says names and units itself.
 pub fn read_recording(
+    bytes: &[u8],
+    format: Format,
+    charset: Option<&str>,
+    mapping: Option<&Mapping>,
+    limits: &Limits,
+) -> Result<Reading, IngestError> {
+    let reading = read_contents(bytes, format, charset, mapping, limits)?;
+    time_range::check(reading.maneuver.time())?;
+    Ok(reading)
+}
+
+fn read_contents(
     bytes: &[u8],
     format: Format,
     charset: Option<&str>,

@@ -13,12 +13,15 @@ pub struct Summary {
     pub samples: usize,
     /// From the first sample to the last, gaps included, s.
     #[schema(example = 90.12)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub duration: f64,
     /// The usual time between samples, s.
     #[schema(example = 0.04)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub step: f64,
     /// Samples per second, Hz.
     #[schema(example = 25.0)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub rate: f64,
     /// Stretches without a gap.
     #[schema(example = 2)]

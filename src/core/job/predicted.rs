@@ -51,6 +51,7 @@ pub struct PredictedSegment {
     #[schema(example = "doublet")]
     pub segment: String,
     /// Seconds of the recording.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub time: Vec<f64>,
     /// States, then definitions, then outputs, in the order of the model.
     pub quantities: Vec<SimulatedQuantity>,

@@ -83,9 +83,11 @@ pub struct ToleranceHeld {
     #[schema(example = "short-period dynamics: pitch rate ±2 deg/s")]
     pub tolerance: String,
     /// SI
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub largest_deviation: f64,
     /// Share of the samples that are there and within the tolerance.
     #[schema(example = 0.998)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub share_within: f64,
 }
 

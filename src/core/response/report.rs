@@ -7,9 +7,11 @@ use utoipa::ToSchema;
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct RecordedResponses {
     /// Hz.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub frequency_hz: Vec<f64>,
     /// Lengths of the windows that were put together, s.
     #[schema(example = json!([20.0, 10.0, 5.0]))]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub windows: Vec<f64>,
     /// Lengths of windows, s, that were not: of which fewer than two more than there are inputs fit in without overlap, or of fewer
     /// than 8 samples.
@@ -57,6 +59,7 @@ pub struct RecordedBandwidth {
     pub negative_gain: bool,
     /// ω_180, where the phase is -180°, rad/s.
     #[schema(example = 6.1)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub crossing: f64,
     /// Where the phase has a margin of 45° to that, rad/s.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -76,21 +79,27 @@ pub struct RecordedBandwidth {
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct FittedTransferFunction {
     /// b_0, b_1, ..., b_m, SI.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub numerator: Vec<f64>,
     /// a_0, a_1, ..., and 1 for s^n.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub denominator: Vec<f64>,
     /// τ, s; 0 where none was asked for.
     #[schema(example = 0.07)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub delay: f64,
     /// Of the b, the a without the 1, and the delay if there is one: by the random errors of the response, larger by √χ² where the fit
     /// is worse than these say. Absent where there are no more independent numbers than unknowns.
     pub standard_errors: Vec<Option<f64>>,
     /// J = 20/n Σ W_γ (W_g (ΔdB)² + W_p (Δ°)²); up to 100 is a usable fit (Tischler and Remple, ch. 11).
     #[schema(example = 34.2)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub cost: f64,
     /// W_g
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub magnitude_weight: f64,
     /// W_p: 1 dB weighs as much as 7.57°.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub phase_weight: f64,
     /// How many frequencies it was fitted to.
     pub points: usize,

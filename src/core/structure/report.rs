@@ -62,14 +62,19 @@ pub struct StructureStep {
     pub partial_correlation: Option<f64>,
     /// Coefficient of determination, R².
     #[schema(example = 0.871)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub r_squared: f64,
     /// Mean squared error of the fit.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub mse: f64,
     /// s², the variance of the residual: Σe²/(N - p).
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub variance: f64,
     /// Predicted squared error.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub pse: f64,
     /// Prediction sum of squares, each sample predicted from all others.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub press: f64,
     /// The terms after the step, the constant (`1`) first.
     pub terms: Vec<Term>,
@@ -106,11 +111,14 @@ pub struct Term {
     pub term: String,
     /// The least-squares estimate of its parameter, SI.
     #[schema(example = -0.742)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub estimate: f64,
     /// For white residuals: s √((XᵀX)⁻¹_ii).
     #[schema(example = 0.011)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub standard_error: f64,
     /// (estimate/standard_error)²
     #[schema(example = 4550.1)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub partial_f: f64,
 }

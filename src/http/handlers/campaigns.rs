@@ -126,7 +126,8 @@ async fn flown(service: &Service, tag: &str) -> Result<Vec<Flown>, Problem> {
             break;
         }
     }
-    records.sort_by(|a, b| a.created.cmp(&b.created));
+    // in the order in which they were submitted
+    records.sort_by_key(|record| record.id);
     let mut flown = Vec::new();
     for record in records {
         let Some(text) = service.store.result_part(record.id, Part::Estimate).await? else {
@@ -136,12 +137,20 @@ async fn flown(service: &Service, tag: &str) -> Result<Vec<Flown>, Problem> {
             continue;
         };
         let spec: JobSpec = serde_json::from_str(&spec)?;
+        let estimate = match serde_json::from_str(&text) {
+            Ok(estimate) => estimate,
+            // one of many: the others are shown
+            Err(error) => {
+                tracing::error!(%error, job = %record.id, "its estimate cannot be read");
+                continue;
+            }
+        };
         flown.push(Flown {
             job: record.id.to_string(),
             name: record.name,
             conditions: conditions_of(&record.tags),
             recordings: UsedRecording::of(&spec.maneuvers),
-            estimate: serde_json::from_str(&text)?,
+            estimate,
         });
     }
     Ok(flown)

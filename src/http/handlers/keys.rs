@@ -14,6 +14,7 @@ use uuid::Uuid;
 
 use crate::http::caller::Caller;
 use crate::http::code::Code;
+use crate::http::middleware::once::NewId;
 use crate::http::problem::{Problem, ProblemDocument};
 use crate::http::request::json::JsonBody;
 use crate::http::request::query::Id;
@@ -70,8 +71,8 @@ impl KeyResource {
 /// A key that was made just now.
 #[derive(Serialize, ToSchema)]
 struct MadeKey {
-    /// The secret. It is shown this once and kept nowhere.
-    #[schema(example = "trimtab_2f6c…")]
+    /// The secret. It is shown this once and kept nowhere: absent where a request is answered again (`Idempotency-Key`).
+    #[schema(required = false, example = "trimtab_2f6c…")]
     secret: String,
     #[serde(flatten)]
     key: KeyResource,
@@ -128,6 +129,7 @@ async fn list_keys(service: Service) -> Result<Json<KeyList>, Problem> {
     ))]
 async fn make_key(
     service: Service,
+    NewId(id): NewId,
     JsonBody { value: order, .. }: JsonBody<KeyOrder>,
 ) -> Result<Response, Problem> {
     if service.caller.key.is_none() {
@@ -145,7 +147,7 @@ async fn make_key(
         max_priority: order.max_priority,
         lifetime: order.days.map(days),
     };
-    Ok(shown_once(service.store.add_key(&new).await?))
+    Ok(shown_once(service.store.add_key(id, &new).await?))
 }
 
 pub fn days(days: u32) -> Duration {
@@ -153,7 +155,6 @@ pub fn days(days: u32) -> Duration {
 }
 
 fn faults(order: &KeyOrder, caller: &Caller) -> Vec<Fault> {
-    let most = caller.max_priority;
     let mut faults = Vec::new();
     let mut wrong = |pointer: &str, code: &'static str, message: String| {
         faults.push(Fault::new(pointer, code, message));
@@ -166,14 +167,6 @@ fn faults(order: &KeyOrder, caller: &Caller) -> Vec<Fault> {
         let message = "a key without a scope opens nothing; name at least one of read, submit, admin, metrics";
         wrong("/scopes", "no_scope", message.to_string());
     }
-    // it is the one scope that reaches beyond the project
-    let is_beyond =
-        order.scopes.contains(&Scope::Metrics) && !caller.scopes.contains(&Scope::Metrics);
-    if is_beyond {
-        let message =
-            "'metrics' can be given by who has it, or where the database is (trimtab key new)";
-        wrong("/scopes", "out_of_range", message.to_string());
-    }
     if order
         .days
         .is_some_and(|days| !(1..=LONGEST_DAYS).contains(&days))
@@ -182,12 +175,26 @@ fn faults(order: &KeyOrder, caller: &Caller) -> Vec<Fault> {
             format!("1 to {LONGEST_DAYS} days; leave it out for a key that does not expire");
         wrong("/days", "out_of_range", message);
     }
-    if !(-HIGHEST_PRIORITY..=most).contains(&order.max_priority) {
+    faults.extend(beyond(&order.scopes, order.max_priority, caller));
+    faults
+}
+
+/// What a key would allow that its maker's own does not: asked of every key that is made, whatever for.
+fn beyond(scopes: &BTreeSet<Scope>, max_priority: i32, caller: &Caller) -> Vec<Fault> {
+    let most = caller.max_priority;
+    let mut faults = Vec::new();
+    // it is the one scope that reaches beyond the project
+    if scopes.contains(&Scope::Metrics) && !caller.scopes.contains(&Scope::Metrics) {
+        let message =
+            "'metrics' can be given by who has it, or where the database is (trimtab key new)";
+        faults.push(Fault::new("/scopes", "out_of_range", message));
+    }
+    if !(-HIGHEST_PRIORITY..=most).contains(&max_priority) {
         let message = format!(
             "between {} and {most}, that of your own key",
             -HIGHEST_PRIORITY
         );
-        wrong("/max_priority", "out_of_range", message);
+        faults.push(Fault::new("/max_priority", "out_of_range", message));
     }
     faults
 }
@@ -237,10 +244,11 @@ pub const fn a_day() -> u32 {
     responses(
         (status = 201, description = "The new key.", body = MadeKey),
         (status = 404, description = "`unknown_key`: there is none, or it is no longer valid.", body = ProblemDocument, content_type = "application/problem+json"),
-        (status = 422, description = "`invalid_key`", body = ProblemDocument, content_type = "application/problem+json"),
+        (status = 422, description = "`invalid_key`: the overlap is too long, or the key may do what yours may not.", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn rotate_key(
     service: Service,
+    NewId(new): NewId,
     Id(text): Id,
     JsonBody { value, .. }: JsonBody<Rotation>,
 ) -> Result<Response, Problem> {
@@ -249,7 +257,14 @@ async fn rotate_key(
         return Err(Problem::at(Code::InvalidKey, "/overlap_hours", message));
     }
     let overlap = Duration::from_secs(u64::from(value.overlap_hours) * 3600);
-    let made = service.store.rotate_key(key_id(&text)?, overlap).await?;
+    let id = key_id(&text)?;
+    let old = service.store.key(id).await?;
+    let old = old.ok_or_else(|| unknown_key(&text))?;
+    let faults = beyond(&old.scopes, old.max_priority, &service.caller);
+    if !faults.is_empty() {
+        return Err(Problem::of_faults(Code::InvalidKey, faults));
+    }
+    let made = service.store.rotate_key(id, new, overlap).await?;
     made.map(shown_once).ok_or_else(|| unknown_key(&text))
 }
 

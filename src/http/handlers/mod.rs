@@ -1,15 +1,16 @@
 //! What answers a request: a file for each resource. Those of jobs, which are many, have a folder.
 
+pub(super) mod health;
 pub(super) mod jobs;
 pub(super) mod keys;
 pub(super) mod maneuvers;
 pub(super) mod mappings;
 pub(super) mod models;
 
+mod audit;
 mod campaigns;
 mod flown;
 mod frequency_responses;
-mod health;
 mod maneuver_data;
 mod metrics;
 mod problems;
@@ -38,6 +39,7 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(jobs::bulk::router())
         .merge(jobs::rerun::router())
         .merge(retention::router())
+        .merge(audit::router())
         .merge(jobs::job::router())
         .merge(jobs::events::router())
         .merge(jobs::results::router())

@@ -99,8 +99,9 @@ struct WebhookList {
 /// A secret, shown this once.
 #[derive(Serialize, ToSchema)]
 struct WithSecret {
-    /// What signs the messages: by it the receiver knows that they are Trimtab's.
-    #[schema(example = "whsec_MfKQ9r8GKYqrTwjUPD8ILPZIo2LaLaSw")]
+    /// What signs the messages: by it the receiver knows that they are Trimtab's. Absent where a request is answered again
+    /// (`Idempotency-Key`).
+    #[schema(required = false, example = "whsec_MfKQ9r8GKYqrTwjUPD8ILPZIo2LaLaSw")]
     secret: String,
     #[serde(flatten)]
     webhook: WebhookResource,
@@ -161,7 +162,8 @@ async fn add_webhook(
         let message = "name at least one, or leave it out for all";
         return Err(Problem::at(Code::InvalidWebhook, "/events", message));
     }
-    if service.store.webhooks().await?.len() >= MOST_WEBHOOKS {
+    let webhooks = service.store.webhooks().await?;
+    if webhooks.iter().filter(|webhook| webhook.id != id).count() >= MOST_WEBHOOKS {
         let detail = format!("a project has at most {MOST_WEBHOOKS} webhooks; delete one first");
         return Err(Problem::new(Code::TooManyWebhooks, detail));
     }

@@ -119,12 +119,21 @@ fn names_this_machine(headers: &HeaderMap) -> bool {
         .get(header::HOST)
         .and_then(|host| host.to_str().ok());
     let Some(host) = host else { return true };
-    let Ok(authority) = host.parse::<axum::http::uri::Authority>() else {
-        return false;
+    name_of(host).is_some_and(|name| {
+        let is_loopback = |ip: std::net::IpAddr| ip.is_loopback();
+        name.eq_ignore_ascii_case("localhost") || name.parse().is_ok_and(is_loopback)
+    })
+}
+
+/// The host of `host`, `host:port` or `[address]:port` (RFC 9110, 7.2; RFC 3986, 3.2.2); `None` for anything else. A library
+/// took `[::1].evil` for `[::1]`.
+fn name_of(authority: &str) -> Option<&str> {
+    let (name, port) = match authority.strip_prefix('[') {
+        Some(rest) => rest.split_once(']')?,
+        None => authority.split_at(authority.find(':').unwrap_or(authority.len())),
     };
-    let name = authority.host().trim_matches(['[', ']']);
-    let is_loopback = |ip: std::net::IpAddr| ip.is_loopback();
-    name.eq_ignore_ascii_case("localhost") || name.parse().is_ok_and(is_loopback)
+    let is_port = |port: &str| port.bytes().all(|byte| byte.is_ascii_digit());
+    (port.is_empty() || port.strip_prefix(':').is_some_and(is_port)).then_some(name)
 }
 
 /// The service as who asks sees it. That there is nobody is a route that [`admit`] does not stand before.
@@ -157,6 +166,7 @@ mod tests {
             "127.0.0.1:8300",
             "127.9.9.9",
             "[::1]:8300",
+            "[::1]",
         ] {
             assert!(of(host), "{host}");
         }
@@ -167,6 +177,15 @@ mod tests {
             "[::2]",
             "localhost.x",
             "a b",
+            "[::1].evil",
+            "[::1].evil:8300",
+            "[::1]:8300.evil",
+            "[127.0.0.1",
+            "127.0.0.1:8300:evil",
+            "localhost:evil",
+            "evil@localhost",
+            "localhost@evil",
+            "::1",
         ] {
             assert!(!of(host), "{host}");
         }

@@ -1,4 +1,4 @@
-//! Counting what is asked and how soon it is answered.
+//! Counting and logging what is asked and how soon it is answered.
 
 use std::time::Instant;
 
@@ -27,6 +27,25 @@ pub(crate) async fn count(State(server): State<Server>, request: Request, next: 
         status: response.status().as_u16(),
     };
     let seconds = began.elapsed().as_secs_f64();
+    log(&route, seconds);
     server.metrics.answered(&route, seconds);
     response
+}
+
+/// One line for a request, within the span that has its id, path, project and key. That somebody looks every few seconds
+/// whether the service is there is not worth one.
+fn log(
+    Route {
+        method,
+        route,
+        status,
+    }: &Route,
+    seconds: f64,
+) {
+    let ms = (seconds * 1e6).round() / 1e3;
+    if route.starts_with("/health") {
+        tracing::debug!(method, route, status, ms, "answered");
+    } else {
+        tracing::info!(method, route, status, ms, "answered");
+    }
 }

@@ -41,8 +41,8 @@ impl FromRequestParts<Server> for NewId {
     }
 }
 
-/// Answers a POST with a key from what is kept, or does it and keeps the answer. What fails is not kept, and neither is an
-/// answer that is to be stored nowhere: it holds a secret.
+/// Answers a POST with a key from what is kept, or does it and keeps the answer. What fails is not kept; an answer that is to
+/// be stored nowhere is kept without its secret.
 pub(crate) async fn once(State(server): State<Server>, request: Request, next: Next) -> Response {
     if request.method() != Method::POST || !request.headers().contains_key(KEY) {
         return next.run(request).await;
@@ -126,14 +126,14 @@ fn digest(parts: &Parts, body: &[u8]) -> String {
 }
 
 async fn keep(service: &Service, key: &str, response: Response) -> Result<Response, Problem> {
+    if !response.status().is_success() {
+        service.store.let_go(key).await?;
+        return Ok(response);
+    }
     let is_secret = response
         .headers()
         .get(header::CACHE_CONTROL)
         .is_some_and(|value| value == "no-store");
-    if !response.status().is_success() || is_secret {
-        service.store.let_go(key).await?;
-        return Ok(response);
-    }
     let (parts, body) = response.into_parts();
     let body = body.collect().await.map_err(|error| {
         tracing::error!(%error, "an answer could not be read");
@@ -147,10 +147,21 @@ async fn keep(service: &Service, key: &str, response: Response) -> Result<Respon
     let answer = KeptAnswer {
         status: parts.status.as_u16(),
         headers: headers.collect(),
-        body: body.to_vec(),
+        body: if is_secret {
+            without_secret(&body)?
+        } else {
+            body.to_vec()
+        },
     };
     service.store.keep_answer(key, &answer).await?;
     Ok(Response::from_parts(parts, Body::from(body)))
+}
+
+/// The answer as it is given again: it was made once, and its secret is shown once.
+fn without_secret(body: &[u8]) -> Result<Vec<u8>, Problem> {
+    let mut answer: serde_json::Map<String, serde_json::Value> = serde_json::from_slice(body)?;
+    answer.remove("secret");
+    Ok(serde_json::to_vec(&answer)?)
 }
 
 fn replay(answer: KeptAnswer) -> Response {

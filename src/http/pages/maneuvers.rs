@@ -43,21 +43,24 @@ async fn get_maneuvers_page(
     let mappings = mappings.collect();
     let render = move || {
         let maneuvers = page.entries.into_iter().map(row);
-        Ok::<_, Problem>(maneuvers_page(&ManeuversView {
-            maneuvers: maneuvers.collect::<Result<_, _>>()?,
+        maneuvers_page(&ManeuversView {
+            maneuvers: maneuvers.collect(),
             mappings,
             is_later_page: query.cursor.is_some(),
             older,
-        }))
+        })
     };
-    Ok(Html(service.compute.run(render).await??))
+    Ok(Html(service.compute.run(render).await?))
 }
 
-fn row(record: ManeuverRecord) -> Result<ManeuverRow, Problem> {
-    Ok(ManeuverRow {
-        summary: serde_json::from_str(&record.summary)?,
+fn row(record: ManeuverRecord) -> ManeuverRow {
+    let summary = serde_json::from_str(&record.summary);
+    ManeuverRow {
+        summary: summary
+            .inspect_err(|error| tracing::error!(%error, maneuver = record.id, "its summary"))
+            .ok(),
         id: record.id,
         name: record.name,
         created: record.created,
-    })
+    }
 }

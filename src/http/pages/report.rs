@@ -30,7 +30,7 @@ async fn get_report(
         .transpose()?;
     let histories = service.store.histories(id).await?.unwrap_or_default();
     let written = service.store.clock().now_text();
-    let origin = origin(&headers);
+    let origin = origin(&headers, service.config.trusts_proxy);
     let write = move || {
         let fitted: Vec<_> = (histories.iter())
             .filter(|history| history.role == Role::Estimation)
@@ -52,13 +52,43 @@ async fn get_report(
     Ok(Html(service.compute.run(write).await?))
 }
 
-/// The service as the reader's browser knows it.
-fn origin(headers: &HeaderMap) -> String {
+/// The service as the reader's browser knows it; what is said of a proxy is believed where there is one.
+fn origin(headers: &HeaderMap, trusts_proxy: bool) -> String {
     let text = |name: &str| headers.get(name).and_then(|value| value.to_str().ok());
-    let scheme = match text("x-forwarded-proto") {
+    let forwarded = |name: &str| text(name).filter(|_| trusts_proxy);
+    let scheme = match forwarded("x-forwarded-proto") {
         Some("https") => "https",
         _ => "http",
     };
-    let host = text(header::HOST.as_str()).unwrap_or("localhost");
-    format!("{scheme}://{host}/")
+    // a chain of proxies: the first is the one that the browser knows
+    let host = forwarded("x-forwarded-host").and_then(|hosts| hosts.split(',').next());
+    let host = host.or_else(|| text(header::HOST.as_str()));
+    format!("{scheme}://{}/", host.unwrap_or("localhost").trim())
+}
+
+#[cfg(test)]
+mod tests {
+    use axum::http::{HeaderName, HeaderValue};
+
+    use super::*;
+
+    #[test]
+    fn a_proxy_is_believed_where_there_is_one() {
+        let headers: HeaderMap = [
+            ("host", "127.0.0.1:8300"),
+            ("x-forwarded-host", "lab.example, inner"),
+            ("x-forwarded-proto", "https"),
+        ]
+        .map(|(name, value)| {
+            (
+                HeaderName::from_static(name),
+                HeaderValue::from_static(value),
+            )
+        })
+        .into_iter()
+        .collect();
+        assert_eq!(origin(&headers, false), "http://127.0.0.1:8300/");
+        assert_eq!(origin(&headers, true), "https://lab.example/");
+        assert_eq!(origin(&HeaderMap::new(), true), "http://localhost/");
+    }
 }

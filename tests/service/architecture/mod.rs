@@ -21,7 +21,7 @@ const CRATES: [(&str, &str); 2] = [
 const ROOMS: [(&str, &[&str]); 17] = [
     ("flight", &[]),
     ("spectral", &[]),
-    ("structure", &[]),
+    ("structure", &["flight"]),
     ("response", &["spectral", "flight"]),
     ("ingest", &["flight"]),
     ("model", &["flight"]),

@@ -45,21 +45,26 @@ pub struct Unmodelled {
     pub unit: String,
     /// Twice the gain of the marginal log-likelihood over noise alone, each with the colour that suits it.
     #[schema(example = 143.2)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub likelihood_ratio: f64,
     /// What white noise alone exceeds once in a thousand diagnoses. Beyond 40 no noise that is usual in flight does, coloured or
     /// not; in between it is shown where something is missing for another reason, and says nothing by itself.
     #[schema(example = 16.6)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub threshold: f64,
     /// Independent numbers that the force is worth.
     #[schema(example = 41.0)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub freedom: f64,
     /// The other equations, the best first.
     pub elsewhere: Vec<ForceElsewhere>,
     /// Root mean square, over the flights that were fitted.
     #[schema(example = 0.031)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub rms: f64,
     /// Largest size in those.
     #[schema(example = 0.12)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub largest: f64,
     /// The force over time.
     pub flights: Vec<ForceHistory>,
@@ -96,9 +101,11 @@ pub struct ForceElsewhere {
     pub force_in: ForceIn,
     /// As of [`Unmodelled`].
     #[schema(example = 96.1)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub likelihood_ratio: f64,
     /// As of [`Unmodelled`].
     #[schema(example = 38.0)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub freedom: f64,
 }
 
@@ -112,12 +119,16 @@ pub struct ForceHistory {
     /// Whether it was fitted, or held out to validate the fit.
     pub role: Role,
     /// Recorded time, s; at most 300 samples.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub time: Vec<f64>,
     /// The force at those times.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub value: Vec<f64>,
     /// The band's lower edge.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub lower: Vec<f64>,
     /// The band's upper edge.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub upper: Vec<f64>,
 }
 
@@ -134,6 +145,7 @@ pub struct ForceDependence {
     /// Of what the force does to the outputs, in flights (or parts of one) that the curve was not fitted to: 1 all of it, 0
     /// nothing, negative where the curve misleads.
     #[schema(example = 0.71)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub share: f64,
     /// The force over the quantity, with a band of 95 %, without what the declared parameters imitate of it (a straight line,
     /// where they have one). Of the best few alone.
@@ -145,12 +157,16 @@ pub struct ForceDependence {
 #[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
 pub struct ForceCurve {
     /// Values of the quantity.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub x: Vec<f64>,
     /// The force there.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub y: Vec<f64>,
     /// The band's lower edge.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub lower: Vec<f64>,
     /// The band's upper edge.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub upper: Vec<f64>,
 }
 
@@ -159,12 +175,15 @@ pub struct ForceCurve {
 pub struct ForceSpectrum {
     /// Where the density is largest.
     #[schema(example = 0.45)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub peak: f64,
     /// A tenth of the power lies below.
     #[schema(example = 0.2)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub lower: f64,
     /// A tenth of the power lies above.
     #[schema(example = 1.1)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub upper: f64,
 }
 
@@ -176,8 +195,10 @@ pub struct ForceInterval {
     pub segment: String,
     /// Recorded time, s.
     #[schema(example = 12.3)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub from: f64,
     /// Recorded time, s.
     #[schema(example = 14.1)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub to: f64,
 }

@@ -10,6 +10,7 @@ pub struct CollinearSet {
     #[schema(example = json!(["a_eq", "de_eq"]))]
     pub parameters: Vec<String>,
     /// The direction in which nothing changes, by parameter, in the parameters' units, largest component 1.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub direction: Vec<f64>,
 }
 

@@ -11,7 +11,6 @@ use super::identifiability::Identifiability;
 use super::integration::Integration;
 use super::iteration::Outcome;
 use super::mode::Mode;
-use super::number::null_as_nan;
 use super::parameter::{Bound, ParameterEstimate};
 use super::prediction::Prediction;
 use crate::estimate::options::error_bounds::ErrorBoundsKind;
@@ -34,11 +33,13 @@ pub struct Estimate {
     /// Simulations without sensitivities.
     pub simulations: usize,
     /// -ln L at the estimate, plus ½ Σ ((θ - mean)/sd)² of the parameters' priors.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub cost: f64,
     /// det R, in the product of the outputs' SI units squared; what the field's programs print as cost.
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub det_r: f64,
     /// R, rows by outputs, SI units squared.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub noise_covariance: Vec<Vec<f64>>,
     /// How well each output is reproduced.
     pub outputs: Vec<OutputFit>,
@@ -49,6 +50,7 @@ pub struct Estimate {
     #[serde(default = "conventional")]
     pub error_bounds: Option<ErrorBoundsKind>,
     /// Correlation of the free parameters' errors, in the order of the iterations' `parameters`. Empty when singular.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub correlation: Vec<Vec<f64>>,
     /// Sets of parameters that the data cannot tell apart, or cannot see.
     pub collinear: Vec<CollinearSet>,

@@ -12,6 +12,7 @@ pub struct FilterEstimate {
     /// `correlation`.
     pub process_noise: Vec<ProcessNoiseEstimate>,
     /// R in the gain, rows by outputs, SI units squared: at the optimum that of the innovations.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub gain_covariance: Vec<Vec<f64>>,
     /// By segment.
     pub gains: Vec<SegmentGain>,
@@ -27,9 +28,11 @@ pub struct ProcessNoiseEstimate {
     #[schema(example = "rad/s^0.5")]
     pub unit: String,
     /// The value that the estimation started from.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub start: f64,
     /// The value at the end.
     #[schema(example = 0.0024)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub estimate: f64,
     /// Cramér-Rao bound; absent where the intensity is fixed, at a bound, or not seen by the data.
     pub standard_error: Option<f64>,
@@ -47,6 +50,7 @@ pub struct SegmentGain {
     /// The segment's label.
     pub segment: String,
     /// K, rows by states, columns by outputs, SI.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub gain: Vec<Vec<f64>>,
     /// Of the prediction error, from sample to sample: eigenvalues of Φ (I - K C). Empty where they were not found.
     pub poles: Vec<Pole>,
@@ -56,11 +60,14 @@ pub struct SegmentGain {
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Pole {
     /// Real part.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub real: f64,
     /// Imaginary part.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub imaginary: f64,
     /// The absolute value.
     #[schema(example = 0.42)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub magnitude: f64,
 }
 

@@ -3,8 +3,6 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::number::null_as_nan;
-
 /// How well one output is reproduced, over all segments.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct OutputFit {
@@ -15,14 +13,16 @@ pub struct OutputFit {
     #[schema(example = "rad")]
     pub unit: String,
     /// Root mean square of the residual.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub rms: f64,
     /// Mean of the residual.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub bias: f64,
     /// Coefficient of determination R².
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub r_squared: f64,
     /// Theil's inequality coefficient: 0 perfect, 1 useless.
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub theil: f64,
     /// What the mean squared residual is made of.
     #[serde(default)]
@@ -30,10 +30,12 @@ pub struct OutputFit {
     /// Autocorrelation of the residual at lag 1: near 0 where it is white.
     #[serde(default)]
     #[schema(example = 0.31)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub autocorrelation: f64,
     /// How many independent values would tell as much of a mean as the residual's samples do.
     #[serde(default)]
     #[schema(example = 310.5)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub effective_samples: f64,
     /// Samples that have a measured value; the others do not count.
     #[serde(default)]
@@ -46,11 +48,14 @@ pub struct OutputFit {
 pub struct TheilShares {
     /// From different means.
     #[schema(example = 0.01)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub bias: f64,
     /// From different variances: motion that the model has too much or too little of.
     #[schema(example = 0.04)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub variance: f64,
     /// From imperfect correlation; near 1 where only noise is left.
     #[schema(example = 0.95)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub covariance: f64,
 }

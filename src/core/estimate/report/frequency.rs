@@ -24,9 +24,11 @@ pub struct SegmentBand {
     pub segment: String,
     /// The lowest frequency, Hz.
     #[schema(example = 0.12)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub first_hz: f64,
     /// From one frequency to the next, Hz.
     #[schema(example = 0.04)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub step_hz: f64,
     /// How many there are.
     #[schema(example = 35)]
@@ -44,7 +46,9 @@ pub struct FrequencyFit {
     pub name: String,
     /// 1 - Σ|e|²/Σ|z|².
     #[schema(example = 0.998)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub r_squared: f64,
     /// Standard deviation of white noise that would leave residuals of this size, in the output's SI unit.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub noise: f64,
 }

@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::collinear::CollinearSet;
-use super::number::null_as_nan;
 
 /// What the data tell of the parameters, before and after.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
@@ -20,10 +19,11 @@ pub struct Identifiability {
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct DataInformation {
     /// Of the scaled sensitivities, largest first; as many as there are free parameters.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub singular_values: Vec<f64>,
     /// Largest over smallest singular value; `null` where one is zero.
     #[schema(example = 12.7)]
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub condition_number: f64,
     /// Parameters that no output depends on.
     pub unseen: Vec<String>,
@@ -43,9 +43,11 @@ pub struct NearlyCollinearSet {
     pub parameters: Vec<String>,
     /// Largest singular value over that of this set: how much the set's errors are magnified.
     #[schema(example = 65.0)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub condition_index: f64,
     /// Of each parameter's variance, the share that is owed to this near dependency.
     #[schema(example = json!([0.99, 0.98]))]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub variance_proportions: Vec<f64>,
 }
 
@@ -57,5 +59,6 @@ pub struct CorrelatedPair {
     pub parameters: [String; 2],
     /// Correlation of their errors, from -1 to 1.
     #[schema(example = -0.997)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub correlation: f64,
 }

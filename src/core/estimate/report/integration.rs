@@ -12,6 +12,7 @@ pub struct Integration {
     /// The fastest motion along the estimate, in each step: the largest |λ| h of the linearised model. Above 1 the
     /// classical Runge-Kutta method is inaccurate, above 2.8 unstable.
     #[schema(example = 0.21)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub fastest: f64,
     /// How far estimates would move if each step were halved; absent where standard errors mean nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -24,6 +25,7 @@ pub struct HalvedSteps {
     /// None would move by more. Where `shifts` is empty this is a bound from the outputs alone, and the shifts are
     /// smaller.
     #[schema(example = 0.0031)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub most: f64,
     /// By free parameter, in the order of the iterations' `parameters`; `null` where a parameter has no standard error.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

@@ -3,8 +3,6 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::number::null_as_nan;
-
 /// Why the solver stopped. A result with a reason, apart from the job's own status.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
@@ -61,23 +59,28 @@ pub struct Iteration {
     pub number: usize,
     /// -ln L, the negative log-likelihood J(θ, R), plus ½ Σ ((θ - mean)/sd)² of the parameters' priors.
     #[schema(example = -4821.7)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub cost: f64,
     /// det R, what the field's programs print as cost.
     #[schema(example = 8.9377e-12)]
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub det_r: f64,
     /// Variance of each output's residual, SI units squared (the diagonal of R).
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub variance: Vec<f64>,
     /// All free parameters in the order of the parameter table, each in its own unit; with filter error the free
     /// process noises follow, in the order of the states.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub parameters: Vec<f64>,
     /// Length of the gradient of the cost, each component times the standard error that the parameter
     /// would have if it were the only one.
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub gradient_norm: f64,
     /// Length of the step that led here, in standard errors; 0 for the start.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub step: f64,
     /// Levenberg-Marquardt damping λ, relative to the scaled information matrix; 0 for Gauss-Newton.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub damping: f64,
     /// How often the step was shortened.
     pub halvings: usize,

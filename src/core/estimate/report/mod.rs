@@ -11,7 +11,6 @@ pub(super) mod identifiability;
 pub(super) mod integration;
 pub(super) mod iteration;
 pub(super) mod mode;
-mod number;
 pub(super) mod parameter;
 pub(super) mod prediction;
 pub(super) mod progress;

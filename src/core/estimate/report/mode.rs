@@ -10,6 +10,7 @@ use crate::flight::five_digits;
 pub struct Measure {
     /// The number, in the unit of what is measured.
     #[schema(example = 2.3851)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub value: f64,
     /// Absent where the covariance of the estimate is not known, or a linear bound would not hold: see the remark.
     #[schema(example = 0.0127)]

@@ -16,9 +16,11 @@ pub struct ParameterEstimate {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub segment: Option<String>,
     /// The value that the estimation started from.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub start: f64,
     /// The value at the end.
     #[schema(example = -4.9176)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub estimate: f64,
     /// Standard deviation of the estimate, corrected for coloured residuals unless the job asked otherwise; absent
     /// for fixed parameters, those at a bound, and those the data cannot see.

@@ -53,6 +53,7 @@ pub struct ErrorCurve {
 pub struct ErrorPoint {
     /// Relative to each parameter's size.
     #[schema(example = 1e-6)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub step: f64,
     /// Norm of the error over the norm of the gradient, each component in standard errors that its parameter
     /// alone would have; forward sensitivities are the reference. Absent: a simulation left the range of numbers.
@@ -75,8 +76,10 @@ pub struct TechniqueResult {
     /// Bytes that the technique works in, beside the recording.
     pub bytes: usize,
     /// CPU time of one gradient, s; the least of several.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub cpu_seconds: f64,
     /// Wall time of one gradient, s; the least of several.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub wall_seconds: f64,
     /// Of an estimation with this technique: Levenberg-Marquardt where it gives ∂y/∂θ, else BFGS.
     pub iterations: usize,
@@ -84,10 +87,13 @@ pub struct TechniqueResult {
     #[schema(example = "converged")]
     pub outcome: String,
     /// Wall time of that estimation, s.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub estimation_wall_seconds: f64,
     /// CPU time of that estimation, s.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub estimation_cpu_seconds: f64,
     /// How much higher than the lowest cost of all techniques it ended; 0.5e-10 is 1e-5 standard errors.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub cost_excess: f64,
 }
 
@@ -101,8 +107,10 @@ pub struct CostPoint {
     /// Operations by the adjoint.
     pub adjoint_operations: u64,
     /// Wall time by forward sensitivities, s.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub direct_wall_seconds: f64,
     /// Wall time by the adjoint, s.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub adjoint_wall_seconds: f64,
 }
 
@@ -134,6 +142,7 @@ pub struct DescentResult {
     /// Whether it came there within the budget.
     pub reached: bool,
     /// How much higher than the minimum it ended.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub cost_excess: f64,
 }
 

@@ -23,6 +23,7 @@ pub struct ProposedSegment {
     pub kind: SegmentKind,
     /// First and last second, on the recording's own time: `seconds` of a maneuver in a job.
     #[schema(example = json!([4.0, 17.5]))]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub seconds: [f64; 2],
     /// First and last row, from 1: `rows` of a maneuver in a job.
     #[schema(example = json!([101, 438]))]
@@ -51,5 +52,6 @@ pub struct Moved {
     pub channel: String,
     /// From its least value to its greatest, SI.
     #[schema(example = 0.07)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub excursion: f64,
 }

@@ -98,6 +98,7 @@ pub struct CampaignCurve {
     pub terms_left_out: Vec<String>,
     /// Of those that are no outliers.
     #[schema(example = 31.2)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub chi_squared: f64,
     /// How many these are, less the terms.
     #[schema(example = 34)]
@@ -107,6 +108,7 @@ pub struct CampaignCurve {
     #[schema(example = 0.6)]
     pub probability: Option<f64>,
     /// √(χ²/ν), not below 1: what bounds of the curve are widened by.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub scatter: f64,
     /// One of each job.
     pub points: Vec<CampaignPoint>,
@@ -119,8 +121,10 @@ pub struct CampaignTerm {
     #[schema(example = "alpha^2")]
     pub term: String,
     /// Its coefficient.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub value: f64,
     /// Widened by the scatter.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub standard_error: f64,
 }
 
@@ -132,16 +136,22 @@ pub struct CampaignPoint {
     /// For people.
     pub name: String,
     /// Conditions of the curve.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub conditions: IndexMap<String, f64>,
     /// As it was estimated.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub estimate: f64,
     /// As it was estimated.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub standard_error: f64,
     /// The curve there.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub curve: f64,
     /// Widened by the scatter.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub curve_standard_error: f64,
     /// From the curve that the others make, in standard errors of the difference.
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub deviation: f64,
     /// Whether it is so improbable that it does not count.
     pub is_outlier: bool,

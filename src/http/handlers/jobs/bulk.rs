@@ -20,7 +20,7 @@ use crate::http::problem::{Problem, ProblemDocument};
 use crate::http::request::json::{self, JsonBody};
 use crate::http::service::{Server, Service};
 use crate::job::{Fault, JobSpec, ManeuverUse};
-use crate::store::NewJob;
+use crate::store::{NewJob, StoreError};
 
 pub(crate) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(submit_jobs))
@@ -101,7 +101,12 @@ async fn submit_jobs(
     }
     let numbered = (first.as_u128()..).map(Uuid::from_u128);
     let jobs: Vec<(Uuid, &NewJob)> = numbered.zip(&jobs).collect();
-    let jobs = service.store.submit_all(&jobs).await?;
+    let jobs = service.store.submit_all(&jobs).await;
+    let jobs = jobs.map_err(|error| match error {
+        // each job has one maneuver, by the number of the job
+        StoreError::ManeuverGone { job: place, .. } => StoreError::ManeuverGone { job: 0, place },
+        error => error,
+    })?;
     let jobs = jobs.into_iter().map(JobResource::of).collect();
     Ok((StatusCode::ACCEPTED, Json(Submitted { jobs })))
 }

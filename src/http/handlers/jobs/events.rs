@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 use std::time::Duration;
 
-use axum::http::{HeaderMap, StatusCode, header};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::sse::{self, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use futures_util::Stream;
@@ -70,7 +70,8 @@ struct EventsQuery {
 /// With `Accept: text/event-stream` the answer is a stream of server-sent events: `id` is the event's
 /// number, `event` its type, `data` the event as JSON. A client that was cut off goes on where it stopped
 /// by sending the last number it saw as `Last-Event-ID` (browsers do so by themselves): nothing is lost,
-/// nothing comes twice. Behind the last event the stream is closed; asking on is answered 204.
+/// nothing comes twice. Behind the last event the stream is closed; asking on is answered 204. A number behind the last event so
+/// far counts as that one's.
 ///
 /// Otherwise the answer is a page of the same events.
 #[utoipa::path(get, path = "/v1/jobs/{id}/events", tag = "Jobs", operation_id = "listEvents",
@@ -97,7 +98,10 @@ async fn list_events(
         }
     };
     // the job first: if it is over now, all its events are there
-    let over = job::find(&service, id).await?.status.is_over();
+    let job = job::find(&service, id).await?;
+    let over = job.status.is_over();
+    // of another job, or of a database that has gone back to a backup: what comes from now on is told, and so the end
+    let after = after.min(job.last_seq);
     let page = service.store.events(id, after, limit).await?;
     if format == Format::Json {
         let complete = over && page.next_cursor.is_none();
@@ -114,11 +118,15 @@ async fn list_events(
         return Ok(StatusCode::NO_CONTENT.into_response());
     }
     let keep_alive = KeepAlive::new().interval(KEEP_ALIVE);
-    Ok(no_store(
-        Sse::new(follow(service, id, after))
-            .keep_alive(keep_alive)
-            .into_response(),
-    ))
+    let stream = Sse::new(follow(service, id, after)).keep_alive(keep_alive);
+    let mut response = no_store(stream.into_response());
+    // nginx would gather events and send many at once, late
+    let passing = (
+        HeaderName::from_static("x-accel-buffering"),
+        HeaderValue::from_static("no"),
+    );
+    response.headers_mut().extend([passing]);
+    Ok(response)
 }
 
 fn last_event_id(headers: &HeaderMap) -> Result<Option<u64>, Problem> {
@@ -140,7 +148,7 @@ fn raw(event: &StoredEvent) -> serde_json::Result<Box<RawValue>> {
 }
 
 pub(super) fn no_store(mut response: Response) -> Response {
-    let value = header::HeaderValue::from_static("no-store");
+    let value = HeaderValue::from_static("no-store");
     response.headers_mut().insert(header::CACHE_CONTROL, value);
     response
 }

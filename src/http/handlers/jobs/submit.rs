@@ -107,6 +107,7 @@ pub(crate) fn new_job(
         name: spec.name.clone(),
         tags: spec.tags.clone(),
         priority: spec.priority,
+        maneuvers: spec.maneuvers.iter().map(|used| used.id.clone()).collect(),
         spec: text,
         model: serde_json::to_string(model)?,
     })
