@@ -331,7 +331,7 @@ async fn a_recording_has_frequency_responses() {
     let server = Server::start().await;
     let id = server.upload(&elevator()).await;
     let path = format!("/v1/maneuvers/{id}/frequency-responses");
-    let asked = json!({"inputs": ["de"], "outputs": ["q", "alpha"], "band_hz": [0.1, 1.0], "points": 10, "windows": [20.0]});
+    let asked = json!({"inputs": ["de"], "outputs": ["q", "alpha"], "band_hz": [0.25, 1.0], "points": 10, "windows": [8.0]});
     let answer = server.post_json(&path, &asked).await;
     assert_eq!(answer.status, 200, "{}", answer.text());
     let found = answer.json();
@@ -341,6 +341,10 @@ async fn a_recording_has_frequency_responses() {
         found["responses"][0]["coherence"][3].as_f64().unwrap() > 0.9,
         "{found}"
     );
+    let mut long = asked.clone();
+    long["windows"] = json!([20.0]);
+    let long = server.post_json(&path, &long).await;
+    assert_eq!(long.json()["errors"][0]["code"], "too_few_windows");
     let refused = server
         .post_json(
             &path,

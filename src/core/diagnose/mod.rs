@@ -45,6 +45,7 @@ mod rival;
 mod round;
 mod screen;
 mod sentence;
+mod share_left;
 mod size;
 mod spikes;
 mod stack;

@@ -3,6 +3,7 @@
 use super::case::Case;
 use super::lines::{Line, lines};
 use super::report::FitChange;
+use super::share_left::share_left;
 use super::unmodelled::Unmodelled;
 use crate::estimate::{Estimate, Role, Solution, TimeHistory, five_digits};
 use crate::flight::{Shown, shown_in};
@@ -79,7 +80,8 @@ pub(super) fn of_force(force: &Unmodelled) -> String {
 fn unexplained(histories: &[TimeHistory]) -> Vec<String> {
     let outputs = histories.first().map_or(0, |history| history.outputs.len());
     let of = |output: usize| {
-        let share = left(histories, output)?;
+        let series = histories.iter().map(|history| &history.outputs[output]);
+        let share = share_left(series.map(|s| (&*s.measured, &*s.residual)))?;
         let name = &histories[0].outputs[output].name;
         (share > UNEXPLAINED).then(|| {
             format!(
@@ -89,17 +91,4 @@ fn unexplained(histories: &[TimeHistory]) -> Vec<String> {
         })
     };
     (0..outputs).filter_map(of).collect()
-}
-
-/// The share of an output's variance, about its mean in each flight, that is left.
-fn left(histories: &[TimeHistory], output: usize) -> Option<f64> {
-    let (mut left, mut all) = (0.0, 0.0);
-    for series in histories.iter().map(|history| &history.outputs[output]) {
-        let there = || series.measured.iter().filter(|z| z.is_finite());
-        let mean = there().sum::<f64>() / there().count().max(1) as f64;
-        all += there().map(|z| (z - mean).powi(2)).sum::<f64>();
-        let residual = series.residual.iter().filter(|e| e.is_finite());
-        left += residual.map(|e| e * e).sum::<f64>();
-    }
-    (all > 0.0).then(|| left / all)
 }

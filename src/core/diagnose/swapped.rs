@@ -3,6 +3,7 @@
 use super::case::Values;
 use super::effect::{Effect, EffectKind};
 use super::fitted::Fitted;
+use super::share_left::share_left;
 use super::stack::Layout;
 use crate::flight::Unit;
 use crate::model::{EditKind, Edited, Parameter, Start};
@@ -33,20 +34,13 @@ pub(super) fn is_refuted(effect: &Effect, base: &Fitted) -> Option<String> {
 fn unexplained(base: &Fitted, output: &str) -> Option<f64> {
     let problem = &base.problem;
     let place = (problem.model.outputs.iter()).position(|found| found.name == output)?;
-    let (mut left, mut all) = (0.0, 0.0);
     let layout = Layout::of(problem);
     let residuals = layout.of_output(&base.residual, place);
-    for (segment, residual) in problem.segments.iter().zip(residuals) {
-        let there = || segment.measured[place].iter().filter(|z| z.is_finite());
-        let mean = there().sum::<f64>() / there().count().max(1) as f64;
-        all += there().map(|z| (z - mean).powi(2)).sum::<f64>();
-        left += residual
-            .iter()
-            .filter(|e| e.is_finite())
-            .map(|e| e * e)
-            .sum::<f64>();
-    }
-    (all > 0.0).then(|| left / all)
+    let measured = problem
+        .segments
+        .iter()
+        .map(|segment| &*segment.measured[place]);
+    share_left(measured.zip(residuals))
 }
 
 /// What was fitted to exchanged channels is no place to begin at: the declared start is, the channels exchanged.
