@@ -6,6 +6,7 @@ mod common {
     pub(crate) mod recordings;
 }
 
+mod audit;
 mod bench;
 mod flown;
 mod in_use;

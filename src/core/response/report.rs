@@ -17,6 +17,7 @@ pub struct RecordedResponses {
     /// than 8 samples.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(example = json!([60.0]))]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub left_out_windows: Vec<f64>,
     /// By output, then input.
     pub responses: Vec<RecordedResponse>,
@@ -105,6 +106,7 @@ pub struct FittedTransferFunction {
     pub points: usize,
     /// How many of them are independent: closer ones than 2/T for windows of T seconds tell no more.
     #[schema(example = 14.2)]
+    #[serde(deserialize_with = "crate::flight::null_as_nan")]
     pub independent_points: f64,
     /// How many steps it took.
     pub iterations: usize,

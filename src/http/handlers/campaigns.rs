@@ -136,9 +136,12 @@ async fn flown(service: &Service, tag: &str) -> Result<Vec<Flown>, Problem> {
         let Some(spec) = service.store.job_spec(record.id).await? else {
             continue;
         };
-        let spec: JobSpec = serde_json::from_str(&spec)?;
-        let estimate = match serde_json::from_str(&text) {
-            Ok(estimate) => estimate,
+        let read = || {
+            let spec: JobSpec = serde_json::from_str(&spec)?;
+            Ok::<_, serde_json::Error>((spec, serde_json::from_str(&text)?))
+        };
+        let (spec, estimate) = match read() {
+            Ok(read) => read,
             // one of many: the others are shown
             Err(error) => {
                 tracing::error!(%error, job = %record.id, "its estimate cannot be read");
