@@ -4,6 +4,7 @@ use sqlx::{AssertSqlSafe, Row};
 
 use super::database::Store;
 use super::error::StoreError;
+use super::search;
 
 /// In order, from version 1. A step that was released is never edited: a change is a further step.
 const STEPS: &[&str] = &[
@@ -16,7 +17,11 @@ const STEPS: &[&str] = &[
     include_str!("migrations/0007_mappings.sql"),
     include_str!("migrations/0008_key_lifetimes.sql"),
     include_str!("migrations/0009_flown.sql"),
+    include_str!("migrations/0010_found_by.sql"),
 ];
+
+/// With this step rows got columns that the program fills in.
+const FOUND_BY: i64 = 10;
 
 /// Brings the schema up to date. Processes that start at once do not disturb each other: all steps are looked for and
 /// written in one transaction.
@@ -47,6 +52,9 @@ pub(super) async fn run(store: &Store) -> Result<(), StoreError> {
             .await?;
         tracing::info!(version, "database schema brought up to date");
     }
+    if reached < FOUND_BY {
+        search::fill_in(&mut writing).await?;
+    }
     writing.commit().await
 }
 
@@ -68,6 +76,7 @@ mod tests {
         "286817a4153ddb4a",
         "60f30e3c820afbf3",
         "6afee731f25bbcee",
+        "eb23fa20e218823d",
     ];
 
     #[test]

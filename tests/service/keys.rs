@@ -113,6 +113,7 @@ const NEEDED: &[(&str, &[&str])] = &[
             "rotateKey",
             "deleteJob",
             "deleteManeuver",
+            "deleteModel",
             "expire",
             "deleteMapping",
             "listWebhooks",

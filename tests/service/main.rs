@@ -43,6 +43,7 @@ mod limits;
 mod maneuvers;
 mod mappings;
 mod models;
+mod names;
 mod once;
 mod pages;
 mod predictions;

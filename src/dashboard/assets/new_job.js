@@ -344,13 +344,19 @@ async function all(address, key) {
   return entries;
 }
 
+/** A model in the list; of stored ones, which may have equal names, with when it was stored and the end of its id. */
+function modelText({ id, name, title, created }) {
+  const text = title ? `${name}: ${title}` : name;
+  return created ? `${text} (stored ${new Date(created).toLocaleString()}, ${id.slice(-8)})` : text;
+}
+
 async function begin() {
   const query = new URLSearchParams(location.search);
   const [stored, models] = await Promise.all([all('/v1/maneuvers', 'maneuvers'), all('/v1/models', 'models')]);
   maneuvers = stored;
   byId('model').replaceChildren(
     element('option', { value: '' }, 'choose a model'),
-    ...models.map(model => element('option', { value: model.id }, model.title ? `${model.name}: ${model.title}` : model.name)));
+    ...models.map(model => element('option', { value: model.id }, modelText(model))));
   const like = query.get('like');
   if (like) {
     await takeWhole(await ask(`/v1/jobs/${encodeURIComponent(like)}/spec`));

@@ -2,13 +2,12 @@
 
 use axum::extract::{FromRequestParts, Path, Query};
 use axum::http::request::Parts;
-use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use utoipa::IntoParams;
 use uuid::Uuid;
 
 use crate::http::code::Code;
 use crate::http::problem::Problem;
+use crate::store::Search;
 
 /// The query of a request.
 pub(crate) struct Parameters<T>(pub T);
@@ -69,18 +68,6 @@ pub(crate) fn unknown_job(id: impl std::fmt::Display) -> Problem {
     Problem::new(Code::UnknownJob, format!("there is no job '{id}'"))
 }
 
-/// Which page of a list.
-#[derive(Clone, Debug, Default, Deserialize, IntoParams)]
-#[into_params(parameter_in = Query)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct PageQuery {
-    /// `next_cursor` of the page before; absent: the first page.
-    pub cursor: Option<String>,
-    /// Entries of the page, 1 to 200; 50 if absent.
-    #[param(minimum = 1, maximum = 200)]
-    pub limit: Option<usize>,
-}
-
 pub(crate) const PAGE: usize = 50;
 pub(crate) const LONGEST_PAGE: usize = 200;
 
@@ -93,6 +80,19 @@ pub(crate) fn page_limit(asked: Option<usize>) -> Result<usize, Problem> {
             format!("limit: {limit} is not between 1 and {LONGEST_PAGE}"),
         )),
     }
+}
+
+/// Of `q`, in characters.
+const LONGEST_SEARCH: usize = 200;
+
+/// What a list is searched for; nothing finds everything.
+pub(crate) fn search(q: Option<&str>) -> Result<Search, Problem> {
+    let text = q.unwrap_or_default();
+    if text.chars().count() > LONGEST_SEARCH {
+        let detail = format!("q: longer than {LONGEST_SEARCH} characters; search for fewer words");
+        return Err(Problem::new(Code::InvalidQuery, detail));
+    }
+    Ok(Search::of(text))
 }
 
 pub(crate) fn bad_cursor(error: crate::store::BadCursor) -> Problem {

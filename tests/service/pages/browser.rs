@@ -260,6 +260,65 @@ async fn the_list_follows_jobs_and_is_filtered() {
 }
 
 #[tokio::test]
+async fn lists_are_searched_and_models_of_one_name_told_apart() {
+    browse("names", async |browser| {
+        let server = Server::start().await;
+        let mut spec = job(&server.upload(&elevator()).await);
+        spec["maneuvers"][0]["label"] = json!("Flight 12, doublet");
+        server.wait(&server.submit(&spec).await).await;
+        spec["maneuvers"][0]["label"] = json!("Flight 13");
+        server.wait(&server.submit(&spec).await).await;
+        spec["name"] = json!("the good one");
+        server.wait(&server.submit(&spec).await).await;
+        go(browser, &server, "/").await;
+        let first = browser
+            .until(&row("short-period: Flight 12, doublet"))
+            .await;
+        assert!(first.as_str().unwrap().contains("0.99"), "{first}");
+        browser.is_accessible().await;
+        browser.picture("jobs").await;
+        browser.fill("input[name=q]", "flight 13").await;
+        browser.press(Key::Enter).await;
+        browser
+            .until("document.querySelectorAll('#jobs tbody tr').length === 2")
+            .await;
+        browser.until(&row("the good one")).await;
+        browser.picture("found").await;
+
+        let mut document = server.get("/v1/models/short-period").await.json();
+        document["name"] = json!("mine");
+        let mut ids = Vec::new();
+        for _ in 0..2 {
+            let stored = server.post_json("/v1/models", &document).await.json();
+            ids.push(stored["id"].as_str().unwrap().to_string());
+        }
+        go(browser, &server, "/models?q=mine").await;
+        assert_eq!(browser.count("table.models tbody tr").await, 2);
+        browser.is_accessible().await;
+        browser.picture("models").await;
+        browser.click(&format!("[data-delete={:?}]", ids[0])).await;
+        browser.accept().await;
+        browser.says("#live", "mine is deleted").await;
+        assert_eq!(browser.count("table.models tbody tr").await, 1);
+        assert_eq!(
+            server.get(&format!("/v1/models/{}", ids[0])).await.status,
+            404
+        );
+        assert_eq!(
+            server.get(&format!("/v1/models/{}", ids[1])).await.status,
+            200
+        );
+        go(browser, &server, "/new").await;
+        let tail = &ids[1][ids[1].len() - 8..];
+        browser.says("#model", &format!(", {tail})")).await;
+        go(browser, &server, "/maneuvers?q=nothing").await;
+        browser.says("#maneuvers", "No maneuver matches").await;
+        browser.picture("maneuvers").await;
+    })
+    .await;
+}
+
+#[tokio::test]
 async fn a_finished_job_is_told_in_tables_and_plots_that_zoom_together() {
     browse("finished job", async |browser| {
         let server = Server::start().await;
@@ -465,7 +524,7 @@ async fn everything_is_reached_by_keyboard() {
         browser.tab_to("a New job").await;
         browser.tab_to("select Status").await;
         let way = browser.tab_to("a by hand").await;
-        for part in ["select Kind", "input Tag", "button Filter", "div Jobs"] {
+        for part in ["select Kind", "input Tag", "button Search", "div Jobs"] {
             assert!(way.iter().any(|at| at == part), "{part}: {way:?}");
         }
         browser.press(Key::Enter).await;
