@@ -153,6 +153,32 @@ async fn a_new_job_says_what_is_wrong_with_it_and_where() {
         )
         .await;
         browser.find("#maneuvers tbody tr").await;
+        let at = |text: &str| format!("#maneuvers [aria-label^='{text} second']");
+        let begin = "document.querySelector('#maneuvers .fault')";
+        browser.fill(&at("first"), "15").await;
+        browser.click("#check").await;
+        browser.until(&format!("{begin}?.textContent.includes('both seconds')")).await;
+        browser.fill(&at("last"), "5").await;
+        browser.expect_error("422");
+        browser.click("#check").await;
+        browser.until(&format!("{begin}?.textContent.includes('seconds 15 to 5')")).await;
+        // the field at fault has the focus, and says what is wrong with it
+        let told = "document.getElementById(document.activeElement.getAttribute('aria-describedby'))?.textContent";
+        assert_eq!(browser.until(told).await, browser.text("#maneuvers .fault").await);
+        browser.is_accessible().await;
+        browser.picture("seconds").await;
+        browser.correct(&at("first"), "2").await;
+        browser.correct(&at("last"), "7").await;
+        browser.click("#check").await;
+        browser.says("#said", "It can run").await;
+        assert_eq!(browser.count(".fault").await, 0);
+        let spec = browser.run("return JSON.parse(document.getElementById('json').value)").await;
+        assert_eq!(spec["maneuvers"][0]["seconds"], json!([2, 7]));
+        browser.click("#maneuvers [aria-label^='another part']").await;
+        browser.until("document.querySelectorAll('#maneuvers tbody tr').length === 2").await;
+        let spec = browser.run("return JSON.parse(document.getElementById('json').value)").await;
+        assert_ne!(spec["maneuvers"][0]["label"], spec["maneuvers"][1]["label"]);
+        browser.choose("#maneuvers tr:nth-child(2) select", "").await;
         browser.click("details:has(#parameters) summary").await;
         // a lower bound above the start value
         browser
@@ -160,7 +186,12 @@ async fn a_new_job_says_what_is_wrong_with_it_and_where() {
             .await;
         browser.expect_error("422");
         browser.click("#check").await;
-        browser.says("#faults", "/parameters/Mde").await;
+        browser.says("#faults", "Mde").await;
+        let told = browser.text("#faults").await;
+        assert!(!told.contains("/parameters"), "{told}");
+        browser.says("#parameters tr:has(.fault)", "Mde").await;
+        browser.until("document.activeElement.getAttribute('aria-label')?.endsWith('of Mde')").await;
+        browser.picture("bound").await;
         // a job that cannot be read is not sent as it was before
         browser.click("details:has(#json) summary").await;
         browser.fill("#json", "oops").await;
