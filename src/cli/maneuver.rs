@@ -32,6 +32,9 @@ enum Action {
 struct List {
     #[command(flatten)]
     server: ServerOption,
+    /// Only those that have each of these words in their name, tags, notes, or what else is said of the flight.
+    #[arg(long, value_name = "WORDS")]
+    search: Option<String>,
     /// Only those with this tag.
     #[arg(long)]
     tag: Option<String>,
@@ -100,6 +103,7 @@ impl List {
         }
         let limit = self.limit.to_string();
         let wanted = [
+            ("q", self.search.as_deref()),
             ("tag", self.tag.as_deref()),
             ("aircraft", self.aircraft.as_deref()),
             ("registration", self.registration.as_deref()),

@@ -35,6 +35,7 @@ pub fn asset(name: &str) -> Option<Asset> {
         "examples.js" => (SCRIPT, include_str!("assets/examples.js")),
         "service.js" => (SCRIPT, include_str!("assets/service.js")),
         "new_job.js" => (SCRIPT, include_str!("assets/new_job.js")),
+        "faults.js" => (SCRIPT, include_str!("assets/faults.js")),
         "plot.js" => (SCRIPT, include_str!("assets/plot.js")),
         "job.js" => (SCRIPT, include_str!("assets/job.js")),
         "models.js" => (SCRIPT, include_str!("assets/models.js")),

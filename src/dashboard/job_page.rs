@@ -16,7 +16,8 @@ use crate::job::{Fault, Status};
 /// What the page shows.
 pub struct JobView {
     pub id: String,
-    pub name: String,
+    /// Its name, or else its model and maneuvers.
+    pub title: String,
     /// As the API names it.
     pub kind: String,
     pub model: NamedModel,
@@ -41,8 +42,18 @@ pub struct JobView {
 #[derive(Clone)]
 pub struct NamedModel {
     pub name: String,
-    /// Under `/models/`; absent of one that only the job holds.
-    pub id: Option<String>,
+    pub place: ModelPlace,
+}
+
+/// Where the model of a job is.
+#[derive(Clone)]
+pub enum ModelPlace {
+    /// Under `/models/`, by this id.
+    Kept(String),
+    /// It was stored, and deleted since.
+    Deleted,
+    /// In the job alone.
+    InTheJob,
 }
 
 /// A maneuver that a job uses.
@@ -53,23 +64,12 @@ pub struct UsedManeuver {
     pub role: Role,
 }
 
-impl JobView {
-    /// Its name, or the name of its model.
-    pub fn title(&self) -> &str {
-        if self.name.is_empty() {
-            &self.model.name
-        } else {
-            &self.name
-        }
-    }
-}
-
 /// The whole page as HTML.
 pub fn job_page(view: &JobView) -> String {
     let content = html! {
         div id="job" data-job=(view.id) data-kind=(view.kind) data-over=(view.status.is_over())
             data-result=(view.estimate.is_some()) {
-            h1 { (view.title()) }
+            h1 { (view.title) }
             (facts(view))
             (state(view))
             (actions(view))
@@ -81,7 +81,7 @@ pub fn job_page(view: &JobView) -> String {
         }
     };
     let frame = Frame {
-        title: view.title(),
+        title: &view.title,
         under: "/",
         scripts: &["job.js"],
     };
@@ -93,9 +93,10 @@ pub(super) fn facts(view: &JobView) -> Markup {
         dl.facts {
             dt { "job" } dd { (kind_text(&view.kind)) " " code { (view.id) } }
             dt { "model" } dd {
-                @match &view.model.id {
-                    Some(id) => { a href={ "/models/" (id) } { (view.model.name) } }
-                    None => { (view.model.name) " (written out in the job)" }
+                @match &view.model.place {
+                    ModelPlace::Kept(id) => { a href={ "/models/" (id) } { (view.model.name) } }
+                    ModelPlace::Deleted => { (view.model.name) " (deleted since; the job keeps its copy)" }
+                    ModelPlace::InTheJob => { (view.model.name) " (written out in the job)" }
                 }
             }
             dt { "maneuvers" } dd {

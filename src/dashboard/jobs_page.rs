@@ -3,6 +3,8 @@
 use maud::{Markup, html};
 
 use super::layout::{Frame, page};
+use super::search::search_field;
+use crate::estimate::FitSummary;
 use crate::job::{JobKind, Status};
 
 /// What the page shows.
@@ -17,7 +19,10 @@ pub struct JobsView {
 /// A job in a line.
 pub struct JobRow {
     pub id: String,
-    pub name: String,
+    /// Its name, or else its model and maneuvers.
+    pub title: String,
+    /// Its model and maneuvers, where it has a name of its own.
+    pub about: String,
     /// As the API names it.
     pub kind: String,
     pub tags: Vec<String>,
@@ -26,6 +31,10 @@ pub struct JobRow {
     pub created: String,
     /// Seconds from the first claim to the end, or to now.
     pub seconds: Option<f64>,
+    /// How well the output is reproduced that is reproduced worst.
+    pub fit: Option<FitSummary>,
+    /// Findings of the result that are warnings or worse.
+    pub warnings: usize,
     /// Why the solver stopped, or what failed.
     pub reason: String,
 }
@@ -36,13 +45,19 @@ pub struct Chosen {
     pub status: Option<Status>,
     pub kind: Option<JobKind>,
     pub tag: String,
+    /// What is searched for.
+    pub q: String,
     /// Not the newest: reached by way of `older`.
     pub is_later_page: bool,
 }
 
 impl Chosen {
     fn is_everything(&self) -> bool {
-        self.status.is_none() && self.kind.is_none() && self.tag.is_empty() && !self.is_later_page
+        self.status.is_none()
+            && self.kind.is_none()
+            && self.tag.is_empty()
+            && self.q.is_empty()
+            && !self.is_later_page
     }
 }
 
@@ -87,7 +102,8 @@ fn first_visit() -> Markup {
 
 fn filters(chosen: &Chosen) -> Markup {
     html! {
-        form.row method="get" action="/" role="search" aria-label="Filter jobs" {
+        form.row method="get" action="/" role="search" aria-label="Search jobs" {
+            (search_field(&chosen.q, "name, tag, model or maneuver"))
             label { "Status"
                 select name="status" {
                     option value="" { "any" }
@@ -105,7 +121,7 @@ fn filters(chosen: &Chosen) -> Markup {
                 }
             }
             label { "Tag" input name="tag" value=(chosen.tag) autocomplete="off"; }
-            button { "Filter" }
+            button { "Search" }
             @if !chosen.is_everything() { a href="/" { "Show all" } }
         }
     }
@@ -120,19 +136,23 @@ fn table(view: &JobsView) -> Markup {
                 table {
                     thead { tr {
                         th scope="col" { "job" } th scope="col" { "kind" } th scope="col" { "state" }
-                        th scope="col" { "submitted" } th.number scope="col" { "time, s" } th scope="col" { "outcome" }
+                        th scope="col" { "submitted" } th.number scope="col" { "time, s" }
+                        th.number scope="col" { "lowest R²" } th.number scope="col" { "warnings" } th scope="col" { "outcome" }
                     } }
                     tbody {
                         @for job in &view.jobs {
                             tr {
-                                th scope="row" {
-                                    a href={ "/jobs/" (job.id) } { @if job.name.is_empty() { (job.id) } @else { (job.name) } }
+                                th.names scope="row" {
+                                    a href={ "/jobs/" (job.id) } { (job.title) }
                                     @for tag in &job.tags { " " span.soft { "#" (tag) } }
+                                    @if !job.about.is_empty() { br; span.soft { (job.about) } }
                                 }
                                 td { (kind_text(&job.kind)) }
                                 td { (badge(job.status)) }
                                 td { (moment(&job.created)) }
                                 td.number { @if let Some(seconds) = job.seconds { (duration(seconds)) } }
+                                td.number { @if let Some(fit) = &job.fit { (fit_text(fit)) } }
+                                td.number { @if job.warnings > 0 { (job.warnings) } }
                                 td.soft.words { (job.reason) }
                             }
                         }
@@ -164,6 +184,14 @@ pub(super) fn moment(text: &str) -> Markup {
     let plain = text.replace('T', " ");
     let plain = plain.split('.').next().unwrap_or_default();
     html! { time datetime=(text) { (plain) } }
+}
+
+/// The lowest R², with the output that has it.
+fn fit_text(fit: &FitSummary) -> String {
+    match fit.r_squared {
+        Some(r_squared) => format!("{r_squared:.4} ({})", fit.output),
+        None => String::new(),
+    }
 }
 
 /// Seconds with as many digits as matter.

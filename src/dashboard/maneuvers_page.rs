@@ -4,6 +4,7 @@ use maud::{Markup, html};
 
 use super::jobs_page::moment;
 use super::layout::{Frame, page};
+use super::search::search_form;
 use super::unit_list::unit_list;
 use crate::estimate::five_digits as number;
 use crate::flight::{Finding, Severity};
@@ -17,6 +18,8 @@ pub struct ManeuversView {
     pub mappings: Vec<(String, String)>,
     /// Not the newest: reached by way of `older`.
     pub is_later_page: bool,
+    /// What is searched for.
+    pub q: String,
     /// The address of the page of older ones.
     pub older: Option<String>,
 }
@@ -37,6 +40,9 @@ pub fn maneuvers_page(view: &ManeuversView) -> String {
         h1 { "Maneuvers" }
         (upload(view))
         h2 { "Recorded" }
+        @if !view.maneuvers.is_empty() || view.is_later_page || !view.q.is_empty() {
+            (search_form("/maneuvers", "maneuvers", &view.q, "name, tag, flight or notes"))
+        }
         p.soft id="live" role="status" {}
         div id="maneuvers" { (list(view)) }
     };
@@ -105,7 +111,7 @@ fn file(mappings: &[(String, String)]) -> Markup {
 fn list(view: &ManeuversView) -> Markup {
     html! {
         @if view.maneuvers.is_empty() {
-            p { @if view.is_later_page { "There are no older ones." } @else { "Nothing is recorded here yet." } }
+            p { @if view.is_later_page { "There are no older ones." } @else if !view.q.is_empty() { "No maneuver matches." } @else { "Nothing is recorded here yet." } }
         } @else {
             form method="get" action="/new" {
                 div.scroll tabindex="0" role="region" aria-label="Maneuvers" {

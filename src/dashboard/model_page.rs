@@ -6,6 +6,7 @@ use super::layout::{Frame, page};
 use super::mathml::{Left, equation};
 use super::model_diff::{Comparison, comparison};
 use super::model_tables as tables;
+use super::models_page::short;
 use super::notation::Notation;
 use crate::model::{Element, ModelDocument};
 
@@ -184,7 +185,7 @@ fn choice(view: &ModelView) -> Markup {
                     @for other in &view.others {
                         option value=(other.reference) selected[chosen == Some(other.reference.as_str())] {
                             (other.name)
-                            @if let Some(created) = &other.created { ", stored " (created.split('.').next().unwrap_or_default().replace('T', " ")) }
+                            @if let Some(created) = &other.created { ", stored " (created.split('.').next().unwrap_or_default().replace('T', " ")) ", " (short(&other.reference)) }
                         }
                     }
                 }

@@ -4,12 +4,15 @@ use maud::{Markup, html};
 
 use super::jobs_page::moment;
 use super::layout::{Frame, page};
+use super::search::search_form;
 
 /// What the page shows.
 pub struct ModelsView {
     /// The catalog, then what was stored, newest first.
     pub models: Vec<ModelRow>,
     pub is_later_page: bool,
+    /// What is searched for.
+    pub q: String,
     /// The address of the page behind this one.
     pub older: Option<String>,
     /// What the form begins with.
@@ -44,6 +47,8 @@ pub fn models_page(view: &ModelsView) -> String {
             a.button.main href="#own" { "Add a model" }
         }
         p { "A model is a document: states, inputs, outputs and parameters with their units, and equations as text. Those of the catalog come with Trimtab, each with its source." }
+        (search_form("/models", "models", &view.q, "name or title"))
+        p.soft id="live" role="status" {}
         (table(view))
         (form(view.draft.as_ref()))
     };
@@ -75,7 +80,10 @@ fn table(view: &ModelsView) -> Markup {
                             td { (model.outputs.join(", ")) }
                             td.number { (model.free) }
                             td { @match &model.created {
-                                Some(created) => { "stored " (moment(created)) }
+                                Some(created) => {
+                                    "stored " (moment(created)) ", " code title=(model.id) { (short(&model.id)) } " "
+                                    button type="button" data-delete=(model.id) data-name=(model.name) aria-label={ "Delete " (model.name) " " (short(&model.id)) } { "Delete" }
+                                }
                                 None => { "catalog" }
                             } }
                         }
@@ -83,12 +91,20 @@ fn table(view: &ModelsView) -> Markup {
                 }
             }
         }
-        @if view.models.is_empty() { p { "There are no more models." } }
+        @if view.models.is_empty() { p { @if view.q.is_empty() { "There are no more models." } @else { "No model matches." } } }
         p.row {
             @if view.is_later_page { a href="/models" { "First models" } }
             @if let Some(older) = &view.older { a href=(older) rel="next" { "More models" } }
         }
     }
+}
+
+/// The end of an id: what tells models of one name apart. Those stored in one minute begin alike.
+pub(super) fn short(id: &str) -> &str {
+    id.len()
+        .checked_sub(8)
+        .and_then(|from| id.get(from..))
+        .unwrap_or(id)
 }
 
 fn form(draft: Option<&Draft>) -> Markup {

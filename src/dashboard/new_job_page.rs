@@ -92,13 +92,13 @@ pub fn new_job_page() -> String {
         form id="form" novalidate {
             fieldset {
                 legend { "1. Maneuvers" }
-                p.soft { "Those that are fitted are fitted together. What is checked on decides whether an effect that was found is real; what is kept for the end takes part in no decision. "
+                p.soft { "Those that are fitted are fitted together. Of each a part may be used, from one second to another of its own time, or several parts. What is checked on decides whether an effect that was found is real; what is kept for the end takes part in no decision. "
                     a href="/maneuvers" { "Upload a maneuver" } }
                 div id="maneuvers" { p.soft { "Asking the service ..." } }
             }
             fieldset {
                 legend { "2. Model" }
-                div.row { label { "Model" select id="model" name="model" {} } a id="about-model" href="/models" { "Look at it" } }
+                div.row { label { "Model" select id="model" name="model" data-at="/model" {} } a id="about-model" href="/models" { "Look at it" } }
                 p.soft id="model-text" {}
                 div id="channels" {}
             }
@@ -128,7 +128,7 @@ pub fn new_job_page() -> String {
                 legend { "4. Submit" }
                 div.row {
                     label { "Name" input data-pointer="/name" maxlength="200" size="40" autocomplete="off"; }
-                    label { "Tags, with commas between" input id="tags" size="30" autocomplete="off"; }
+                    label { "Tags, with commas between" input id="tags" data-at="/tags" size="30" autocomplete="off"; }
                     label { "Priority" input type="number" min="-10" max="10" step="1" data-pointer="/priority" placeholder="0"; }
                 }
                 div.row.center style="margin-top: .75rem" {

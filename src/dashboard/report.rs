@@ -36,14 +36,14 @@ pub fn report(view: &ReportView) -> String {
         (DOCTYPE)
         html lang="en" {
             head {
-                (head(&format!("Report: {}", job.title())))
+                (head(&format!("Report: {}", job.title)))
                 base href=(view.origin);
                 style { (PreEscaped(STYLE)) }
             }
             body {
                 main {
                     p.soft { "Parameter estimation report, Trimtab" }
-                    h1 { (job.title()) }
+                    h1 { (job.title) }
                     (facts(job))
                     (state(job))
                     p.row.actions {

@@ -104,6 +104,8 @@ codes! {
     NoKeyYet "no_key_yet" CONFLICT "There is no key yet";
     /// Jobs use the maneuver, and could not be run again without it.
     InUse "in_use" CONFLICT "It is in use";
+    /// Models of the catalog come with the program. Only stored models can be deleted.
+    OfCatalog "of_catalog" CONFLICT "It is a model of the catalog";
     /// A request with this `Idempotency-Key` is still in hand. Send it again after `Retry-After` seconds.
     KeyInHand "idempotency_key_in_hand" CONFLICT "The request is being worked on";
     /// The `Idempotency-Key` was used for another request within the last 24 hours.

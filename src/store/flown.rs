@@ -4,6 +4,7 @@ use sqlx::{AssertSqlSafe, Row};
 
 use super::maneuvers::{COLUMNS, ManeuverFilter, ManeuverRecord, read_record};
 use super::page::one_more;
+use super::search::words_of_maneuver;
 use super::{BadCursor, Page, Project, StoreError};
 use crate::flight::Flown;
 
@@ -40,12 +41,14 @@ impl Project {
                 what: "what was flown".into(),
                 why: error.to_string(),
             })?;
-        let sql = "UPDATE maneuvers SET name = $3, flown = $4 WHERE project = $1 AND id = $2";
+        let sql =
+            "UPDATE maneuvers SET name = $3, flown = $4, words = $5 WHERE project = $1 AND id = $2";
         sqlx::query(sql)
             .bind(&*self.name)
             .bind(id)
             .bind(&record.name)
             .bind(text)
+            .bind(words_of_maneuver(&record.name, &record.flown))
             .execute(writing.connection())
             .await?;
         sqlx::query("DELETE FROM maneuver_marks WHERE project = $1 AND maneuver = $2")
@@ -103,6 +106,10 @@ impl Project {
                 number + 5
             );
         }
+        let words = filter.search.conditions("COALESCE(words, LOWER(name))");
+        for (number, (condition, _)) in (wanted.len() + 5..).zip(&words) {
+            sql += &format!(" AND {}", condition.replace('?', &format!("${number}")));
+        }
         sql += " ORDER BY created DESC, id DESC LIMIT $4";
         // safe: put together from constants; what users wrote is bound
         let mut query = sqlx::query(AssertSqlSafe(sql))
@@ -112,6 +119,9 @@ impl Project {
             .bind(one_more(limit));
         for (_, value) in wanted {
             query = query.bind(value);
+        }
+        for (_, pattern) in words {
+            query = query.bind(pattern);
         }
         let rows = query.fetch_all(&self.store.readers).await?;
         let cursor = |record: &ManeuverRecord| format!("{}~{}", record.created, record.id);

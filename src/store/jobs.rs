@@ -4,12 +4,15 @@ use sqlx::any::AnyRow;
 use sqlx::{AssertSqlSafe, Row};
 use uuid::Uuid;
 
+use super::about::About;
 use super::log::{Head, read_status};
 use super::page::one_more;
 use super::record::record;
 use super::row::read_id;
+use super::search::{Search, words_of_job};
 use super::writing::Writing;
 use super::{BadCursor, Page, Project, Signal, StoreError, queue};
+use crate::estimate::FitSummary;
 use crate::job::{EventBody, JobSpec, Status};
 
 /// What is kept of a job that was checked.
@@ -44,6 +47,21 @@ pub struct JobRecord {
     pub last_seq: u64,
     /// The last event of a job that is over.
     pub ending: Option<EventBody>,
+    /// Its model and maneuvers.
+    pub about: About,
+    /// Where there is an estimate.
+    pub fit: Option<FitSummary>,
+}
+
+impl JobRecord {
+    /// What it is called: its name, or else its model and maneuvers.
+    pub fn title(&self) -> String {
+        if self.name.is_empty() {
+            self.about.title()
+        } else {
+            self.name.clone()
+        }
+    }
 }
 
 /// Which jobs a list shows; `None` shows all.
@@ -54,6 +72,8 @@ pub struct JobFilter {
     pub tag: Option<String>,
     /// RFC 3339 UTC with milliseconds.
     pub created_after: Option<String>,
+    /// In its name, tags, model or labels of maneuvers.
+    pub search: Search,
 }
 
 /// What became of the wish to stop a job.
@@ -65,8 +85,15 @@ pub enum CancelReply {
     Unknown,
 }
 
-const COLUMNS: &str = "j.id, j.kind, j.name, j.tags, j.priority, j.status, j.created, j.started, j.finished, j.attempt, j.last_seq, e.body AS ending \
+const COLUMNS: &str = "j.id, j.kind, j.name, j.tags, j.priority, j.status, j.created, j.started, j.finished, j.attempt, j.last_seq, j.about, j.fit, e.body AS ending \
      FROM jobs j LEFT JOIN events e ON e.job = j.id AND e.seq = j.last_seq";
+
+fn to_json(about: &About) -> Result<String, StoreError> {
+    serde_json::to_string(about).map_err(|error| StoreError::Unwritable {
+        what: "the job".into(),
+        why: error.to_string(),
+    })
+}
 
 fn read_job(row: &AnyRow) -> Result<JobRecord, StoreError> {
     let id = read_id(row, "id")?;
@@ -76,6 +103,9 @@ fn read_job(row: &AnyRow) -> Result<JobRecord, StoreError> {
         Some(body) if status.is_over() => Some(serde_json::from_str(&body).map_err(corrupt)?),
         _ => None,
     };
+    // an earlier version that shares the database writes neither
+    let about: Option<&str> = row.try_get("about")?;
+    let fit: Option<&str> = row.try_get("fit")?;
     Ok(JobRecord {
         id,
         kind: row.try_get("kind")?,
@@ -89,6 +119,11 @@ fn read_job(row: &AnyRow) -> Result<JobRecord, StoreError> {
         attempt: u32::try_from(row.try_get::<i64, _>("attempt")?).unwrap_or(u32::MAX),
         last_seq: u64::try_from(row.try_get::<i64, _>("last_seq")?).unwrap_or(0),
         ending,
+        about: match about {
+            Some(about) => serde_json::from_str(about).map_err(corrupt)?,
+            None => About::default(),
+        },
+        fit: fit.map(serde_json::from_str).transpose().map_err(corrupt)?,
     })
 }
 
@@ -164,11 +199,12 @@ impl Project {
     ) -> Result<Option<JobRecord>, StoreError> {
         let now = self.store.clock.now_text();
         let tags = serde_json::Value::from(job.tags.clone()).to_string();
+        let about = About::of(writing.connection(), &self.name, &job.spec, &job.model).await?;
         let turn = queue::next_turn(writing.connection(), &self.submitter).await?;
         let inserted = sqlx::query(
             "INSERT INTO jobs (id, kind, name, tags, status, created, last_seq, attempt, lost, spec, model, \
-             project, submitter, priority, turn) \
-             VALUES ($1, $2, $3, $4, $5, $6, 0, 0, 0, $7, $8, $9, $10, $11, $12) ON CONFLICT (id) DO NOTHING",
+             project, submitter, priority, turn, about, words) \
+             VALUES ($1, $2, $3, $4, $5, $6, 0, 0, 0, $7, $8, $9, $10, $11, $12, $13, $14) ON CONFLICT (id) DO NOTHING",
         )
         .bind(id.to_string())
         .bind(&job.kind)
@@ -182,6 +218,8 @@ impl Project {
         .bind(&*self.submitter)
         .bind(i64::from(job.priority))
         .bind(turn)
+        .bind(to_json(&about)?)
+        .bind(words_of_job(&job.name, &job.tags, &about))
         .execute(writing.connection())
         .await?;
         if inserted.rows_affected() == 0 {
@@ -213,6 +251,8 @@ impl Project {
             attempt: 0,
             last_seq: u64::try_from(head.last_seq).unwrap_or(0),
             ending: None,
+            about,
+            fit: None,
         }))
     }
 
@@ -303,6 +343,10 @@ impl Project {
             filter.tag.clone(),
         );
         wanted("j.created > ?", filter.created_after.clone());
+        let words = "COALESCE(j.words, LOWER(j.name))";
+        for (condition, pattern) in filter.search.conditions(words) {
+            wanted(&condition, Some(pattern));
+        }
         let conditions = conditions.join(" AND ");
         let limit_at = values.len() + 1;
         let sql =

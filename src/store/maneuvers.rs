@@ -8,6 +8,7 @@ use sqlx::any::AnyRow;
 use sqlx::{AssertSqlSafe, Row};
 
 use super::reactor::off_reactor;
+use super::search::{Search, words_of_maneuver};
 use super::{Project, StoreError, columns};
 use crate::flight::{Channel, Flown, Maneuver, Unit};
 
@@ -32,6 +33,8 @@ pub struct ManeuverFilter {
     pub registration: Option<String>,
     pub flight: Option<String>,
     pub test_point: Option<String>,
+    /// In its name, tags, notes, or what else was said of the flight in words.
+    pub search: Search,
 }
 
 /// What an upload amounted to.
@@ -154,8 +157,8 @@ impl Project {
             summary,
             flown: Flown::default(),
         };
-        let sql = "INSERT INTO maneuvers (project, id, name, created, summary, content, bytes) \
-                   VALUES ($1, $2, $3, $4, $5, $6, $7) ON CONFLICT (project, id) DO NOTHING";
+        let sql = "INSERT INTO maneuvers (project, id, name, created, summary, content, bytes, words) \
+                   VALUES ($1, $2, $3, $4, $5, $6, $7, $8) ON CONFLICT (project, id) DO NOTHING";
         let bytes = i64::try_from(content.len()).unwrap_or(i64::MAX);
         let inserted = sqlx::query(sql)
             .bind(&*self.name)
@@ -165,6 +168,7 @@ impl Project {
             .bind(&record.summary)
             .bind(content)
             .bind(bytes)
+            .bind(words_of_maneuver(name, &record.flown))
             .execute(&self.store.writer)
             .await?;
         if inserted.rows_affected() > 0 {

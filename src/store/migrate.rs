@@ -4,6 +4,7 @@ use sqlx::{AssertSqlSafe, Row};
 
 use super::database::Store;
 use super::error::StoreError;
+use super::search;
 
 /// In order, from version 1. A step that was released is never edited: a change is a further step.
 const STEPS: &[&str] = &[
@@ -19,7 +20,11 @@ const STEPS: &[&str] = &[
     include_str!("migrations/0010_probe.sql"),
     include_str!("migrations/0011_losses.sql"),
     include_str!("migrations/0012_audit.sql"),
+    include_str!("migrations/0013_found_by.sql"),
 ];
+
+/// With this step rows got columns that the program fills in.
+const FOUND_BY: i64 = 13;
 
 /// The version that this program brings a database to.
 pub(super) fn known() -> i64 {
@@ -57,6 +62,9 @@ pub(super) async fn run(store: &Store) -> Result<(), StoreError> {
             .await?;
         tracing::info!(version, "database schema brought up to date");
     }
+    if reached < FOUND_BY {
+        search::fill_in(&mut writing).await?;
+    }
     writing.commit().await
 }
 
@@ -81,6 +89,7 @@ mod tests {
         "a08af6eb2edbafd4",
         "e56065f2a563439f",
         "f00f98fe3793b0fb",
+        "eb23fa20e218823d",
     ];
 
     #[test]

@@ -13,6 +13,7 @@
 //!
 //! Invariant: SQL is here and nowhere else; both engines give the same answers.
 
+mod about;
 mod address;
 mod answers;
 mod audit;
@@ -48,11 +49,13 @@ mod record;
 mod results;
 mod retention;
 mod row;
+mod search;
 mod signal;
 mod tallies;
 mod webhooks;
 mod writing;
 
+pub use about::{About, ManeuverOfJob, ModelOfJob};
 pub use address::{is_missing, without_password};
 pub use answers::{KeptAnswer, Once};
 pub use audit::AuditRecord;
@@ -74,6 +77,7 @@ pub use project::{DEFAULT_PROJECT, Project};
 pub use queue::Waiting;
 pub use results::{Part, ResultParts};
 pub use retention::{Deleted, Expired, Rule};
+pub use search::Search;
 pub use signal::{Listener, Signal};
 pub use tallies::{BUCKETS, Census, Histogram};
 pub use webhooks::{DeliveryRecord, Webhook};

@@ -6,7 +6,7 @@ use uuid::Uuid;
 
 use super::reactor::off_reactor;
 use super::{Project, StoreError, columns};
-use crate::estimate::{OutputSeries, Role, Series, TimeHistory};
+use crate::estimate::{Estimate, OutputSeries, Role, Series, TimeHistory};
 use crate::job::{JobResult, Maker};
 
 /// A part that is kept as JSON.
@@ -40,7 +40,11 @@ impl Part {
 }
 
 /// A result, ready to be written.
-pub struct ResultParts(Vec<(String, Vec<u8>)>);
+pub struct ResultParts {
+    parts: Box<[(String, Vec<u8>)]>,
+    /// JSON of the summary that lists show.
+    fit: Option<Box<str>>,
+}
 
 impl ResultParts {
     /// Takes as long as the histories are: not for the reactor's threads.
@@ -81,8 +85,19 @@ impl ResultParts {
         let encoded = parts
             .into_iter()
             .map(|(name, bytes)| bytes.map(|bytes| (name, bytes)));
-        Ok(Self(encoded.collect::<Result<_, _>>().map_err(unwritable)?))
+        let summary = result.estimate.fit_summary();
+        let fit = summary.map(|fit| serde_json::to_string(&fit).map(String::into_boxed_str));
+        Ok(Self {
+            parts: encoded.collect::<Result<_, _>>().map_err(unwritable)?,
+            fit: fit.transpose().map_err(unwritable)?,
+        })
     }
+}
+
+/// The summary of an estimate that is kept; nothing where it cannot be read, or has none.
+pub(super) fn fit_of(estimate: &[u8]) -> Option<String> {
+    let estimate: Estimate = serde_json::from_slice(estimate).ok()?;
+    serde_json::to_string(&estimate.fit_summary()?).ok()
 }
 
 fn history_part(number: usize) -> String {
@@ -208,12 +223,19 @@ pub(super) async fn insert(
     job: Uuid,
     result: &ResultParts,
 ) -> Result<(), StoreError> {
-    for (part, body) in &result.0 {
+    for (part, body) in result.parts.iter() {
         sqlx::query("INSERT INTO results (job, part, body) VALUES ($1, $2, $3)")
             .bind(job.to_string())
             .bind(part)
             .bind(body.as_slice())
             .execute(&mut *connection)
+            .await?;
+    }
+    if let Some(fit) = &result.fit {
+        sqlx::query("UPDATE jobs SET fit = $2 WHERE id = $1")
+            .bind(job.to_string())
+            .bind(&**fit)
+            .execute(connection)
             .await?;
     }
     Ok(())

@@ -196,6 +196,15 @@ impl Browser {
         }
     }
 
+    /// Says yes to the question that the page asks.
+    pub(crate) async fn accept(&self) {
+        let began = Instant::now();
+        while let Err(error) = self.client.accept_alert().await {
+            assert!(began.elapsed() < PATIENCE, "no question: {error}");
+            sleep(EVERY).await;
+        }
+    }
+
     pub(crate) async fn choose(&self, selector: &str, value: &str) {
         let select = self.find(selector).await;
         let chosen = select.select_by_value(value).await;

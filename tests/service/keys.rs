@@ -114,6 +114,7 @@ const NEEDED: &[(&str, &[&str])] = &[
             "rotateKey",
             "deleteJob",
             "deleteManeuver",
+            "deleteModel",
             "expire",
             "deleteMapping",
             "listWebhooks",

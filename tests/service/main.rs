@@ -46,6 +46,7 @@ mod logs;
 mod maneuvers;
 mod mappings;
 mod models;
+mod names;
 mod once;
 mod pages;
 mod predictions;

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use crate::bench::{Bench, on_both};
 use trimtab::model::ModelDocument;
-use trimtab::store::{DEFAULT_PROJECT, Once, Store};
+use trimtab::store::{DEFAULT_PROJECT, JobFilter, ManeuverFilter, Once, Search, Store};
 
 on_both! {
     a_later_schema_is_refused_not_damaged,
@@ -119,6 +119,21 @@ async fn a_database_from_before_there_were_projects_is_carried_over() {
     let project = store.project(DEFAULT_PROJECT, "");
     assert_eq!(project.maneuver("m").await.unwrap().unwrap().name, "run 1");
     assert_eq!(project.stored_bytes().await.unwrap(), 2);
+    // it is found by its words, and called by what it is about
+    let filter = JobFilter {
+        search: Search::of("RUN old"),
+        ..JobFilter::default()
+    };
+    let found = project.jobs(&filter, None, 9).await.unwrap().unwrap();
+    assert_eq!(found.entries[0].about.maneuvers[0].label, "run 1");
+    let filter = ManeuverFilter {
+        search: Search::of("Run"),
+        ..ManeuverFilter::default()
+    };
+    let found = project.maneuvers(&filter, None, 9).await.unwrap().unwrap();
+    assert_eq!(found.entries[0].id, "m");
+    let found = project.models(&Search::of("n T"), None, 9).await.unwrap();
+    assert_eq!(found.entries.len(), 1);
     let model = "01950000-0000-7000-8000-000000000001".parse().unwrap();
     assert!(project.model(model).await.unwrap().is_some());
     let once = project.take_in_hand("k", "r").await.unwrap();

@@ -90,7 +90,7 @@ pub use problem::unusable::Unusable;
 pub use report::collinear::CollinearSet;
 pub use report::estimate::Estimate;
 pub use report::filter::{FilterEstimate, Pole, ProcessNoiseEstimate, SegmentGain};
-pub use report::fit::{OutputFit, TheilShares};
+pub use report::fit::{FitSummary, OutputFit, TheilShares};
 pub use report::frequency::{FrequencyEstimate, FrequencyFit, SegmentBand};
 pub use report::history::{OutputSeries, Series, TimeHistory};
 pub use report::identifiability::{

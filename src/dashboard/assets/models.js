@@ -133,6 +133,26 @@ async function read(chosen) {
   }
 }
 
+// --- deleting ----------------------------------------------------------------------------------------------------------
+
+for (const button of document.querySelectorAll('[data-delete]')) {
+  button.addEventListener('click', async () => {
+    const { delete: id, name } = button.dataset;
+    const question = `Delete the stored model ${name} (${id})? Jobs that used it keep their copy.`;
+    if (!confirm(question)) return;
+    const live = document.getElementById('live');
+    button.disabled = true;
+    try {
+      await ask(`/v1/models/${id}`, { method: 'DELETE' });
+      button.closest('tr').remove();
+      live.textContent = `${name} is deleted.`;
+    } catch (error) {
+      live.textContent = `${name} was not deleted: ${error.message}`;
+      button.disabled = false;
+    }
+  });
+}
+
 form.addEventListener('submit', store);
 file.addEventListener('change', () => read(file.files[0]));
 drop.addEventListener('dragover', event => {

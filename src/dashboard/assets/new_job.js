@@ -1,4 +1,5 @@
 // The page where a job is made. There is one job document: the form, its JSON and the curl command are views of it.
+import { clearFaults, showFaults } from './faults.js';
 import { ask, element, inWords, post } from './service.js';
 
 const byId = id => document.getElementById(id);
@@ -37,10 +38,21 @@ function write(pointer, value) {
 }
 
 const number = text => (text.trim() === '' ? undefined : Number(text));
+/** What is no number goes as it is: the service says so, and where. */
+const asNumber = text => (Number.isNaN(number(text)) ? text : number(text));
+
+/** A step of a JSON pointer (RFC 6901). */
+const escaped = name => name.replaceAll('~', '~0').replaceAll('/', '~1');
 
 // --- maneuvers ---------------------------------------------------------------------------------------------------------
 
+/** Begin and end of parts as they are being written, by use. */
+const ends = new WeakMap();
+
 const ROLES = [['', 'not used'], ['estimation', 'fitted'], ['validation', 'checked on'], ['final', 'kept for the end']];
+
+/** Where a use of a maneuver is in the job. */
+const useAt = use => `/maneuvers/${spec.maneuvers.indexOf(use)}`;
 
 function showManeuvers() {
   const place = byId('maneuvers');
@@ -48,32 +60,68 @@ function showManeuvers() {
     place.replaceChildren(element('p', {}, 'There is no maneuver yet: upload one first.'));
     return;
   }
-  const rows = maneuvers.map(maneuver => {
-    const use = spec.maneuvers.find(one => one.id === maneuver.id);
-    const role = element('select', { 'aria-label': `part of ${maneuver.name}` },
-      ...ROLES.map(([value, text]) => element('option', { value }, text)));
-    role.value = use ? use.role ?? 'estimation' : '';
-    role.addEventListener('change', () => {
-      spec.maneuvers = spec.maneuvers.filter(one => one.id !== maneuver.id);
-      if (role.value !== '') {
-        const kept = use ?? { id: maneuver.id, label: free(maneuver.name) };
-        spec.maneuvers.push({ ...kept, role: role.value });
-      }
-      changed();
-      showChannels();
-    });
-    const { samples, duration, channels } = maneuver.summary;
-    return element('tr', {},
-      element('td', {}, role),
-      element('th', { scope: 'row' }, element('a', { href: `/maneuvers/${maneuver.id}` }, maneuver.name || maneuver.id.slice(0, 12))),
-      element('td', { class: 'number' }, `${Number(duration.toPrecision(4))}`),
-      element('td', { class: 'number' }, `${samples}`),
-      element('td', { class: 'soft' }, channels.map(channel => channel.name).join(', ')));
+  const rows = maneuvers.flatMap(maneuver => {
+    const uses = spec.maneuvers.filter(one => one.id === maneuver.id);
+    return uses.length === 0 ? [maneuverRow(maneuver)] : uses.map(use => maneuverRow(maneuver, use));
   });
-  const head = ['part', 'maneuver', 'duration, s', 'samples', 'channels'].map((text, k) =>
-    element('th', { scope: 'col', class: k === 2 || k === 3 ? 'number' : undefined }, text));
+  const head = ['part', 'maneuver', 'from, s', 'to, s', 'duration, s', 'samples', 'channels'].map(text =>
+    element('th', { scope: 'col', class: /, s|samples/.test(text) ? 'number' : undefined }, text));
   const table = element('table', {}, element('thead', {}, element('tr', {}, ...head)), element('tbody', {}, ...rows));
-  place.replaceChildren(element('div', { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': 'Maneuvers' }, table));
+  const scroll = element('div', { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': 'Maneuvers' }, table);
+  // who is at a field by keyboard stays there
+  const focused = document.activeElement?.getAttribute('aria-label');
+  const stays = place.contains(document.activeElement);
+  place.replaceChildren(scroll);
+  if (stays) [...place.querySelectorAll('select, input')].find(field => field.getAttribute('aria-label') === focused)?.focus();
+}
+
+/** A maneuver, or a part of it that the job uses. */
+function maneuverRow(maneuver, use) {
+  const name = maneuver.name || maneuver.id.slice(0, 12);
+  const called = use?.label ?? name;
+  const role = element('select', { 'aria-label': `part of ${called}`, 'data-at': use && useAt(use) },
+    ...ROLES.map(([value, text]) => element('option', { value }, text)));
+  role.value = use ? use.role ?? 'estimation' : '';
+  role.addEventListener('change', () => {
+    if (role.value === '') spec.maneuvers = spec.maneuvers.filter(one => one !== use);
+    else if (use) use.role = role.value;
+    else spec.maneuvers.push({ id: maneuver.id, label: free(name), role: role.value });
+    changed();
+    showManeuvers();
+    showChannels();
+  });
+  const { samples, duration, channels } = maneuver.summary;
+  const another = use && element('button', { type: 'button', 'aria-label': `another part of ${called}` }, 'Another part');
+  another?.addEventListener('click', () => {
+    spec.maneuvers.splice(spec.maneuvers.indexOf(use) + 1, 0, { ...use, label: free(name) });
+    changed();
+    showManeuvers();
+  });
+  return element('tr', {},
+    element('td', {}, role),
+    element('th', { scope: 'row' }, element('a', { href: `/maneuvers/${maneuver.id}` }, called), ...(another ? [' ', another] : [])),
+    ...[0, 1].map(end => element('td', { class: 'number' }, use && secondsField(use, end, called))),
+    element('td', { class: 'number' }, `${Number(duration.toPrecision(4))}`),
+    element('td', { class: 'number' }, `${samples}`),
+    element('td', { class: 'soft' }, channels.map(channel => channel.name).join(', ')));
+}
+
+/** Where a part begins or ends, in seconds of the recording's own time. */
+function secondsField(use, end, called) {
+  const field = element('input', {
+    'aria-label': `${['first', 'last'][end]} second of ${called}`, 'data-at': `${useAt(use)}/seconds/${end}`, inputmode: 'decimal', size: '8',
+    placeholder: use.rows ? `row ${use.rows[end]}` : ['beginning', 'end'][end], value: ends.get(use)?.[end] ?? use.seconds?.[end] ?? '',
+  });
+  field.addEventListener('change', () => {
+    const both = ends.get(use) ?? [...use.seconds ?? ['', '']].map(String);
+    both[end] = field.value.trim();
+    ends.set(use, both);
+    delete use.seconds;
+    if (both.some(text => text !== '')) delete use.rows;
+    if (both.every(text => text !== '')) use.seconds = both.map(asNumber);
+    changed();
+  });
+  return field;
 }
 
 /** A label that no other maneuver of the job has. */
@@ -124,7 +172,7 @@ function showChannels() {
     for (const [name, quantity] of Object.entries(quantities ?? {})) {
       const isThere = names.includes(name);
       if (!isThere && !spec.channels?.[name]) missing++;
-      const input = element('input', { list: 'recorded', placeholder: isThere ? name : 'channel or formula', value: spec.channels?.[name] ?? '' });
+      const input = element('input', { list: 'recorded', 'data-at': `/channels/${escaped(name)}`, placeholder: isThere ? name : 'channel or formula', value: spec.channels?.[name] ?? '' });
       if (!isThere && !spec.channels?.[name]) input.setAttribute('aria-invalid', 'true');
       input.addEventListener('change', () => {
         write(`/channels/${name}`, input.value.trim() === '' ? undefined : input.value.trim());
@@ -149,18 +197,16 @@ function showParameters() {
     const field = (key, label) => {
       const input = element('input', {
         'aria-label': `${label} of ${name}`, size: '10', value: given[key] ?? '', placeholder: parameter[key] ?? '',
-        inputmode: 'decimal',
+        inputmode: 'decimal', 'data-at': `/parameters/${escaped(name)}/${key}`,
       });
       input.addEventListener('change', () => {
-        const text = input.value.trim();
-        const value = number(text);
         // a start value may be an expression in channels
-        write(`/parameters/${name}/${key}`, key === 'start' && Number.isNaN(value) ? text : value);
+        write(`/parameters/${name}/${key}`, asNumber(input.value.trim()));
         changed();
       });
       return element('td', {}, input);
     };
-    const fixed = element('input', { type: 'checkbox', 'aria-label': `${name} is held` });
+    const fixed = element('input', { type: 'checkbox', 'aria-label': `${name} is held`, 'data-at': `/parameters/${escaped(name)}/fixed` });
     fixed.checked = given.fixed ?? parameter.fixed ?? false;
     fixed.addEventListener('change', () => {
       write(`/parameters/${name}/fixed`, fixed.checked === (parameter.fixed ?? false) ? undefined : fixed.checked);
@@ -200,8 +246,8 @@ function changed() {
   byId('json-fault').textContent = '';
   const quoted = json.replaceAll("'", String.raw`'\''`);
   byId('curl').textContent = `curl -X POST ${location.origin}/v1/jobs \\\n  -H 'content-type: application/json' \\\n  -d '${quoted}'`;
+  // faults stay until the next check: a page that moves while a button is pressed loses the click
   byId('said').textContent = '';
-  byId('faults').replaceChildren();
 }
 
 async function takeWhole(next) {
@@ -276,10 +322,7 @@ form.addEventListener('change', event => {
 function showProblem(error) {
   const faults = error.problem?.errors ?? [];
   byId('said').textContent = '';
-  byId('faults').replaceChildren(element('div', { class: 'note' },
-    faults.length > 0
-      ? element('ul', {}, ...faults.map(fault => element('li', {}, element('code', {}, fault.pointer), ` ${fault.message}`)))
-      : element('p', {}, error.problem ? inWords(error.problem) : error.message)));
+  showFaults(form, faults.length > 0 ? faults : [{ pointer: '', message: error.problem ? inWords(error.problem) : error.message }], spec);
 }
 
 function sentence({ recording, channel, message, remedy }) {
@@ -287,20 +330,28 @@ function sentence({ recording, channel, message, remedy }) {
   return `${place ? `${place}: ` : ''}${message}${remedy ? `; ${remedy}` : ''}`;
 }
 
-/** The first thing that is missing, in words. */
+/** The first thing that is missing, and where. */
 function missing() {
-  if (byId('json-fault').textContent !== '') return `The job's JSON cannot be read, and nothing was sent. ${byId('json-fault').textContent}`;
-  if (!spec.maneuvers.some(use => (use.role ?? 'estimation') === 'estimation')) return 'Choose a maneuver to be fitted, under 1. Maneuvers.';
-  if (spec.model === '') return 'Choose a model, under 2. Model.';
+  if (byId('json-fault').textContent !== '') return { pointer: '', message: `The job's JSON cannot be read, and nothing was sent. ${byId('json-fault').textContent}` };
+  if (!spec.maneuvers.some(use => (use.role ?? 'estimation') === 'estimation')) return { pointer: '/maneuvers', message: 'Choose a maneuver to be fitted.' };
+  const decimals = form.querySelectorAll('[inputmode=decimal]');
+  // a start value may be an expression
+  const wrong = [...decimals].find(field => !field.dataset.at.endsWith('/start') && Number.isNaN(number(field.value)));
+  if (wrong) return { pointer: wrong.dataset.at, message: `'${wrong.value}' is not a number.` };
+  for (const use of spec.maneuvers) {
+    const open = (ends.get(use) ?? ['', '']).indexOf('');
+    if (open >= 0 && ends.get(use)?.[1 - open]) return { pointer: `${useAt(use)}/seconds/${open}`, message: 'Write both seconds of a part, or neither.' };
+  }
+  if (spec.model === '') return { pointer: '/model', message: 'Choose a model.' };
   return undefined;
 }
 
 async function send(address, done) {
-  byId('faults').replaceChildren();
+  clearFaults();
   const lack = missing();
   byId('said').textContent = lack ? '' : 'Asking the service ...';
   if (lack) {
-    showProblem(new Error(lack));
+    showFaults(form, [lack], spec);
     return;
   }
   const buttons = [byId('check'), form.querySelector('button.main')];
@@ -344,13 +395,19 @@ async function all(address, key) {
   return entries;
 }
 
+/** A model in the list; of stored ones, which may have equal names, with when it was stored and the end of its id. */
+function modelText({ id, name, title, created }) {
+  const text = title ? `${name}: ${title}` : name;
+  return created ? `${text} (stored ${new Date(created).toLocaleString()}, ${id.slice(-8)})` : text;
+}
+
 async function begin() {
   const query = new URLSearchParams(location.search);
   const [stored, models] = await Promise.all([all('/v1/maneuvers', 'maneuvers'), all('/v1/models', 'models')]);
   maneuvers = stored;
   byId('model').replaceChildren(
     element('option', { value: '' }, 'choose a model'),
-    ...models.map(model => element('option', { value: model.id }, model.title ? `${model.name}: ${model.title}` : model.name)));
+    ...models.map(model => element('option', { value: model.id }, modelText(model))));
   const like = query.get('like');
   if (like) {
     await takeWhole(await ask(`/v1/jobs/${encodeURIComponent(like)}/spec`));

@@ -103,9 +103,8 @@ async fn get_campaign(
 async fn flown(service: &Service, tag: &str) -> Result<Vec<Flown>, Problem> {
     let filter = JobFilter {
         status: Some(Status::Succeeded),
-        kind: None,
         tag: Some(tag.to_string()),
-        created_after: None,
+        ..JobFilter::default()
     };
     let (mut records, mut cursor): (Vec<JobRecord>, Option<String>) = (Vec::new(), None);
     loop {
@@ -150,7 +149,7 @@ async fn flown(service: &Service, tag: &str) -> Result<Vec<Flown>, Problem> {
         };
         flown.push(Flown {
             job: record.id.to_string(),
-            name: record.name,
+            name: record.title(),
             conditions: conditions_of(&record.tags),
             recordings: UsedRecording::of(&spec.maneuvers),
             estimate,

@@ -18,7 +18,7 @@ use crate::http::answer::format::{Format, cacheable};
 use crate::http::code::Code;
 use crate::http::problem::{Problem, ProblemDocument};
 use crate::http::request::body;
-use crate::http::request::query::{Id, Parameters, bad_cursor, page_limit};
+use crate::http::request::query::{Id, Parameters, bad_cursor, page_limit, search};
 use crate::http::service::{Server, Service};
 use crate::ingest::{self, Summary};
 use crate::store::{ManeuverFilter, ManeuverRecord, Uploaded};
@@ -255,6 +255,10 @@ struct ListQuery {
     flight: Option<String>,
     /// Only those of this test point.
     test_point: Option<String>,
+    /// Only those that have each of these words in their name, tags, notes, or what else is said of the flight in words,
+    /// upper case or lower.
+    #[param(max_length = 200, example = "3-2-1-1 flaps")]
+    q: Option<String>,
 }
 
 /// List maneuvers, newest first.
@@ -272,6 +276,7 @@ async fn list_maneuvers(
         registration: query.registration,
         flight: query.flight,
         test_point: query.test_point,
+        search: search(query.q.as_deref())?,
     };
     let page = service
         .store

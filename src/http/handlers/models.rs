@@ -16,11 +16,11 @@ use crate::http::middleware::once::NewId;
 use crate::http::problem::{Problem, ProblemDocument};
 use crate::http::request::body;
 use crate::http::request::json;
-use crate::http::request::query::{Id, PageQuery, Parameters, bad_cursor, page_limit};
+use crate::http::request::query::{Id, Parameters, bad_cursor, page_limit, search};
 use crate::http::service::{Server, Service};
 use crate::job::Faults;
 use crate::model::{Model, ModelDocument, catalog};
-use crate::store::{BadCursor, ModelRecord, Page, StoreError};
+use crate::store::{BadCursor, ModelRecord, Page, Search, StoreError};
 
 /// Of what a TOML reader says, in characters.
 const LONGEST_DETAIL: usize = 500;
@@ -28,7 +28,7 @@ const LONGEST_DETAIL: usize = 500;
 pub(crate) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(add_model, list_models))
-        .routes(routes!(get_model))
+        .routes(routes!(get_model, delete_model))
 }
 
 /// A model as lists show it; the document itself is at `links.self`.
@@ -183,16 +183,31 @@ fn parse_toml(text: &str) -> Result<ModelDocument, Problem> {
     })
 }
 
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+struct ListQuery {
+    /// `next_cursor` of the page before; absent: the first page.
+    cursor: Option<String>,
+    /// Models of the page, 1 to 200; 50 if absent.
+    #[param(minimum = 1, maximum = 200)]
+    limit: Option<usize>,
+    /// Only those that have each of these words in their name or title, upper case or lower.
+    #[param(max_length = 200, example = "short period")]
+    q: Option<String>,
+}
+
 /// List models: the catalog, then what was stored, newest first.
 #[utoipa::path(get, path = "/v1/models", tag = "Models", operation_id = "listModels",
-    params(PageQuery),
+    params(ListQuery),
     responses((status = 200, description = "A page.", body = ModelPage)))]
 async fn list_models(
     service: Service,
-    Parameters(query): Parameters<PageQuery>,
+    Parameters(query): Parameters<ListQuery>,
 ) -> Result<Json<ModelPage>, Problem> {
     let limit = page_limit(query.limit)?;
-    let page = page(&service, query.cursor.as_deref(), limit)
+    let search = search(query.q.as_deref())?;
+    let page = page(&service, &search, query.cursor.as_deref(), limit)
         .await?
         .map_err(bad_cursor)?;
     Ok(Json(ModelPage {
@@ -201,9 +216,10 @@ async fn list_models(
     }))
 }
 
-/// The catalog, then what was stored. The cursor of a catalog model is its name, that of a stored one its id.
+/// What a search finds of the catalog, then of what was stored. The cursor of a catalog model is its name, that of a stored one its id.
 pub(crate) async fn page(
     service: &Service,
+    search: &Search,
     cursor: Option<&str>,
     limit: usize,
 ) -> Result<Result<Page<Listed>, BadCursor>, StoreError> {
@@ -222,12 +238,16 @@ pub(crate) async fn page(
             (None, Err(_)) => return Ok(Err(BadCursor)),
         },
     };
-    let mut models: Vec<_> = catalog[from..].iter().map(Listed::of_catalog).collect();
+    let found = catalog[from..].iter().filter(|model| {
+        let words = format!("{}\n{}", model.name, model.title);
+        search.finds(&words)
+    });
+    let mut models: Vec<_> = found.map(Listed::of_catalog).collect();
     if models.len() <= limit {
         // one more than fits tells whether there is another page
         let stored = service
             .store
-            .models(before, limit + 1 - models.len())
+            .models(search, before, limit + 1 - models.len())
             .await?;
         models.extend(stored.entries.into_iter().map(Listed::stored));
     }
@@ -266,6 +286,29 @@ async fn get_model(
         .await?
         .ok_or_else(|| unknown_model(&id))?;
     document_as(format, &headers, &document)
+}
+
+/// Delete a stored model.
+///
+/// Jobs that name it are what they were: each keeps the document as it was submitted. Models of the catalog stay.
+#[utoipa::path(delete, path = "/v1/models/{id}", tag = "Models", operation_id = "deleteModel",
+    params(("id" = String, Path, description = "The id of a stored model.", example = "0193518e-6b6f-7d3c-9c53-b1cbb2b7a1f4")),
+    responses(
+        (status = 204, description = "It is gone."),
+        (status = 404, description = "`unknown_model`: none of this id is stored.", body = ProblemDocument, content_type = "application/problem+json"),
+        (status = 409, description = "`of_catalog`", body = ProblemDocument, content_type = "application/problem+json"),
+    ))]
+async fn delete_model(service: Service, Id(id): Id) -> Result<StatusCode, Problem> {
+    if catalog::find(&id).is_some() {
+        let detail = format!(
+            "'{id}' is a model of the catalog, which comes with Trimtab; only stored models can be deleted"
+        );
+        return Err(Problem::new(Code::OfCatalog, detail));
+    }
+    match Uuid::parse_str(&id) {
+        Ok(stored) if service.store.delete_model(stored).await? => Ok(StatusCode::NO_CONTENT),
+        _ => Err(unknown_model(&id)),
+    }
 }
 
 pub(crate) fn unknown_model(id: &str) -> Problem {

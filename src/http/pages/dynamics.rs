@@ -61,7 +61,7 @@ async fn get_dynamics_page(
         };
         let view = DynamicsView {
             id: view.id.clone(),
-            title: view.title().to_string(),
+            title: view.title.clone(),
             system: linear_system(problem, estimate, query.segment.as_deref()).map_err(none)?,
             responses,
             qualities: flying_qualities(problem, estimate, &qualities).map_err(none)?,

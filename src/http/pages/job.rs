@@ -6,14 +6,15 @@ use axum::routing::get;
 use serde::de::DeserializeOwned;
 use uuid::Uuid;
 
-use crate::dashboard::{JobView, NamedModel, UsedManeuver, job_page};
+use crate::dashboard::{JobView, ModelPlace, NamedModel, UsedManeuver, job_page};
 use crate::estimate::Estimate;
 use crate::http::handlers::jobs::job;
+use crate::http::handlers::models;
 use crate::http::problem::Problem;
 use crate::http::request::query::{JobId, unknown_job};
 use crate::http::service::{Server, Service};
-use crate::job::{EventBody, JobSpec};
-use crate::store::Part;
+use crate::job::{EventBody, JobSpec, ManeuverUse};
+use crate::store::{About, Part};
 
 pub(super) fn router() -> Router<Server> {
     Router::new().route("/jobs/{id}", get(get_job_page))
@@ -29,16 +30,15 @@ pub(super) async fn view(service: &Service, id: Uuid) -> Result<JobView, Problem
     let job = job::find(service, id).await?;
     let spec = service.store.job_spec(id).await?;
     let spec: JobSpec = serde_json::from_str(&spec.ok_or_else(|| unknown_job(id))?)?;
+    let title = job.title();
     let maneuvers = (1..)
         .zip(&spec.maneuvers)
         .map(|(at, maneuver)| UsedManeuver {
             id: maneuver.id.clone(),
-            label: maneuver
-                .label
-                .clone()
-                .unwrap_or_else(|| format!("maneuver {at}")),
+            label: label(&job.about, at, maneuver),
             role: maneuver.role,
         });
+    let maneuvers = maneuvers.collect();
     // the log begins with what the job amounts to
     let log = service.store.events(id, 0, 16).await?;
     let bodies = log.entries.into_iter();
@@ -57,12 +57,9 @@ pub(super) async fn view(service: &Service, id: Uuid) -> Result<JobView, Problem
     };
     Ok(JobView {
         id: id.to_string(),
-        maneuvers: maneuvers.collect(),
-        model: NamedModel {
-            name: spec.model.name().to_string(),
-            id: spec.model.reference().map(ToString::to_string),
-        },
-        name: job.name,
+        maneuvers,
+        model: model(service, &spec, &job.about).await?,
+        title,
         kind: job.kind,
         tags: job.tags,
         status: job.status,
@@ -76,6 +73,34 @@ pub(super) async fn view(service: &Service, id: Uuid) -> Result<JobView, Problem
         estimate,
         study: part(service, id, Part::Study).await?,
         diagnosis: part(service, id, Part::Diagnosis).await?,
+    })
+}
+
+/// What a maneuver is called: one without a label by its number, which its segments are called by, and its recording.
+fn label(about: &About, at: usize, used: &ManeuverUse) -> String {
+    match (&used.label, about.maneuvers.get(at - 1)) {
+        (Some(label), _) => label.clone(),
+        (None, Some(known)) => format!("{at}: {}", known.label),
+        (None, None) => format!("maneuver {at}"),
+    }
+}
+
+/// The model, with the way to it as long as it is there.
+async fn model(service: &Service, spec: &JobSpec, about: &About) -> Result<NamedModel, Problem> {
+    let named = &about.model.name;
+    let name = if named.is_empty() {
+        spec.model.name()
+    } else {
+        named
+    };
+    let place = match spec.model.reference() {
+        None => ModelPlace::InTheJob,
+        Some(id) if models::find(service, id).await?.is_none() => ModelPlace::Deleted,
+        Some(id) => ModelPlace::Kept(id.to_string()),
+    };
+    Ok(NamedModel {
+        name: name.to_string(),
+        place,
     })
 }
 

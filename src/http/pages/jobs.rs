@@ -8,7 +8,7 @@ use serde::Deserialize;
 use crate::dashboard::{Chosen, JobRow, JobsView, jobs_page};
 use crate::http::code::Code;
 use crate::http::problem::Problem;
-use crate::http::request::query::{Parameters, bad_cursor};
+use crate::http::request::query::{Parameters, bad_cursor, search};
 use crate::http::service::{Server, Service};
 use crate::job::{EventBody, JobKind, Status};
 use crate::store::{Clock, JobFilter, JobRecord};
@@ -30,6 +30,8 @@ struct Query {
     kind: String,
     #[serde(default)]
     tag: String,
+    #[serde(default)]
+    q: String,
     cursor: Option<String>,
 }
 
@@ -44,6 +46,7 @@ async fn get_jobs_page(
         kind: kind.map(|kind| kind.name().to_string()),
         tag: (!query.tag.is_empty()).then(|| query.tag.clone()),
         created_after: None,
+        search: search(Some(&query.q))?,
     };
     let cursor = query.cursor.as_deref();
     let page = service.store.jobs(&filter, cursor, JOBS).await?;
@@ -54,6 +57,7 @@ async fn get_jobs_page(
         form.append_pair("status", &query.status);
         form.append_pair("kind", &query.kind);
         form.append_pair("tag", &query.tag);
+        form.append_pair("q", &query.q);
         form.append_pair("cursor", &cursor);
         format!("/?{}", form.finish())
     });
@@ -64,6 +68,7 @@ async fn get_jobs_page(
             kind,
             is_later_page: query.cursor.is_some(),
             tag: query.tag,
+            q: query.q,
         },
         older,
     };
@@ -90,10 +95,23 @@ fn chosen<T: Copy, const N: usize>(
 fn row(job: JobRecord, now: &str) -> JobRow {
     let until = job.finished.as_deref().unwrap_or(now);
     let started = job.started.as_deref();
+    let warnings = match &job.ending {
+        Some(EventBody::Succeeded { findings, .. } | EventBody::Cancelled { findings, .. }) => {
+            findings.faults + findings.warnings
+        }
+        _ => 0,
+    };
     JobRow {
         id: job.id.to_string(),
         seconds: started.and_then(|started| Clock::seconds_between(started, until)),
-        name: job.name,
+        title: job.title(),
+        about: if job.name.is_empty() {
+            String::new()
+        } else {
+            job.about.title()
+        },
+        fit: job.fit,
+        warnings,
         kind: job.kind,
         tags: job.tags,
         status: job.status,

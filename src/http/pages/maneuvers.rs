@@ -8,7 +8,7 @@ use serde::Deserialize;
 use crate::dashboard::{ManeuverRow, ManeuversView, maneuvers_page};
 use crate::http::handlers::mappings;
 use crate::http::problem::Problem;
-use crate::http::request::query::{Parameters, bad_cursor};
+use crate::http::request::query::{Parameters, bad_cursor, search};
 use crate::http::service::{Server, Service};
 use crate::store::{ManeuverFilter, ManeuverRecord};
 
@@ -22,6 +22,8 @@ const MANEUVERS: usize = 50;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Query {
+    #[serde(default)]
+    q: String,
     cursor: Option<String>,
 }
 
@@ -30,13 +32,19 @@ async fn get_maneuvers_page(
     Parameters(query): Parameters<Query>,
 ) -> Result<Html<String>, Problem> {
     let cursor = query.cursor.as_deref();
-    let all = ManeuverFilter::default();
-    let page = service.store.maneuvers(&all, cursor, MANEUVERS).await?;
+    let filter = ManeuverFilter {
+        search: search(Some(&query.q))?,
+        ..ManeuverFilter::default()
+    };
+    let page = service.store.maneuvers(&filter, cursor, MANEUVERS).await?;
     let page = page.map_err(bad_cursor)?;
     let older = page.next_cursor.map(|cursor| {
-        let mut query = form_urlencoded::Serializer::new(String::new());
-        query.append_pair("cursor", &cursor);
-        format!("/maneuvers?{}", query.finish())
+        let mut form = form_urlencoded::Serializer::new(String::new());
+        if !query.q.is_empty() {
+            form.append_pair("q", &query.q);
+        }
+        form.append_pair("cursor", &cursor);
+        format!("/maneuvers?{}", form.finish())
     });
     let mappings = mappings::all(&service).await?.into_iter();
     let mappings = mappings.map(|mapping| (mapping.name, mapping.about));
@@ -47,6 +55,7 @@ async fn get_maneuvers_page(
             maneuvers: maneuvers.collect(),
             mappings,
             is_later_page: query.cursor.is_some(),
+            q: query.q,
             older,
         })
     };

@@ -15,7 +15,7 @@ use crate::http::problem::Problem;
 use crate::http::request::query::{Id, LONGEST_PAGE, Parameters, bad_cursor, unknown_job};
 use crate::http::service::{Server, Service};
 use crate::model::ModelDocument;
-use crate::store::Part;
+use crate::store::{Part, Search};
 
 pub(super) fn router() -> Router<Server> {
     Router::new().route("/models/{id}", get(get_model_page))
@@ -39,7 +39,7 @@ async fn get_model_page(
 ) -> Result<Html<String>, Problem> {
     let document = find(&service, &id).await?;
     let document = document.ok_or_else(|| unknown_model(&id))?;
-    let listed = page(&service, None, LONGEST_PAGE).await?;
+    let listed = page(&service, &Search::default(), None, LONGEST_PAGE).await?;
     let listed = listed.map_err(bad_cursor)?.entries.into_iter();
     let others = listed
         .filter(|model| model.id != id)

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use crate::dashboard::{Draft, ModelRow, ModelsView, models_page};
 use crate::http::handlers::models::{Listed, find, page, unknown_model};
 use crate::http::problem::Problem;
-use crate::http::request::query::{Parameters, bad_cursor};
+use crate::http::request::query::{Parameters, bad_cursor, search};
 use crate::http::service::{Server, Service};
 use crate::model::catalog;
 
@@ -23,6 +23,8 @@ const MODELS: usize = 50;
 #[serde(deny_unknown_fields)]
 struct Query {
     cursor: Option<String>,
+    #[serde(default)]
+    q: String,
     /// A model to begin an own one with.
     from: Option<String>,
 }
@@ -31,7 +33,8 @@ async fn get_models_page(
     service: Service,
     Parameters(query): Parameters<Query>,
 ) -> Result<Html<String>, Problem> {
-    let page = page(&service, query.cursor.as_deref(), MODELS).await?;
+    let search = search(Some(&query.q))?;
+    let page = page(&service, &search, query.cursor.as_deref(), MODELS).await?;
     let page = page.map_err(bad_cursor)?;
     let draft = match &query.from {
         Some(id) => Some(draft(&service, id).await?),
@@ -39,6 +42,9 @@ async fn get_models_page(
     };
     let older = page.next_cursor.map(|cursor| {
         let mut form = form_urlencoded::Serializer::new(String::from("/models?"));
+        if !query.q.is_empty() {
+            form.append_pair("q", &query.q);
+        }
         form.append_pair("cursor", &cursor);
         form.finish()
     });
@@ -46,6 +52,7 @@ async fn get_models_page(
         models: page.entries.into_iter().map(row).collect(),
         is_later_page: query.cursor.is_some(),
         draft,
+        q: query.q,
         older,
     };
     Ok(Html(service.compute.run(move || models_page(&view)).await?))

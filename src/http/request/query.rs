@@ -9,6 +9,7 @@ use uuid::Uuid;
 
 use crate::http::code::Code;
 use crate::http::problem::Problem;
+use crate::store::Search;
 
 /// The query of a request.
 pub(crate) struct Parameters<T>(pub T);
@@ -93,6 +94,19 @@ pub(crate) fn page_limit(asked: Option<usize>) -> Result<usize, Problem> {
             format!("limit: {limit} is not between 1 and {LONGEST_PAGE}"),
         )),
     }
+}
+
+/// Of `q`, in characters.
+const LONGEST_SEARCH: usize = 200;
+
+/// What a list is searched for; nothing finds everything.
+pub(crate) fn search(q: Option<&str>) -> Result<Search, Problem> {
+    let text = q.unwrap_or_default();
+    if text.chars().count() > LONGEST_SEARCH {
+        let detail = format!("q: longer than {LONGEST_SEARCH} characters; search for fewer words");
+        return Err(Problem::new(Code::InvalidQuery, detail));
+    }
+    Ok(Search::of(text))
 }
 
 pub(crate) fn bad_cursor(error: crate::store::BadCursor) -> Problem {

@@ -153,6 +153,32 @@ async fn a_new_job_says_what_is_wrong_with_it_and_where() {
         )
         .await;
         browser.find("#maneuvers tbody tr").await;
+        let at = |text: &str| format!("#maneuvers [aria-label^='{text} second']");
+        let begin = "document.querySelector('#maneuvers .fault')";
+        browser.fill(&at("first"), "15").await;
+        browser.click("#check").await;
+        browser.until(&format!("{begin}?.textContent.includes('both seconds')")).await;
+        browser.fill(&at("last"), "5").await;
+        browser.expect_error("422");
+        browser.click("#check").await;
+        browser.until(&format!("{begin}?.textContent.includes('seconds 15 to 5')")).await;
+        // the field at fault has the focus, and says what is wrong with it
+        let told = "document.getElementById(document.activeElement.getAttribute('aria-describedby'))?.textContent";
+        assert_eq!(browser.until(told).await, browser.text("#maneuvers .fault").await);
+        browser.is_accessible().await;
+        browser.picture("seconds").await;
+        browser.correct(&at("first"), "2").await;
+        browser.correct(&at("last"), "7").await;
+        browser.click("#check").await;
+        browser.says("#said", "It can run").await;
+        assert_eq!(browser.count(".fault").await, 0);
+        let spec = browser.run("return JSON.parse(document.getElementById('json').value)").await;
+        assert_eq!(spec["maneuvers"][0]["seconds"], json!([2, 7]));
+        browser.click("#maneuvers [aria-label^='another part']").await;
+        browser.until("document.querySelectorAll('#maneuvers tbody tr').length === 2").await;
+        let spec = browser.run("return JSON.parse(document.getElementById('json').value)").await;
+        assert_ne!(spec["maneuvers"][0]["label"], spec["maneuvers"][1]["label"]);
+        browser.choose("#maneuvers tr:nth-child(2) select", "").await;
         browser.click("details:has(#parameters) summary").await;
         // a lower bound above the start value
         browser
@@ -160,7 +186,12 @@ async fn a_new_job_says_what_is_wrong_with_it_and_where() {
             .await;
         browser.expect_error("422");
         browser.click("#check").await;
-        browser.says("#faults", "/parameters/Mde").await;
+        browser.says("#faults", "Mde").await;
+        let told = browser.text("#faults").await;
+        assert!(!told.contains("/parameters"), "{told}");
+        browser.says("#parameters tr:has(.fault)", "Mde").await;
+        browser.until("document.activeElement.getAttribute('aria-label')?.endsWith('of Mde')").await;
+        browser.picture("bound").await;
         // a job that cannot be read is not sent as it was before
         browser.click("details:has(#json) summary").await;
         browser.fill("#json", "oops").await;
@@ -255,6 +286,65 @@ async fn the_list_follows_jobs_and_is_filtered() {
         browser.click("form a").await;
         browser.until(&row("of today")).await;
         assert_eq!(browser.count("#jobs tbody tr").await, 2);
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn lists_are_searched_and_models_of_one_name_told_apart() {
+    browse("names", async |browser| {
+        let server = Server::start().await;
+        let mut spec = job(&server.upload(&elevator()).await);
+        spec["maneuvers"][0]["label"] = json!("Flight 12, doublet");
+        server.wait(&server.submit(&spec).await).await;
+        spec["maneuvers"][0]["label"] = json!("Flight 13");
+        server.wait(&server.submit(&spec).await).await;
+        spec["name"] = json!("the good one");
+        server.wait(&server.submit(&spec).await).await;
+        go(browser, &server, "/").await;
+        let first = browser
+            .until(&row("short-period: Flight 12, doublet"))
+            .await;
+        assert!(first.as_str().unwrap().contains("0.99"), "{first}");
+        browser.is_accessible().await;
+        browser.picture("jobs").await;
+        browser.fill("input[name=q]", "flight 13").await;
+        browser.press(Key::Enter).await;
+        browser
+            .until("document.querySelectorAll('#jobs tbody tr').length === 2")
+            .await;
+        browser.until(&row("the good one")).await;
+        browser.picture("found").await;
+
+        let mut document = server.get("/v1/models/short-period").await.json();
+        document["name"] = json!("mine");
+        let mut ids = Vec::new();
+        for _ in 0..2 {
+            let stored = server.post_json("/v1/models", &document).await.json();
+            ids.push(stored["id"].as_str().unwrap().to_string());
+        }
+        go(browser, &server, "/models?q=mine").await;
+        assert_eq!(browser.count("table.models tbody tr").await, 2);
+        browser.is_accessible().await;
+        browser.picture("models").await;
+        browser.click(&format!("[data-delete={:?}]", ids[0])).await;
+        browser.accept().await;
+        browser.says("#live", "mine is deleted").await;
+        assert_eq!(browser.count("table.models tbody tr").await, 1);
+        assert_eq!(
+            server.get(&format!("/v1/models/{}", ids[0])).await.status,
+            404
+        );
+        assert_eq!(
+            server.get(&format!("/v1/models/{}", ids[1])).await.status,
+            200
+        );
+        go(browser, &server, "/new").await;
+        let tail = &ids[1][ids[1].len() - 8..];
+        browser.says("#model", &format!(", {tail})")).await;
+        go(browser, &server, "/maneuvers?q=nothing").await;
+        browser.says("#maneuvers", "No maneuver matches").await;
+        browser.picture("maneuvers").await;
     })
     .await;
 }
@@ -465,7 +555,7 @@ async fn everything_is_reached_by_keyboard() {
         browser.tab_to("a New job").await;
         browser.tab_to("select Status").await;
         let way = browser.tab_to("a by hand").await;
-        for part in ["select Kind", "input Tag", "button Filter", "div Jobs"] {
+        for part in ["select Kind", "input Tag", "button Search", "div Jobs"] {
             assert!(way.iter().any(|at| at == part), "{part}: {way:?}");
         }
         browser.press(Key::Enter).await;

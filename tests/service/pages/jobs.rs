@@ -74,12 +74,20 @@ async fn the_list_shows_what_is_asked_for() {
         ("?kind=diagnose", [false, true]),
         ("?tag=one", [true, false]),
         ("?status=queued&kind=estimate&tag=one", [true, false]),
+        ("?q=ONE+short", [true, false]),
+        ("?q=elevator&tag=two", [false, false]),
         ("?status=failed", [false, false]),
     ] {
         let list = page(&server, &format!("/{query}")).await;
         let has = |id: &String| list.contains(&format!("/jobs/{id}"));
         assert_eq!([has(&ids[0]), has(&ids[1])], shown, "{query}");
     }
+    let list = page(&server, "/?q=%22%3E%3Cb%3E").await;
+    assert!(list.contains("No job matches") && list.contains("value=\"&quot;&gt;&lt;b&gt;\""));
+    let list = page(&server, "/").await;
+    let title = format!(">short-period: {}</a>", &maneuver[..12]);
+    assert_eq!(list.matches(&title).count(), 2, "{list}");
+    assert!(!list.contains(&format!(">{}<", ids[0])), "{list}");
     let answer = server.get("/?status=done").await;
     assert_eq!(answer.problem(400, "invalid_query").len(), 0);
 }

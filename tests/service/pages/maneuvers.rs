@@ -62,6 +62,16 @@ async fn later_pages_are_reached() {
     let cursor = behind.split('"').next().unwrap();
     let second = page(&server, &format!("/maneuvers?cursor={cursor}")).await;
     assert_eq!(rows(&second), 1);
+    // a search goes on where there is more of it
+    let other = address("/v1/maneuvers", &[("name", "Ä & other")]);
+    server.post(&other, "text/csv", SMALL).await;
+    let found = page(&server, "/maneuvers?q=%C3%A4+%26").await;
+    assert!(
+        rows(&found) == 1 && found.contains("value=\"ä &amp;\""),
+        "{found}"
+    );
+    let none = page(&server, "/maneuvers?q=nothing").await;
+    assert!(rows(&none) == 0 && none.contains("No maneuver matches"));
 }
 
 #[tokio::test]

@@ -79,6 +79,12 @@ async fn a_comparison_shows_what_was_changed() {
     assert!(page.text().contains("the two documents are the same"));
     let list = server.get(&format!("/models?from={id}")).await;
     assert!(list.text().contains("q_scale*q + q_bias"));
+    let found = server.get("/models?q=%3CMINE").await.text();
+    let tail = format!("<code title=\"{id}\">{}</code>", &id[id.len() - 8..]);
+    assert!(
+        found.contains(&tail) && !found.contains("\"/models/phugoid\""),
+        "{found}"
+    );
     // before the catalog's models are behind it, the list goes on
     let later = server.get("/models?cursor=six-degrees-of-freedom").await;
     assert!(later.text().contains(&id) && !later.text().contains("\"/models/phugoid\""));

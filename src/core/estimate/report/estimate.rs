@@ -5,7 +5,7 @@ use utoipa::ToSchema;
 
 use super::collinear::CollinearSet;
 use super::filter::FilterEstimate;
-use super::fit::OutputFit;
+use super::fit::{FitSummary, OutputFit};
 use super::frequency::FrequencyEstimate;
 use super::identifiability::Identifiability;
 use super::integration::Integration;
@@ -85,6 +85,11 @@ fn conventional() -> Option<ErrorBoundsKind> {
 }
 
 impl Estimate {
+    /// The fit in a line; nothing where there are no outputs.
+    pub fn fit_summary(&self) -> Option<FitSummary> {
+        FitSummary::of(&self.outputs, self.samples)
+    }
+
     /// What a reader should know about a row of the parameter table, in words; mostly nothing.
     pub fn remark(&self, row: &ParameterEstimate) -> &'static str {
         match (row.fixed, row.at_bound, row.standard_error) {

@@ -43,6 +43,39 @@ pub struct OutputFit {
     pub samples: usize,
 }
 
+/// A fit in a line: how well the output is reproduced that is reproduced worst.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+pub struct FitSummary {
+    /// The output with the lowest R².
+    #[schema(example = "alpha")]
+    pub output: String,
+    /// Its coefficient of determination; `null` where it does not vary.
+    #[schema(example = 0.9931)]
+    pub r_squared: Option<f64>,
+    /// Its inequality coefficient by Theil.
+    #[schema(example = 0.0412)]
+    pub theil: Option<f64>,
+    /// Samples that were fitted, over all segments.
+    #[schema(example = 626)]
+    pub samples: usize,
+}
+
+impl FitSummary {
+    /// Of the outputs of a fit over so many samples; nothing without outputs.
+    pub(super) fn of(outputs: &[OutputFit], samples: usize) -> Option<Self> {
+        let varying = outputs.iter().filter(|output| output.r_squared.is_finite());
+        let worst = varying.min_by(|a, b| a.r_squared.total_cmp(&b.r_squared));
+        let worst = worst.or(outputs.first())?;
+        let finite = |value: f64| value.is_finite().then_some(value);
+        Some(Self {
+            output: worst.name.clone(),
+            r_squared: finite(worst.r_squared),
+            theil: finite(worst.theil),
+            samples,
+        })
+    }
+}
+
 /// Theil's decomposition of the mean squared residual, shares that add up to 1 (all 0 where there is no residual).
 #[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
 pub struct TheilShares {

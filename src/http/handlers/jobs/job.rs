@@ -9,12 +9,12 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
 
-use crate::estimate::Outcome;
+use crate::estimate::{FitSummary, Outcome, Role};
 use crate::flight::FindingTally;
 use crate::http::answer::format::{Format, cacheable};
 use crate::http::code::Code;
 use crate::http::problem::{Problem, ProblemDocument};
-use crate::http::request::query::{JobId, Parameters, bad_cursor, page_limit, unknown_job};
+use crate::http::request::query::{JobId, Parameters, bad_cursor, page_limit, search, unknown_job};
 use crate::http::service::{Server, Service};
 use crate::job::{EventBody, Fault, JobKind, JobSpec, Status};
 use crate::store::{CancelReply, Clock, JobFilter, JobRecord};
@@ -35,8 +35,15 @@ pub(crate) struct JobResource {
     id: Uuid,
     #[schema(value_type = JobKind)]
     kind: String,
+    /// As it was submitted; empty: none was given.
     #[schema(example = "ATTAS elevator 3-2-1-1, run 1")]
     name: String,
+    /// What to call it: its name, or else its model and maneuvers.
+    #[schema(example = "short-period: flight 12 and flight 13")]
+    title: String,
+    model: JobModel,
+    /// In the order of the spec.
+    maneuvers: Vec<JobManeuver>,
     #[schema(example = json!(["flight 12"]))]
     tags: Vec<String>,
     /// Of two that wait, the higher is taken first.
@@ -65,7 +72,33 @@ pub(crate) struct JobResource {
     has_result: bool,
     /// How many findings the result carries, and the codes of those that matter; the estimate has each with its place.
     warnings: FindingTally,
+    /// How well the output is reproduced that is reproduced worst; the estimate has all of them. Absent without an estimate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fit: Option<FitSummary>,
     links: JobLinks,
+}
+
+/// The model of a job.
+#[derive(Serialize, ToSchema)]
+struct JobModel {
+    #[schema(example = "short-period")]
+    name: String,
+    /// A catalog name, or the id of a stored model, which may have been deleted since; absent of a model that only the job
+    /// holds.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(example = "short-period")]
+    id: Option<String>,
+}
+
+/// A maneuver of a job.
+#[derive(Serialize, ToSchema)]
+struct JobManeuver {
+    #[schema(example = "3f0a1c0f6f5a7a0e8f3a0f0c8f7a1b2c3d4e5f60718293a4b5c6d7e8f9a0b1c2")]
+    id: String,
+    /// The label in the spec; else the recording's name when the job was submitted, and the part in use.
+    #[schema(example = "flight 12, 2 to 32.5 s")]
+    label: String,
+    role: Role,
 }
 
 #[derive(Serialize, ToSchema)]
@@ -116,6 +149,7 @@ impl JobLinks {
 
 impl JobResource {
     pub(crate) fn of(job: JobRecord) -> Self {
+        let title = job.title();
         let (mut outcome, mut reason, mut faults, mut has_result) = (None, None, Vec::new(), false);
         let mut warnings = FindingTally::default();
         match job.ending {
@@ -139,6 +173,18 @@ impl JobResource {
         Self {
             links: JobLinks::of(job.id, &job.kind),
             id: job.id,
+            title,
+            model: JobModel {
+                name: job.about.model.name,
+                id: job.about.model.id,
+            },
+            maneuvers: (job.about.maneuvers.into_iter())
+                .map(|used| JobManeuver {
+                    id: used.id,
+                    label: used.label,
+                    role: used.role,
+                })
+                .collect(),
             kind: job.kind,
             name: job.name,
             tags: job.tags,
@@ -153,6 +199,7 @@ impl JobResource {
             faults,
             has_result,
             warnings,
+            fit: job.fit,
         }
     }
 
@@ -187,6 +234,9 @@ struct ListQuery {
     /// Only those submitted after this moment (RFC 3339).
     #[param(format = DateTime, example = "2026-11-21T12:00:00Z")]
     created_after: Option<String>,
+    /// Only those that have each of these words in their name, tags, model or labels of maneuvers, upper case or lower.
+    #[param(max_length = 200, example = "flight 12")]
+    q: Option<String>,
 }
 
 /// List jobs, newest first.
@@ -210,6 +260,7 @@ async fn list_jobs(
         kind: query.kind.map(|kind| kind.name().to_string()),
         tag: query.tag,
         created_after: query.created_after.map(moment).transpose()?,
+        search: search(query.q.as_deref())?,
     };
     let page = service
         .store
