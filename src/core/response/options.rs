@@ -52,8 +52,6 @@ fn default_points() -> usize {
 const MOST_CHANNELS: usize = 16;
 const MOST_POINTS: usize = 5_000;
 const MOST_WINDOWS: usize = 10;
-/// Cross spectra of all pairs of channels at all frequencies, for one length of windows.
-const MOST_IN_ALL: usize = 1_000_000;
 const MOST_ORDER: usize = 8;
 
 impl ResponseOptions {
@@ -73,14 +71,6 @@ impl ResponseOptions {
         if !(2..=MOST_POINTS).contains(&self.points) {
             return Some(("points", format!("points must be from 2 to {MOST_POINTS}")));
         }
-        let channels = self.inputs.len() + self.outputs.len();
-        let most = MOST_IN_ALL / (channels * channels);
-        if self.points > most {
-            let message = format!(
-                "points: with {channels} channels there are at most {most}; ask for fewer, or for some of the channels"
-            );
-            return Some(("points", message));
-        }
         let are_lengths = self.windows.iter().all(|w| *w > 0.0 && w.is_finite());
         if self.windows.len() > MOST_WINDOWS || !are_lengths {
             let message =
@@ -95,35 +85,5 @@ impl ResponseOptions {
             let message = format!("a transfer function has a denominator of order 1 to {MOST_ORDER}, and a numerator of no higher one");
             ("transfer_function", message)
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn with(outputs: usize, points: usize) -> Option<(&'static str, String)> {
-        let options = ResponseOptions {
-            inputs: vec!["u".to_string()],
-            outputs: (0..outputs).map(|k| format!("y{k}")).collect(),
-            band_hz: [0.1, 2.0],
-            points,
-            windows: Vec::new(),
-            transfer_function: None,
-        };
-        options.fault()
-    }
-
-    /// 16 channels make 256 cross spectra: 3906 frequencies of them are a million.
-    #[test]
-    fn frequencies_of_all_cross_spectra_are_limited() {
-        assert_eq!(with(13, 5000), None);
-        assert_eq!(with(15, 3906), None);
-        let (field, message) = with(15, 3907).expect("a fault");
-        assert_eq!(field, "points");
-        assert!(
-            message.contains("16 channels") && message.contains("3906"),
-            "{message}"
-        );
     }
 }
