@@ -31,21 +31,34 @@ fn diagnosis(name: &str, parameters: Value) -> Diagnosis {
     diagnosis_of(&scenario(name).model, &files, parameters)
 }
 
-fn diagnosis_of(model: &str, files: &[(String, &str)], parameters: Value) -> Diagnosis {
+fn diagnosis_of(model: &str, files: &[(String, &'static str)], parameters: Value) -> Diagnosis {
     diagnosis_in("data/effects", model, files, parameters)
 }
 
 fn diagnosis_in(
     folder: &str,
     model: &str,
-    files: &[(String, &str)],
+    files: &[(String, &'static str)],
+    parameters: Value,
+) -> Diagnosis {
+    let read = |(file, role): &(String, &'static str)| {
+        let path = repository::path(&format!("{folder}/{file}"));
+        (file.clone(), std::fs::read(path).expect("a file"), *role)
+    };
+    let files: Vec<_> = files.iter().map(read).collect();
+    diagnosis_of_tables(model, &files, parameters)
+}
+
+/// Of tables with labels and roles.
+fn diagnosis_of_tables(
+    model: &str,
+    tables: &[(String, Vec<u8>, &str)],
     parameters: Value,
 ) -> Diagnosis {
     let (mut maneuvers, mut uses) = (Vec::new(), Vec::new());
-    for (file, role) in files {
-        let path = repository::path(&format!("{folder}/{file}"));
-        let maneuver = maneuver(&std::fs::read(path).expect("a file"));
-        uses.push(json!({"id": maneuver.digest(), "label": file, "role": role}));
+    for (label, table, role) in tables {
+        let maneuver = maneuver(table);
+        uses.push(json!({"id": maneuver.digest(), "label": label, "role": role}));
         maneuvers.push(maneuver);
     }
     let spec =
@@ -259,4 +272,75 @@ fn what_is_in_one_flight_alone_is_no_effect_of_all() {
     );
     let gyro = |named: &NamedEffect| named.effect.name() == "sensor_scale of r";
     assert!(!diagnosis.effects.iter().any(gyro), "{said}");
+}
+
+/// The lateral flights in which nothing is missing, each line of their tables changed.
+fn changed(change: impl Fn(usize, &str) -> String) -> Diagnosis {
+    let tables = ["aileron", "rudder"].map(|name| {
+        let path = repository::path(&format!("data/{name}.csv"));
+        let text = std::fs::read_to_string(path).expect("a file");
+        let lines: Vec<String> = (text.lines().enumerate())
+            .map(|(number, line)| change(number, line))
+            .collect();
+        (
+            name.to_string(),
+            lines.join("\n").into_bytes(),
+            "estimation",
+        )
+    });
+    diagnosis_of_tables("lateral-directional-4", &tables, json!({}))
+}
+
+/// The gyros of roll and yaw under each other's title.
+#[test]
+fn channels_under_each_others_name() {
+    let diagnosis = changed(|number, line| match number {
+        0 => (line.replace(",p[", ",?["))
+            .replace(",r[", ",p[")
+            .replace(",?[", ",r["),
+        _ => line.to_string(),
+    });
+    let said = &diagnosis.sentence;
+    assert_eq!(
+        diagnosis.effects[0].effect.name(),
+        "swapped_channels of p+r",
+        "{said}"
+    );
+    let share = diagnosis.effects[0].parameters[0].estimate;
+    assert!((share - 1.0).abs() < 0.02, "{share}");
+}
+
+/// A yaw gyro that sees a tenth of the roll rate.
+#[test]
+fn a_gyro_off_its_axis() {
+    let place = std::cell::OnceCell::new();
+    let column = |title: &str, line: &str| {
+        let mut titles = line.split(',');
+        titles
+            .position(|found| found.starts_with(title))
+            .expect("a column")
+    };
+    let diagnosis = changed(|number, line| {
+        if number == 0 {
+            place.get_or_init(|| (column("p[", line), column("r[", line)));
+            return line.to_string();
+        }
+        let &(p, r) = place.get().expect("titles come first");
+        let mut cells: Vec<String> = line.split(',').map(String::from).collect();
+        let rates = [p, r].map(|at| cells[at].parse::<f64>().expect("a number"));
+        cells[r] = (rates[1] + 0.1 * rates[0]).to_string();
+        cells.join(",")
+    });
+    let said = &diagnosis.sentence;
+    assert_eq!(
+        diagnosis.effects[0].effect.name(),
+        "sensor_cross_axis of r (p)",
+        "{said}"
+    );
+    let size = &diagnosis.effects[0].parameters[0];
+    let error = size.standard_error.expect("an error bound");
+    assert!(
+        (size.estimate - 0.1).abs() < 3.0 * error && error < 0.02,
+        "{size:?}"
+    );
 }

@@ -120,9 +120,8 @@ mod tests {
     use super::*;
     use crate::model::EditKind;
 
-    #[test]
-    fn of_all_rounds_the_reason_is_kept_that_explains_most() {
-        let refused = |ratio: Option<f64>, reason: Refusal| RefusedEffect {
+    fn refused(ratio: Option<f64>, reason: Refusal) -> RefusedEffect {
+        RefusedEffect {
             effect: Effect::edit(EditKind::SensorBias, "q", None),
             reason,
             sentence: String::new(),
@@ -130,7 +129,29 @@ mod tests {
             visible_fraction: None,
             smallest_seen: None,
             held_out: None,
+        }
+    }
+
+    /// A fit that does not converge, or ends at no size of its kind, explains what is there all the same.
+    #[test]
+    fn what_is_clear_and_was_refused_is_not_passed_over() {
+        use Refusal::{Invisible, NotFitted, NotPredictive, NotSignificant, OutOfRange, Outdone};
+        let is_told = |ratio: f64, reason: Refusal| {
+            let mut found = Found::default();
+            found.refuse(vec![refused(Some(ratio), reason)]);
+            found.clear_but_refused().is_some()
         };
+        for reason in [NotFitted, OutOfRange, NotPredictive] {
+            assert!(is_told(CLEARLY + 1.0, reason), "{reason:?}");
+            assert!(!is_told(CLEARLY - 1.0, reason), "{reason:?}");
+        }
+        for reason in [Invisible, NotSignificant, Outdone] {
+            assert!(!is_told(CLEARLY + 1.0, reason), "{reason:?}");
+        }
+    }
+
+    #[test]
+    fn of_all_rounds_the_reason_is_kept_that_explains_most() {
         let mut found = Found::default();
         for (ratio, reason) in [
             (None, Refusal::Invisible),
