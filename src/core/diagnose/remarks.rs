@@ -83,12 +83,47 @@ fn unexplained(histories: &[TimeHistory]) -> Vec<String> {
         let series = histories.iter().map(|history| &history.outputs[output]);
         let share = share_left(series.map(|s| (&*s.measured, &*s.residual)))?;
         let name = &histories[0].outputs[output].name;
+        let how_much = match share {
+            1.0.. => format!("explains no more of {name} than its mean does"),
+            _ => format!("leaves {:.0} % of the variance of {name}", 100.0 * share),
+        };
         (share > UNEXPLAINED).then(|| {
             format!(
-                "the model leaves {:.0} % of the variance of {name}: either that channel hardly moves beside its noise, or it is not what the model takes it for (its name, sign or unit)",
-                100.0 * share
+                "the model {how_much}: either that channel hardly moves beside its noise, or it is not what the model takes it for (its name, sign or unit)"
             )
         })
     };
     (0..outputs).filter_map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimate::OutputSeries;
+
+    #[test]
+    fn what_a_model_hardly_explains_is_told() {
+        let told = |residual: f64| {
+            let output = OutputSeries {
+                name: "p".into(),
+                unit: "rad/s".into(),
+                measured: vec![-1.0, 1.0],
+                model: vec![0.0; 2],
+                declared: Vec::new(),
+                residual: vec![-residual, residual],
+            };
+            let history = TimeHistory {
+                segment: "1".into(),
+                role: Role::Estimation,
+                time: vec![0.0, 0.1],
+                inputs: Vec::new(),
+                outputs: vec![output],
+            };
+            unexplained(&[history]).join("; ")
+        };
+        assert_eq!(told(0.7), "");
+        assert!(told(0.9).contains("leaves 81 % of the variance of p"));
+        assert!(told(7.0).contains("explains no more of p than its mean does"));
+        assert_eq!(unexplained(&[]), Vec::<String>::new());
+    }
 }
