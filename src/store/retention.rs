@@ -55,10 +55,14 @@ impl Project {
     /// The database cannot be written.
     pub async fn delete_job(&self, id: Uuid) -> Result<Deleted, StoreError> {
         let mut writing = self.store.begin().await?;
-        match self.hold(&mut writing, id).await? {
-            None => return Ok(Deleted::Unknown),
-            Some((status, _)) if !status.is_over() => return Ok(Deleted::NotOver),
-            Some(_) => {}
+        let refused = match self.hold(&mut writing, id).await? {
+            None => Some(Deleted::Unknown),
+            Some((status, _)) if !status.is_over() => Some(Deleted::NotOver),
+            Some(_) => None,
+        };
+        if let Some(refused) = refused {
+            writing.abandon().await?;
+            return Ok(refused);
         }
         let name = id.to_string();
         delete(writing.connection(), &name).await?;
@@ -86,6 +90,7 @@ impl Project {
             .await?;
         let jobs = u64::try_from(row.try_get::<i64, _>("jobs")?).unwrap_or(0);
         if jobs > 0 {
+            writing.abandon().await?;
             return Ok(Deleted::InUse(jobs));
         }
         sqlx::query("DELETE FROM maneuvers WHERE project = $1 AND id = $2")

@@ -40,6 +40,12 @@ impl Writing {
         }
         Ok(())
     }
+
+    /// Gives up what was begun, and what it holds, before it returns. One that is only dropped holds its rows until its
+    /// connection is used again: who passes over rows that are held (`SKIP LOCKED`) would not see them.
+    pub(super) async fn abandon(self) -> Result<(), StoreError> {
+        Ok(self.transaction.rollback().await?)
+    }
 }
 
 impl Store {

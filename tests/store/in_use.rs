@@ -10,6 +10,7 @@ on_both! {
     a_job_is_not_accepted_without_its_maneuver,
     submitting_and_deleting_at_once_never_both_succeed,
     what_is_old_stays_where_a_job_was_submitted_at_once,
+    a_deletion_that_is_refused_holds_no_job_back,
 }
 
 async fn uploaded(project: &Project) -> String {
@@ -90,5 +91,16 @@ async fn what_is_old_stays_where_a_job_was_submitted_at_once(bench: Bench) {
         expired.unwrap();
         let is_there = project.maneuver(&id).await.unwrap().is_some();
         assert_eq!(submitted.is_ok(), is_there, "{submitted:?}");
+    }
+}
+
+/// A worker passes over jobs that another transaction holds: one that was given up must not hold them any more.
+async fn a_deletion_that_is_refused_holds_no_job_back(bench: Bench) {
+    for number in 0..50 {
+        let job = bench.submit("job").await;
+        let refused = bench.project().delete_job(job).await.unwrap();
+        assert_eq!(refused, Deleted::NotOver);
+        let worker = format!("worker {number}");
+        assert_eq!(bench.claim(&worker).await.job, job);
     }
 }
