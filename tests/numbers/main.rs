@@ -26,6 +26,7 @@ mod campaign;
 mod catalog;
 mod catalog_published;
 mod channel_formulas;
+mod corners;
 mod corrected;
 mod coverage;
 mod delays;

@@ -30,6 +30,8 @@ pub struct Solution {
     pub theta: Vec<f64>,
     /// R, outputs by outputs, SI units squared.
     pub covariance: DMatrix<f64>,
+    /// How far a further step would move the estimate, standard errors; none where there is no such step.
+    pub distance: Option<f64>,
     /// The report of it.
     pub estimate: Estimate,
     /// Measured and modelled outputs of each segment.
@@ -108,6 +110,7 @@ pub(crate) fn answer_to(
     });
     let accuracy = Accuracy::new(&problem.unknowns, &at.information, &at.held, &bounds);
     let accuracy = accuracy.seen_from(asked.theta.len(), asked.solved);
+    let distance = stopped.distance();
     let ending = Ending {
         problem,
         theta: &at.theta,
@@ -131,6 +134,7 @@ pub(crate) fn answer_to(
     Solution {
         theta: asked.theta,
         covariance: at.weighting.covariance,
+        distance,
         estimate,
         histories,
     }

@@ -14,6 +14,12 @@ use crate::estimate::report::progress::Observer;
 /// A minimum is another one where -ln L differs by more than this.
 const ANOTHER: f64 = 0.1;
 
+/// A step that is shorter than this share of the one that the quadratic model promises is one on the spot, ...
+const ON_THE_SPOT: f64 = 1e-3;
+
+/// ... and after so many, one after the other, a method leads nowhere.
+const NOWHERE: usize = 10;
+
 /// Goes down from a θ until there is a reason to stop. Where one method has not ended when half of the budget is used up,
 /// the other begins at the start again.
 ///
@@ -45,6 +51,8 @@ pub(crate) fn descend_with<'p, E: Evaluate<'p>>(
     let mut taken = Taken::default();
     let mut iteration = 0;
     let mut spent: Option<(Iterate, f64)> = None;
+    let mut on_the_spot = 0;
+    let mut has_turned = false;
     let mut stopped = loop {
         if observer(&current.report(problem, iteration, &taken)).is_break() {
             break Stopped::OnRequest;
@@ -68,6 +76,13 @@ pub(crate) fn descend_with<'p, E: Evaluate<'p>>(
             iteration += 1;
             continue;
         }
+        if on_the_spot == NOWHERE {
+            if has_turned {
+                break Stopped::Corner { distance };
+            }
+            search = Search::new(problem, fallback.turn());
+            (on_the_spot, has_turned) = (0, true);
+        }
         let mut found = search.onward(&mut evaluator, &current, newton);
         if let Err(nothing) = found {
             search = Search::new(problem, fallback.turn());
@@ -78,6 +93,10 @@ pub(crate) fn descend_with<'p, E: Evaluate<'p>>(
             Ok(found) => {
                 (current, taken) = *found;
                 iteration += 1;
+                on_the_spot = match taken.length < ON_THE_SPOT * distance {
+                    true => on_the_spot + 1,
+                    false => 0,
+                };
             }
             Err(Nothing { in_range: true }) => break Stopped::Stalled { distance },
             Err(Nothing { in_range: false }) => break Stopped::Diverged,

@@ -5,15 +5,36 @@ use crate::estimate::report::iteration::Outcome;
 
 /// Why the loop ended.
 pub(crate) enum Stopped {
-    Minimum { distance: f64 },
-    Budget { distance: f64 },
-    Stalled { distance: f64 },
+    Minimum {
+        distance: f64,
+    },
+    Budget {
+        distance: f64,
+    },
+    Stalled {
+        distance: f64,
+    },
+    /// Step after step came to next to nothing of what it promised.
+    Corner {
+        distance: f64,
+    },
     Diverged,
     NoDirection,
     OnRequest,
 }
 
 impl Stopped {
+    /// How far a further step would move the estimate, standard errors.
+    pub(crate) fn distance(&self) -> Option<f64> {
+        match *self {
+            Self::Minimum { distance }
+            | Self::Budget { distance }
+            | Self::Stalled { distance }
+            | Self::Corner { distance } => Some(distance),
+            Self::Diverged | Self::NoDirection | Self::OnRequest => None,
+        }
+    }
+
     /// The outcome, and what to say of it.
     pub(crate) fn say(
         &self,
@@ -37,6 +58,12 @@ impl Stopped {
             Self::Stalled { distance } => {
                 let reason = format!(
                     "no step lowers the cost any more, though the next one would be {distance:.1e} standard errors long; try other start values"
+                );
+                (Outcome::Stalled, reason)
+            }
+            Self::Corner { distance } => {
+                let reason = format!(
+                    "steps come to nothing, though the next one would be {distance:.1e} standard errors long: the cost has a corner here, as a limit or a play makes it, or the floor of a narrow bend"
                 );
                 (Outcome::Stalled, reason)
             }

@@ -43,6 +43,7 @@ pub(super) fn answer(
     let layout = &evaluator.layout;
     let theta = &at.xi[..layout.parameters];
     let accuracy = Accuracy::new(&problem.unknowns, &at.information, &at.held, bounds);
+    let distance = stopped.distance();
     let ending = Ending {
         problem,
         theta,
@@ -69,6 +70,7 @@ pub(super) fn answer(
     Solution {
         theta: theta.to_vec(),
         covariance: at.weighting.covariance.clone(),
+        distance,
         estimate,
         histories,
     }

@@ -75,6 +75,7 @@ pub(super) fn answer(
         true => shown,
         false => histories_of(base, |_, segment| segment.measured.clone()),
     };
+    let distance = stopped.distance();
     let ending = Ending {
         problem: &seen,
         theta: &at.theta[..parameters],
@@ -104,6 +105,7 @@ pub(super) fn answer(
     }
     Solution {
         covariance: at.weighting.covariance.clone(),
+        distance,
         theta: asked.theta,
         histories: if is_shown { fitted } else { Vec::new() },
         estimate,

@@ -68,6 +68,7 @@ fn fit(
         covariance,
         estimate: mut result,
         mut histories,
+        distance: _,
     } = estimate(problem, watcher).map_err(|why| no_start(problem, why))?;
     predicted(
         problem,

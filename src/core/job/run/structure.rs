@@ -58,6 +58,7 @@ pub fn run_structure(
         covariance,
         estimate: mut result,
         mut histories,
+        distance: _,
     } = estimate(&problem, &mut |progress| match stopped {
         true => ControlFlow::Break(()),
         false => watcher(StructureProgress::Estimation(progress)),
