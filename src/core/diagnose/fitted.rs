@@ -25,6 +25,8 @@ pub(super) struct Fitted {
     pub estimate: Estimate,
     /// Over [`Layout::of`] the problem, at θ.
     pub residual: Vec<f64>,
+    /// How far from its minimum the estimation ended, standard errors.
+    distance: Option<f64>,
 }
 
 /// Trials are stopped at this many standard errors from their minimum: 1e-6 of a unit of the likelihood ratio.
@@ -33,6 +35,9 @@ const TRIAL_ITERATIONS: usize = 30;
 
 /// A fit that is to be reported goes on until it has converged, or this often.
 const SETTLING_ITERATIONS: usize = 100;
+
+/// A fit that stalls within so many standard errors of its minimum is there: 2 ln L would grow by less than 1.
+const NEAR: f64 = 1.0;
 
 impl Fitted {
     /// A quick fit from given values.
@@ -102,9 +107,18 @@ impl Fitted {
             theta: solution.theta.clone(),
             covariance: solution.covariance.clone(),
             estimate: solution.estimate.clone(),
+            distance: solution.distance,
             document,
             problem,
         }
+    }
+
+    /// Whether it is at a minimum, or so near that the way to it changes nothing: a limit or a play makes corners in the cost, where
+    /// no derivative vanishes.
+    pub(super) fn is_settled(&self) -> bool {
+        let outcome = self.estimate.outcome;
+        let is_near = self.distance.is_some_and(|distance| distance < NEAR);
+        outcome.is_minimum() || (outcome == Outcome::Stalled && is_near)
     }
 
     /// The values of its parameters, for another fit to start from.

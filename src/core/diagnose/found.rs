@@ -8,7 +8,7 @@ use super::watch::{Stopped, Watcher, tell};
 use crate::model::Added;
 
 /// A likelihood ratio that no chance makes, however many candidates there are.
-const CLEARLY: f64 = 40.0;
+pub(super) const CLEARLY: f64 = 40.0;
 
 /// Effects that were accepted, in their order, and candidates that were not, with the reason.
 #[derive(Default)]

@@ -192,7 +192,7 @@ fn settle(case: &Case, trial: &Trial) -> Result<Fitted, Objection> {
     let document = trial.likeliest.document.clone();
     let settled = Fitted::settled(case, document, &trial.likeliest.values());
     let settled = settled.map_err(|why| (Refusal::NotFitted, why.to_string()))?;
-    if settled.estimate.outcome.is_minimum() {
+    if settled.is_settled() {
         Ok(settled)
     } else {
         let why = format!(

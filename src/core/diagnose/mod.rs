@@ -20,6 +20,7 @@ mod difference;
 mod disturbed;
 mod effect;
 mod elsewhere;
+mod exchange;
 mod fitted;
 mod flight;
 mod found;
@@ -30,6 +31,8 @@ mod knowledge;
 mod lines;
 mod null_model;
 mod outliers;
+#[cfg(test)]
+mod pairs;
 mod passed;
 mod plausible;
 mod polish;
@@ -44,6 +47,7 @@ mod review;
 mod rival;
 mod round;
 mod screen;
+mod search;
 mod sentence;
 mod share_left;
 mod size;
@@ -58,6 +62,7 @@ mod trial;
 #[cfg(test)]
 mod truth;
 mod turbulence;
+mod two_at_once;
 mod unmodelled;
 mod verdict;
 mod watch;
@@ -88,89 +93,29 @@ use fitted::Fitted;
 use found::Found;
 use review::review;
 use rival::Rival;
-use round::{MOST_ROUNDS, Round, round};
-use turbulence::Disturbed;
+use search::Search;
 use watch::{Stopped, ask};
-
-/// How often the declared model's fit may turn out to have ended in a false minimum.
-const MOST_RENEWALS: usize = 2;
 
 /// Finds what the declared model of a case lacks.
 ///
 /// # Errors
 /// The declared model cannot be fitted at all, or `watcher` stopped it.
 pub fn diagnose(case: &Case, watcher: &mut Watcher<'_>) -> Result<Conclusion, Inconclusive> {
-    let mut declared = Declared::of(case, watcher)?;
+    let declared = Declared::of(case, watcher)?;
     let mut found = Found::default();
     let mut base = declared.fitted.clone();
     let cleaned = clean(case, &declared.fitted, &mut base, &mut found, watcher)?;
     let case = cleaned.as_ref().unwrap_or(case);
-    let mut start = base.clone();
-    let catalogue = candidates::candidates(case, &declared.fitted.problem.model);
-    let mut pool = catalogue.clone();
-    // of the last fit, where it was looked for
-    let mut picture = None;
-    let mut number = 1;
-    while number <= MOST_ROUNDS {
-        let left: Vec<Effect> = (pool.iter())
-            .filter(|effect| !found.accepted.iter().any(|a| a.effect.rules_out(effect)))
-            .cloned()
-            .collect();
-        let round = round(case, &base, left, &found.added(), number, watcher)?;
-        let Round {
-            accepted,
-            refused,
-            others,
-            threshold,
-        } = round;
-        let Some(accepted) = accepted else {
-            found.refuse(refused);
-            if picture.is_some() {
-                break;
-            }
-            // what the catalogue has no word for may still have a form
-            ask(watcher)?;
-            let seen = unmodelled::found(case, &base);
-            pool = seen
-                .as_ref()
-                .map_or_else(Vec::new, |seen| seen.beyond(&catalogue));
-            case.knowledge.apply(&mut pool);
-            picture = Some(seen);
-            if pool.is_empty() {
-                break;
-            }
-            continue;
-        };
-        picture = None;
-        pool.clone_from(&catalogue);
-        // what made the difference may be where the fit began, not the effect
-        if found.accepted.is_empty()
-            && !accepted.effect.is_noise()
-            && declared.renewals() < MOST_RENEWALS
-            && let Some(lower) = declared.lower(case, &accepted.fitted, watcher)
-        {
-            base = lower.fitted.clone();
-            start = base.clone();
-            declared = lower;
-            continue;
-        }
-        found.refuse(refused);
-        if accepted.effect.is_noise() {
-            let disturbed = Disturbed {
-                case,
-                calm: &base,
-                accepted,
-                others,
-                threshold,
-                number,
-            };
-            base = turbulence::settle(disturbed, &mut found, watcher)?;
-            break;
-        }
-        base = accepted.fitted.clone();
-        found.accept(accepted, number, watcher)?;
-        number += 1;
-    }
+    let mut search = Search::new(case, declared, base, found);
+    search.run(watcher)?;
+    let Search {
+        declared,
+        start,
+        mut base,
+        mut found,
+        picture,
+        ..
+    } = search;
     let standing = found.accepted.len();
     review(case, &declared.fitted, &mut base, &mut found);
     let picture = match picture {

@@ -88,7 +88,7 @@ fn needless(case: &Case, declared: &Fitted, base: &Fitted, found: &Found) -> Opt
 }
 
 /// The document with all effects but one. What is a way to fit rather than an edit is not taken out.
-fn without(declared: &Fitted, found: &Found, at: usize) -> Option<ModelDocument> {
+pub(super) fn without(declared: &Fitted, found: &Found, at: usize) -> Option<ModelDocument> {
     if found.accepted[at].effect.edits.is_empty() {
         return None;
     }
@@ -103,7 +103,7 @@ fn without(declared: &Fitted, found: &Found, at: usize) -> Option<ModelDocument>
 
 /// The parameters that each effect adds, now that another is gone: a name that was numbered, because the other had
 /// taken it, is free again.
-fn name_again(declared: &ModelDocument, accepted: &mut [Accepted]) {
+pub(super) fn name_again(declared: &ModelDocument, accepted: &mut [Accepted]) {
     let mut document = declared.clone();
     for accepted in accepted {
         if let Ok(with) = accepted.effect.apply(&document) {
