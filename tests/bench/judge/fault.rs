@@ -22,7 +22,7 @@ impl Answer {
         }
     }
 
-    /// Whether kind, targets (in any order) and term are these; terms are compared without blanks.
+    /// Whether kind, targets (in any order) and term are these; terms without blanks, and their factors in any order.
     pub(crate) fn is(&self, kind: &str, target: &str, term: Option<&str>) -> bool {
         let targets = |text: &str| {
             let mut all: Vec<String> = text.split('+').map(|t| t.trim().to_string()).collect();
@@ -30,9 +30,12 @@ impl Answer {
             all
         };
         let plain = |text: &str| {
-            text.chars()
-                .filter(|c| !c.is_whitespace())
-                .collect::<String>()
+            let mut factors: Vec<String> = text
+                .split('*')
+                .map(|factor| factor.split_whitespace().collect())
+                .collect();
+            factors.sort();
+            factors
         };
         let same_term = match (&self.term, term) {
             (Some(own), Some(term)) => plain(own) == plain(term),

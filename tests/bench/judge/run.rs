@@ -11,7 +11,7 @@ use crate::noise::Colour;
 use crate::oracle;
 use crate::random::Random;
 use crate::replay::Replay;
-use crate::strength::{size, worth};
+use crate::strength::{hide_each_other, size, worth};
 use crate::verdict::{Judge, Outcome};
 
 /// One case and its answer.
@@ -123,6 +123,11 @@ pub(crate) fn run(design: &Design, seed: u64, manner: &Manner<'_>) -> Line {
         [(_, worth)] => worth,
         _ => worth(&setting, &sized),
     };
+    if let ([(_, Some(one)), (_, Some(other))], Some(both)) = (&found[..], line.worth)
+        && hide_each_other(*one, *other, both)
+    {
+        return line;
+    }
     line.outcome = Outcome::NotTestable;
     let Some(recordings) = setting.flown(&sized, true) else {
         return line;

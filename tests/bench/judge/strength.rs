@@ -103,6 +103,15 @@ fn search(
     None
 }
 
+/// Whether one of two faults, worth so much alone, is worth less beside the other than the weakest that is asked for: what
+/// both leave is the sum of what each leaves, so that their worths are squares of lengths, and those of the sum give the
+/// angle between them. Two arms that cancel are no case.
+pub(crate) fn hide_each_other(one: f64, other: f64, both: f64) -> bool {
+    let cosine = (both - one - other) / (2.0 * (one * other).sqrt());
+    let beside = one.min(other) * (1.0 - (cosine * cosine).min(1.0));
+    beside < Strength::Weak.range().0
+}
+
 /// Twice the logarithm of the likelihood ratio of knowing the faults: what is left of noise-free flights when the
 /// declared model has done what it can.
 pub(crate) fn worth(setting: &Setting, sized: &Sized) -> Option<f64> {
