@@ -133,13 +133,16 @@ impl Fitted {
         values
     }
 
-    /// Those of the parameters added that stand at a bound of their range.
-    pub(super) fn at_bound<'a>(&self, added: &'a [Added]) -> Vec<&'a Added> {
-        let is_at_bound = |added: &&Added| {
+    /// Those of the parameters added that stand at a bound of their range, with the bound.
+    pub(super) fn at_bound<'a>(&self, added: &'a [Added]) -> Vec<(&'a Added, Bound)> {
+        let bound = |added: &'a Added| {
             let names = (0..self.theta.len()).map(|place| &self.problem.parameter(place).name);
-            (names.zip(&self.bounds)).any(|(name, bound)| *name == added.name && bound.is_some())
+            let mut bounds = names.zip(&self.bounds);
+            let (_, bound) =
+                bounds.find(|(name, bound)| **name == added.name && bound.is_some())?;
+            Some((added, (*bound)?))
         };
-        added.iter().filter(is_at_bound).collect()
+        added.iter().filter_map(bound).collect()
     }
 
     /// ln L of its residuals with the noise that suits them, its orders paid for.

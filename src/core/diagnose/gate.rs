@@ -17,7 +17,7 @@ use super::stack::Layout;
 use super::swapped;
 use super::threshold::Threshold;
 use super::trial::Trial;
-use crate::estimate::Role;
+use crate::estimate::{Bound, Role};
 use crate::model::{Added, AddedRole, EditKind};
 
 /// A size within so many standard errors of nothing is nothing that one can tell an engineer of.
@@ -125,16 +125,24 @@ pub(super) fn holds(effect: &Effect, settled: &Fitted, added: &[Added]) -> Resul
 
 fn within_range(effect: &Effect, fitted: &Fitted, added: &[Added]) -> Result<(), Objection> {
     let mut at_bound = fitted.at_bound(added);
-    at_bound.retain(|added| decides(effect, added.role));
+    at_bound.retain(|(added, bound)| decides(effect, added.role, *bound));
     match at_bound.first() {
         None => Ok(()),
-        Some(added) => Err((
+        Some((added, _)) => Err((
             Refusal::OutOfRange,
             format!(
                 "its estimate ends at a bound of its physical range ({})",
-                added.name
+                at_bound_of(fitted, added)
             ),
         )),
+    }
+}
+
+/// A parameter that stands at a bound, with its value.
+fn at_bound_of(fitted: &Fitted, added: &Added) -> String {
+    match fitted.sizes(std::slice::from_ref(added)).first() {
+        Some(size) => format!("{} = {:.3} {}", size.name, size.own_units(), size.unit),
+        None => added.name.clone(),
     }
 }
 
@@ -355,11 +363,17 @@ fn plain_gain(
 }
 
 /// Whether a parameter at its bound speaks against the effect: how steeply and how late the flow separates is hardly seen
-/// in many a stall, at which angle it does is.
-fn decides(effect: &Effect, role: AddedRole) -> bool {
-    use AddedRole::{Delay, Steepness, TimeConstant};
-    let is_stall = effect.kind == EffectKind::Edit(EditKind::StallHysteresis);
-    !(is_stall && matches!(role, Steepness | TimeConstant | Delay))
+/// in many a stall, at which angle it does is; and how lightly a mode is damped is not seen in a short flight, while one
+/// that is damped heavily is none.
+fn decides(effect: &Effect, role: AddedRole, bound: Bound) -> bool {
+    use AddedRole::{Damping, Delay, Steepness, TimeConstant};
+    match effect.kind {
+        EffectKind::Edit(EditKind::StallHysteresis) => {
+            !matches!(role, Steepness | TimeConstant | Delay)
+        }
+        EffectKind::Edit(EditKind::StructuralMode) => (role, bound) != (Damping, Bound::Lower),
+        _ => true,
+    }
 }
 
 #[cfg(test)]

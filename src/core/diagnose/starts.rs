@@ -11,6 +11,11 @@ use crate::model::{Added, AddedRole, EditKind, Edited, Start};
 /// A gust is looked for from no more starts.
 const MOST_STARTS: usize = 200;
 
+/// Frequencies of a mode, as shares of that of its edit: so near each other that one lies within the resonance of any mode.
+const MODES: [f64; 12] = [
+    0.36, 0.45, 0.56, 0.7, 0.88, 1.1, 1.37, 1.72, 2.15, 2.7, 3.4, 4.2,
+];
+
 /// Whether a kind has no derivative at no effect, so that a screen cannot see it.
 pub(super) fn is_tried_outright(kind: EffectKind) -> bool {
     use EditKind::{
@@ -46,7 +51,7 @@ pub(super) fn starts(case: &Case, effect: &Effect, edited: &Edited) -> Vec<Value
             return first_at(&edited.added, &in_samples(case, &late));
         }
         EditKind::UnsteadyAero | EditKind::StallHysteresis => &[0.4, 1.0, 2.5],
-        EditKind::StructuralMode => &[0.6, 0.8, 1.0, 1.3, 1.7, 2.2, 2.9],
+        EditKind::StructuralMode => &MODES,
         EditKind::SwappedChannels => return vec![swapped::start(edited)],
         EditKind::Gust => return gust_starts(case, effect, &edited.added),
         _ => return vec![Values::new()],

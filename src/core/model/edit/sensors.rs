@@ -200,7 +200,7 @@ pub(super) fn structural_mode(sheet: &mut Sheet) -> Result<(), EditError> {
     sheet.add(
         &damping,
         AddedRole::Damping,
-        unknown("-", 0.02, Some((0.001, 0.3)), words),
+        unknown("-", 0.1, Some((0.001, 0.3)), words),
     );
     let first = sheet.first_of(driver);
     let eta = sheet.free(&format!("{target}_mode"));
