@@ -92,7 +92,11 @@ async fn work_on(store: &Store, claim: &Arc<Claim>, shutdown: &CancellationToken
     }
     let stop = Stop::default();
     let run = async {
-        let maneuvers = match load(store, claim).await {
+        let loaded = tokio::select! {
+            loaded = load(store, claim) => loaded,
+            () = stop.overdue() => Err(Unanswered::Interrupted),
+        };
+        let maneuvers = match loaded {
             Ok(maneuvers) => maneuvers,
             Err(unanswered) => return (Err(unanswered), Told::default()),
         };
@@ -102,12 +106,16 @@ async fn work_on(store: &Store, claim: &Arc<Claim>, shutdown: &CancellationToken
             move || solve(&claim.spec, &claim.model, &maneuvers, &stop, &log)
         });
         let told = record(store, claim, events, &stop).await;
-        let answered = solver.await;
-        (answered.unwrap_or_else(|error| Err(error.into())), told)
+        let answered = tokio::select! {
+            answered = solver => answered.unwrap_or_else(|error| Err(error.into())),
+            () = stop.overdue() => Err(Unanswered::Interrupted),
+        };
+        (answered, told)
     };
     tokio::select! {
         (answered, told) = run => settle(answered, told, stop.asked()),
         settled = watch_over(store, claim, &stop, shutdown) => settled,
+        never = stop.press() => match never {},
     }
 }
 
@@ -139,11 +147,17 @@ async fn record(
     stop: &Stop,
 ) -> Told {
     let mut told = Told::default();
-    while let Some(event) = events.recv().await {
+    let mut next = async || {
+        tokio::select! {
+            event = events.recv() => event,
+            () = stop.overdue() => None,
+        }
+    };
+    while let Some(event) = next().await {
         told.events.push(event);
         let gathered = async {
             while told.events.len() < LOG_CAPACITY {
-                match events.recv().await {
+                match next().await {
                     Some(event) => told.events.push(event),
                     None => return true,
                 }
@@ -243,6 +257,13 @@ fn settle(answered: Result<Answer, Unanswered>, told: Told, asked: Option<Reason
             ..failed("solver", &text)
         },
         Err(Unanswered::Dropped) => return Settled::Released,
+        Err(Unanswered::Interrupted) if asked == Some(Reason::Shutdown) => {
+            return Settled::Released;
+        }
+        Err(Unanswered::Interrupted) => JobEnd {
+            told,
+            ..JobEnd::without_result(EventBody::cancelled_without_result())
+        },
     };
     Settled::Ended(ending)
 }

@@ -7,6 +7,7 @@ mod common {
     pub(crate) mod coverage;
     pub(crate) mod estimation;
     pub(crate) mod flight_data;
+    pub(crate) mod large_jobs;
     pub(crate) mod plans;
     pub(crate) mod preprocessing;
     pub(crate) mod printed_adjoint;
@@ -56,6 +57,7 @@ mod sensitivities;
 mod source_code;
 mod starts;
 mod steps;
+mod stops;
 mod structure;
 mod trajectories;
 mod unstable;

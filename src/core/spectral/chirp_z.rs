@@ -6,6 +6,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use crate::stop;
 use num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 
@@ -53,6 +54,7 @@ impl ChirpZ {
 
     /// Of `samples` values.
     pub fn of(&self, signal: &[f64]) -> Vec<Complex64> {
+        stop::check();
         let mut values = vec![Complex64::ZERO; self.kernel.len()];
         let turned = signal.iter().take(self.samples).zip(&self.into);
         for (value, (x, chirp)) in values.iter_mut().zip(turned) {

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::candidates::{Candidates, DEPENDENT};
 use super::report::Term;
+use crate::stop::check;
 
 /// ŷ = Xθ̂ by QR decomposition.
 pub(super) struct Fit {
@@ -108,6 +109,7 @@ impl Fit {
 
     /// What of a column the terms do not explain already.
     pub(super) fn left_of(&self, column: &DVector<f64>) -> DVector<f64> {
+        check();
         column - &self.basis * self.basis.tr_mul(column)
     }
 

@@ -18,16 +18,23 @@ const CRATES: [(&str, &str); 2] = [
 ];
 
 /// Each room and those it may use. An arrow that is not here is a change of design: make it on purpose.
-const ROOMS: [(&str, &[&str]); 17] = [
-    ("flight", &[]),
-    ("spectral", &[]),
-    ("structure", &[]),
+const ROOMS: [(&str, &[&str]); 18] = [
+    ("stop", &[]),
+    ("flight", &["stop"]),
+    ("spectral", &["stop"]),
+    ("structure", &["stop"]),
     ("response", &["spectral", "flight"]),
     ("ingest", &["flight"]),
-    ("model", &["flight"]),
-    ("simulate", &["model", "flight"]),
-    ("estimate", &["simulate", "spectral", "model", "flight"]),
-    ("diagnose", &["estimate", "simulate", "model", "flight"]),
+    ("model", &["flight", "stop"]),
+    ("simulate", &["model", "flight", "stop"]),
+    (
+        "estimate",
+        &["simulate", "spectral", "model", "flight", "stop"],
+    ),
+    (
+        "diagnose",
+        &["estimate", "simulate", "model", "flight", "stop"],
+    ),
     ("dynamics", &["estimate", "simulate", "model", "flight"]),
     (
         "job",
@@ -39,10 +46,14 @@ const ROOMS: [(&str, &[&str]); 17] = [
             "simulate",
             "model",
             "flight",
+            "stop",
         ],
     ),
     ("store", &["job", "estimate", "model", "flight", "ingest"]),
-    ("work", &["store", "job", "estimate", "model", "flight"]),
+    (
+        "work",
+        &["store", "job", "estimate", "model", "flight", "stop"],
+    ),
     (
         "dashboard",
         &[
