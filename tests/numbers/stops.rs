@@ -132,8 +132,8 @@ fn a_derivative_study() {
 /// Samples of jobs that are run whole: of what comes last, each second that it takes over [`LONG`] is as much less here.
 const SHORT: usize = 40_000;
 
-/// Of a job of so few samples: a loop without an ask that takes more than a second and a half over a million is heard.
-const SHORTEST: Duration = Duration::from_millis(60);
+/// Of a job of so few samples: a loop without an ask that takes more than a second over a million is heard.
+const SHORTEST: Duration = Duration::from_millis(40);
 
 #[test]
 fn whole_estimations() {

@@ -5,6 +5,9 @@
 //! loop was about: a descent to its best iterate, [`StopFlag::heed`] to no result at all. No loop has a way back of its own,
 //! and nothing that is asked changes a number.
 //!
+//! How long work of each kind goes on between two asks, in CPU time, is held by `tests/numbers/stops.rs`: it listens to
+//! each ask ([`StopFlag::heard_by`]), and says where the ask came that was longest waited for.
+//!
 //! The flag belongs to the thread that heeds it. Work that is shared out to other threads takes it along ([`shared`]).
 
 mod flag;
