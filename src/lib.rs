@@ -85,7 +85,7 @@
 //! 4. Its line in the list of pages in `README.md`.
 
 pub use trimtab_core::{
-    diagnose, dynamics, estimate, flight, ingest, job, model, response, simulate, structure,
+    diagnose, dynamics, estimate, flight, ingest, job, model, response, simulate, stop, structure,
 };
 
 pub mod cli;

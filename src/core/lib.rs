@@ -17,6 +17,8 @@
 //! | X, F, PSE, PRESS | which terms an equation needs | [`structure`] |
 //! | S⊥, ψ, the effect that is missing | screening, trials, verdict | [`diagnose`] |
 //!
+//! [`stop`] is how each of these is told to end, from within its loops.
+//!
 //! [`job`] is what may be asked of all this in one document, and the events by which its progress is told. Arrows go
 //! one way: `job → diagnose → estimate → simulate → model → flight`, `job → dynamics → estimate`,
 //! `estimate, response → spectral`, `job → structure`, `ingest, structure → flight`. Everything here is synchronous
@@ -89,4 +91,5 @@ pub mod model;
 pub mod response;
 pub mod simulate;
 pub mod spectral;
+pub mod stop;
 pub mod structure;

@@ -8,6 +8,7 @@
 
 mod clock;
 mod company;
+mod ending;
 mod maker;
 mod persist;
 mod run;

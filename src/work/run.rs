@@ -11,13 +11,13 @@ use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
 use tokio_util::sync::CancellationToken;
 
 use super::company::{Company, Seat};
+use super::ending::{JobEnd, Settled, Told, failed, settle};
 use super::persist::persist;
-use super::solve::{Answer, Unanswered, solve};
+use super::solve::{Unanswered, solve};
 use super::stop::{Reason, Stop};
-use crate::estimate::Outcome;
 use crate::flight::Maneuver;
 use crate::job::{EventBody, Fault, Status};
-use crate::store::{Claim, LEASE, NotLoaded, ResultParts, Signal, Store, StoreError};
+use crate::store::{Claim, LEASE, NotLoaded, Signal, Store, StoreError};
 
 /// How long a solver may take to notice that the process ends; the job is released in any case.
 const SHUTDOWN_GRACE: Duration = Duration::from_secs(2);
@@ -40,7 +40,7 @@ pub(super) async fn run_job(
     // kept until the end is written
     let mut seat = Some(seat);
     let settled = work_on(store, &claim, (company, &mut seat), &samples, shutdown).await;
-    let how = how_it_ended(&settled);
+    let how = settled.how();
     let written = match settled {
         Settled::Ended(ending) => end(store, &claim, ending).await,
         Settled::Released => {
@@ -71,55 +71,12 @@ pub(super) async fn run_job(
     }
 }
 
-/// The outcome of a job that came to a result; else its last event.
-fn how_it_ended(settled: &Settled) -> String {
-    match settled {
-        Settled::Ended(JobEnd { event, .. }) => match event {
-            EventBody::Succeeded { outcome, .. } => outcome.name().to_string(),
-            event => event.name().to_string(),
-        },
-        Settled::Released => "released".to_string(),
-        Settled::Abandoned => "abandoned".to_string(),
-    }
-}
-
 /// Ends a job on which the worker itself failed: it would do so again.
 pub(super) async fn give_up(store: &Store, claim: &Claim) {
     let ending = failed("worker", &"its log tells more").event;
     if let Err(error) = store.finish(claim, 0, &[], ending, None).await {
         tracing::error!(job = %claim.job, %error, "the job's end was not written");
     }
-}
-
-enum Settled {
-    Ended(JobEnd),
-    Released,
-    Abandoned,
-}
-
-struct JobEnd {
-    /// What was told last and is not written yet: it is, together with the end.
-    told: Told,
-    event: EventBody,
-    result: Option<ResultParts>,
-}
-
-impl JobEnd {
-    fn without_result(event: EventBody) -> Self {
-        Self {
-            told: Told::default(),
-            event,
-            result: None,
-        }
-    }
-}
-
-/// What the solver told, behind what is written.
-#[derive(Default)]
-struct Told {
-    /// How many events are written.
-    before: usize,
-    events: Vec<EventBody>,
 }
 
 async fn work_on(
@@ -135,12 +92,17 @@ async fn work_on(
     }
     let stop = Stop::default();
     let run = async {
-        if claim.is_suspect
-            && let Err(error) = be_alone(store, claim, company, seat).await
-        {
-            return (Err(error.into()), Told::default());
-        }
-        let maneuvers = match load(store, claim).await {
+        let ready = async {
+            if claim.is_suspect {
+                be_alone(store, claim, company, seat).await?;
+            }
+            load(store, claim).await
+        };
+        let ready = tokio::select! {
+            ready = ready => ready,
+            () = stop.overdue() => Err(Unanswered::Interrupted),
+        };
+        let maneuvers = match ready {
             Ok(maneuvers) => maneuvers,
             Err(unanswered) => return (Err(unanswered), Told::default()),
         };
@@ -155,12 +117,16 @@ async fn work_on(
             told = record(store, claim, events, &stop) => told,
             never = end_in_time(company, &stop) => match never {},
         };
-        let answered = solver.await;
-        (answered.unwrap_or_else(|error| Err(error.into())), told)
+        let answered = tokio::select! {
+            answered = solver => answered.unwrap_or_else(|error| Err(error.into())),
+            () = stop.overdue() => Err(Unanswered::Interrupted),
+        };
+        (answered, told)
     };
     tokio::select! {
         (answered, told) = run => settle(answered, told, stop.asked()),
         settled = watch_over(store, claim, &stop, shutdown) => settled,
+        never = stop.press() => match never {},
     }
 }
 
@@ -213,11 +179,17 @@ async fn record(
     stop: &Stop,
 ) -> Told {
     let mut told = Told::default();
-    while let Some(event) = events.recv().await {
+    let mut next = async || {
+        tokio::select! {
+            event = events.recv() => event,
+            () = stop.overdue() => None,
+        }
+    };
+    while let Some(event) = next().await {
         told.events.push(event);
         let gathered = async {
             while told.events.len() < LOG_CAPACITY {
-                match events.recv().await {
+                match next().await {
                     Some(event) => told.events.push(event),
                     None => return true,
                 }
@@ -272,64 +244,6 @@ async fn watch_over(
     }
 }
 
-/// What the run's end means for the job.
-fn settle(answered: Result<Answer, Unanswered>, told: Told, asked: Option<Reason>) -> Settled {
-    if asked == Some(Reason::LeaseLost) {
-        return Settled::Abandoned;
-    }
-    let stopped = |answer: &Answer| answer.outcome == Outcome::Cancelled;
-    let ending = match answered {
-        Ok(answer) if stopped(&answer) && asked == Some(Reason::Shutdown) => {
-            return Settled::Released;
-        }
-        Ok(answer) if stopped(&answer) => JobEnd {
-            told,
-            event: EventBody::Cancelled {
-                has_result: true,
-                findings: answer.findings,
-            },
-            result: Some(answer.parts),
-        },
-        // asked to stop or not: it finished before it noticed, and finished is finished
-        Ok(Answer {
-            outcome,
-            reason,
-            findings,
-            parts,
-        }) => JobEnd {
-            told,
-            event: EventBody::Succeeded {
-                outcome,
-                reason,
-                findings,
-            },
-            result: Some(parts),
-        },
-        Err(Unanswered::Refused(faults)) => JobEnd {
-            told,
-            ..JobEnd::without_result(EventBody::Failed {
-                faults: faults.into(),
-            })
-        },
-        Err(Unanswered::Store(error)) => failed("store", &error),
-        Err(Unanswered::Panicked(text)) => JobEnd {
-            told,
-            ..failed("solver", &text)
-        },
-        Err(Unanswered::Dropped) => return Settled::Released,
-    };
-    Settled::Ended(ending)
-}
-
-fn failed(where_: &str, error: &dyn std::fmt::Display) -> JobEnd {
-    tracing::error!(%error, "the {where_} failed");
-    let message = format!(
-        "the {where_} failed, which is a defect of the service and not of the job: {error}"
-    );
-    let faults = vec![Fault::new("", "internal", message)];
-    JobEnd::without_result(EventBody::Failed { faults })
-}
-
 /// Writes the end of a job. A result that cannot be kept fails the job rather than being computed
 /// again and again.
 async fn end(store: &Store, claim: &Claim, ending: JobEnd) -> Result<(), StoreError> {
@@ -347,28 +261,5 @@ async fn end(store: &Store, claim: &Claim, ending: JobEnd) -> Result<(), StoreEr
             (store.finish(claim, before, &events, event, None)).await
         }
         written => written,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[tokio::test]
-    async fn a_panic_of_the_solver_is_an_end_of_the_job() {
-        let solver = tokio::task::spawn_blocking(|| panic!("matrix of {} rows", 3));
-        let answered = solver.await.map_err(Unanswered::from);
-        let Settled::Ended(ending) = settle(answered, Told::default(), None) else {
-            panic!("the job must be over");
-        };
-        let EventBody::Failed { faults } = ending.event else {
-            panic!("{:?}", ending.event)
-        };
-        assert_eq!(faults[0].code, "internal");
-        assert!(
-            faults[0].message.contains("matrix of 3 rows"),
-            "{}",
-            faults[0].message
-        );
     }
 }

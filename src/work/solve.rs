@@ -13,6 +13,7 @@ use crate::estimate::{Estimate, Outcome};
 use crate::flight::{FindingTally, Maneuver};
 use crate::job::{self, EventBody, Faults, JobKind, JobSpec, StructureProgress, StudyProgress};
 use crate::model::ModelDocument;
+use crate::stop::Interrupted;
 use crate::store::{ResultParts, StoreError};
 
 /// What a run that came to a result answers; `outcome` says of what kind.
@@ -33,6 +34,14 @@ pub(super) enum Unanswered {
     Panicked(String),
     /// The runtime was taken down under it.
     Dropped,
+    /// It was stopped before there was anything to keep.
+    Interrupted,
+}
+
+impl From<Interrupted> for Unanswered {
+    fn from(_: Interrupted) -> Self {
+        Self::Interrupted
+    }
 }
 
 impl From<StoreError> for Unanswered {
@@ -52,9 +61,20 @@ impl From<JoinError> for Unanswered {
     }
 }
 
-/// Tells `log` of each step and stops between two iterations when asked. A full log slows the
+/// Tells `log` of each step and stops when asked, with what there is of a result or without. A full log slows the
 /// solver down to the pace at which the store writes, so that memory stays bounded.
 pub(super) fn solve(
+    spec: &JobSpec,
+    model: &ModelDocument,
+    maneuvers: &[Arc<Maneuver>],
+    stop: &Stop,
+    log: &mpsc::Sender<EventBody>,
+) -> Result<Answer, Unanswered> {
+    stop.flag()
+        .heed(|| answer(spec, model, maneuvers, stop, log))?
+}
+
+fn answer(
     spec: &JobSpec,
     model: &ModelDocument,
     maneuvers: &[Arc<Maneuver>],

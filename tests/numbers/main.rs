@@ -3,10 +3,12 @@
 
 #[path = "../common"]
 mod common {
+    pub(crate) mod chain;
     pub(crate) mod coloured;
     pub(crate) mod coverage;
     pub(crate) mod estimation;
     pub(crate) mod flight_data;
+    pub(crate) mod large_jobs;
     pub(crate) mod plans;
     pub(crate) mod preprocessing;
     pub(crate) mod printed_adjoint;
@@ -57,6 +59,7 @@ mod sensitivities;
 mod source_code;
 mod starts;
 mod steps;
+mod stops;
 mod structure;
 mod trajectories;
 mod unstable;

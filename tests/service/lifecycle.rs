@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use crate::common::chain::{chain, recorded};
 use crate::common::jobs::{endless_job, job};
 use crate::common::process::Process;
 use crate::common::recordings::{elevator, elevator_of};
@@ -75,6 +76,54 @@ async fn a_running_job_is_cancelled_and_keeps_its_best_iterate() {
         .post(&format!("/v1/jobs/{id}/cancel"), "text/plain", "")
         .await;
     assert_eq!(again.problem(409, "already_over"), []);
+}
+
+/// A job whose every sweep along the samples takes much longer than a second: 64 states, 512 parameters.
+async fn sweeping(server: &Server) -> String {
+    let flown = trimtab::ingest::to_csv(&recorded(64, 3000), |_| true);
+    let maneuver = server.upload(&flown).await;
+    let id = server
+        .submit(&json!({
+            "model": chain(64, 5),
+            "maneuvers": [{"id": maneuver}],
+            "options": {"start": {"kind": "document"}, "derivatives": {"technique": "complex_step"}},
+        }))
+        .await;
+    let mut stream = Stream::open(&server.url, &id, None).await.unwrap();
+    while stream.next().await.expect("it runs").event != "prepared" {}
+    tokio::time::sleep(Duration::from_secs(1)).await;
+    id
+}
+
+/// What of the second the test's own machine takes is not the solver's.
+const MOMENT: Duration = Duration::from_millis(500);
+
+#[tokio::test]
+async fn a_long_sweep_is_cancelled_within_a_second() {
+    let server = Server::start().await;
+    let id = sweeping(&server).await;
+    let asked = Instant::now();
+    server
+        .post(&format!("/v1/jobs/{id}/cancel"), "text/plain", "")
+        .await;
+    let done = server.wait(&id).await;
+    let took = asked.elapsed();
+    assert_eq!(done["status"], "cancelled");
+    assert_eq!(done["has_result"], false, "no iterate was come to");
+    assert!(took < Duration::from_secs(1) + MOMENT, "{took:?}");
+}
+
+#[tokio::test]
+async fn a_long_sweep_is_given_back_within_a_second() {
+    let server = Server::start().await;
+    let id = sweeping(&server).await;
+    let store = server.store.project(DEFAULT_PROJECT, "");
+    let started = Instant::now();
+    server.stop().await;
+    let took = started.elapsed();
+    assert!(took < Duration::from_secs(1) + MOMENT, "{took:?}");
+    let job = store.job(id.parse().unwrap()).await.unwrap().unwrap();
+    assert_eq!(job.status.name(), "queued");
 }
 
 #[tokio::test]

@@ -4,6 +4,7 @@
 #[path = "../common"]
 mod common {
     pub(crate) mod browser;
+    pub(crate) mod chain;
     pub(crate) mod chaos;
     pub(crate) mod chromedriver;
     pub(crate) mod database;

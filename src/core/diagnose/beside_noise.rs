@@ -13,6 +13,7 @@ use super::passed::Passed;
 use super::threshold::Threshold;
 use super::trial::Trial;
 use crate::model::EditKind;
+use crate::stop;
 
 /// Candidates that are fitted again, the likeliest first: what turbulence leaves of the rest is less still.
 const MOST_TRIED: usize = 6;
@@ -31,7 +32,9 @@ pub(super) fn beside_noise(
     });
     candidates.truncate(MOST_TRIED);
     let tried: Vec<Passed> = (candidates.into_par_iter())
-        .filter_map(|passed| filtered(case, base, passed, threshold))
+        .filter_map(stop::shared(|passed| {
+            filtered(case, base, passed, threshold)
+        }))
         .collect();
     let price = |passed: &Passed| {
         let samples = passed.settled.problem.samples().max(1) as f64;

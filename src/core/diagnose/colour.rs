@@ -5,6 +5,7 @@
 //! what is tested as if they were white is nearly always "significant".
 
 use super::stack::{Layout, Series};
+use crate::stop;
 
 /// e_k = Σ_m a_m e_(k−m) + w_k for every order up to the model's own, so that the first samples of a segment, and
 /// those behind a gap, are predicted from what there is.
@@ -44,6 +45,7 @@ impl Autoregression {
 
     /// Of one order, or as near to it as the series are long. Samples that are not finite do not count.
     pub(super) fn of_order(series: &[&[f64]], order: usize) -> Self {
+        stop::check();
         let finite = || {
             series
                 .iter()
@@ -59,6 +61,7 @@ impl Autoregression {
         let mut backward = forward.clone();
         let order = order.min(finite().count() / 8);
         for m in 0..order {
+            stop::check();
             let (mut product, mut energy) = (0.0, 0.0);
             for (f, b) in forward.iter().zip(&backward) {
                 for k in m + 1..f.len() {
@@ -73,6 +76,7 @@ impl Autoregression {
                 break;
             }
             let reflection = (2.0 * product / energy).clamp(-MOST_REFLECTION, MOST_REFLECTION);
+            stop::check();
             for (f, b) in forward.iter_mut().zip(&mut backward) {
                 for k in (m + 1..f.len()).rev() {
                     let (before, behind) = (f[k], b[k - 1]);
@@ -120,6 +124,7 @@ impl Autoregression {
     /// Prediction errors over their standard deviations: `w = (x_k − Σ a_m x_(k−m))/σ`, of the order that the finite
     /// samples of `mask` before k allow; 0 where `mask` is not finite. Returns the sum of ln σ².
     pub(super) fn whiten(&self, mask: &[f64], x: &[f64], to: &mut [f64]) -> f64 {
+        stop::check();
         let scales: Vec<f64> = self.variances.iter().map(|v| v.sqrt().recip()).collect();
         let ln_variances: Vec<f64> = self.variances.iter().map(|v| v.ln()).collect();
         let mut ln_variance = 0.0;

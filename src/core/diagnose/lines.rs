@@ -8,6 +8,7 @@ use rustfft::{Fft, FftPlanner};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::estimate::TimeHistory;
+use crate::stop;
 
 /// Noise alone makes a line once in so many diagnoses.
 const FALSE_ALARM: f64 = 1e-3;
@@ -140,6 +141,7 @@ fn power_of(spectra: &[Spectrum]) -> Vec<f64> {
     let whole = || spectra.iter().flatten();
     let count = whole().count().max(1) as f64;
     let lines = whole().next().map_or(0, Vec::len);
+    stop::check();
     (0..lines)
         .map(|line| whole().map(|x| x[line].norm_sqr()).sum::<f64>() / count)
         .collect()
@@ -208,6 +210,7 @@ impl Windows {
     fn spectra<'s>(&self, series: impl Iterator<Item = &'s [f64]>) -> Vec<Spectrum> {
         let size = self.taper.len();
         let of_window = |window: &[f64]| {
+            stop::check();
             let mean = window.iter().sum::<f64>() / size as f64;
             let weighted = window.iter().zip(&self.taper);
             let mut buffer: Vec<Complex64> = weighted

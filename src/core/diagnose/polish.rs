@@ -6,9 +6,10 @@ use nalgebra::{DMatrix, DVector};
 
 use super::colour::Colour;
 use super::fitted::Fitted;
-use super::projection::{least_squares, norm};
+use super::projection::{least_squares, norm, products};
 use super::stack::{Layout, Linearised, linearised};
 use crate::estimate::Bound;
+use crate::stop;
 
 /// The colour is that of the residual, so that each step has another: some are needed.
 const STEPS: usize = 8;
@@ -95,9 +96,10 @@ impl Fitted {
             .collect();
         // a product of matrices is far quicker than products of columns
         let columns = DMatrix::from_fn(residual.len(), theta.len(), |row, place| {
+            stop::check_sometimes(row);
             whitened[place][row] / lengths[place]
         });
-        let whole = columns.tr_mul(&columns);
+        let whole = products(&columns, &columns);
         let all = columns.tr_mul(&DVector::from_vec(residual));
         let mut held = vec![false; theta.len()];
         loop {

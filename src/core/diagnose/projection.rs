@@ -1,5 +1,6 @@
 //! Projecting columns onto what a declared model can move, and off it.
 
+use crate::stop;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// An orthonormal basis of the span of some columns.
@@ -38,6 +39,7 @@ impl Basis {
     pub(super) fn remove_from(&self, column: &mut [f64]) {
         for _ in 0..2 {
             for unit in &self.0 {
+                stop::check();
                 let share = dot(unit, column);
                 column
                     .iter_mut()
@@ -70,6 +72,20 @@ pub(super) fn least_squares(
     Some(&eigen.eigenvectors * inverse.component_mul(&(eigen.eigenvectors.transpose() * moment)))
 }
 
+/// Rows that are multiplied between two looks at whether to go on.
+const ROWS: usize = 16_384;
+
+/// Aᵀ B of long columns.
+pub(super) fn products(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut sums = DMatrix::zeros(a.ncols(), b.ncols());
+    for first in (0..a.nrows()).step_by(ROWS) {
+        stop::check();
+        let count = ROWS.min(a.nrows() - first);
+        sums.gemm_tr(1.0, &a.rows(first, count), &b.rows(first, count), 1.0);
+    }
+    sums
+}
+
 /// Sums beside each other: one sum waits for each of its additions.
 const SUMS: usize = 8;
 
@@ -93,6 +109,18 @@ pub(super) fn norm(a: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn products_in_parts_are_those_of_the_whole() {
+        let rows = 2 * ROWS + 37;
+        let of = |speed: f64| move |k: usize, j: usize| (speed * (k * (j + 2)) as f64).sin();
+        let (a, b) = (
+            DMatrix::from_fn(rows, 7, of(0.013)),
+            DMatrix::from_fn(rows, 5, of(0.41)),
+        );
+        let off = (products(&a, &b) - a.transpose() * &b).abs().max();
+        assert!(off < 1e-9, "{off:e}");
+    }
 
     #[test]
     fn what_is_in_the_span_is_no_news() {

@@ -5,6 +5,7 @@ use utoipa::ToSchema;
 
 use super::screen::tail;
 use crate::estimate::{OutputSeries, Series, TimeHistory};
+use crate::stop;
 
 /// The residual of one output, over all segments that were fitted.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
@@ -156,6 +157,7 @@ fn of_output(histories: &[TimeHistory], output: usize) -> ResidualAnalysis {
         .collect();
     let n = finite.len().max(1) as f64;
     let mean = finite.iter().sum::<f64>() / n;
+    stop::check();
     let moment = |power: i32| finite.iter().map(|e| (e - mean).powi(power)).sum::<f64>() / n;
     let deviation = moment(2).sqrt().max(f64::MIN_POSITIVE);
     let centred: Vec<Vec<f64>> = all
@@ -210,6 +212,7 @@ fn of_output(histories: &[TimeHistory], output: usize) -> ResidualAnalysis {
 
 /// Σ a_(k+lag) b_k over the samples that both have.
 fn lagged(a: &[f64], b: &[f64], lag: usize) -> f64 {
+    stop::check();
     a.iter()
         .skip(lag)
         .zip(b)
@@ -297,6 +300,7 @@ fn spectrum(histories: &[TimeHistory], residual: &[Vec<f64>]) -> Vec<SpectralLin
     for (history, residual) in histories.iter().zip(residual) {
         let mut from = 0;
         while from + window <= residual.len() {
+            stop::check();
             let e = transformed(&residual[from..from + window]);
             windows += 1.0;
             (own.iter_mut().zip(&e)).for_each(|(sum, e)| *sum += e.norm_sqr());
@@ -336,6 +340,7 @@ fn spectrum(histories: &[TimeHistory], residual: &[Vec<f64>]) -> Vec<SpectralLin
 
 fn outliers(histories: &[TimeHistory], output: usize, finite: &[f64]) -> Vec<Outlier> {
     let median = |values: &mut Vec<f64>| {
+        stop::check();
         values.sort_by(f64::total_cmp);
         values.get(values.len() / 2).copied().unwrap_or(0.0)
     };

@@ -19,6 +19,7 @@ use super::threshold::Threshold;
 use super::trial::Trial;
 use super::watch::{Stopped, Watcher, ask, tell};
 use crate::model::{Added, EditKind};
+use crate::stop;
 
 /// Rounds, and so effects, at most: who lacks more than these has another model.
 pub(super) const MOST_ROUNDS: usize = 6;
@@ -134,28 +135,8 @@ fn screen_all(
     let mut all = Vec::new();
     for some in candidates.chunks(TOGETHER) {
         ask(watcher)?;
-        let seen = some.par_iter().map(|effect| {
-            let effect = effect.clone();
-            if let Some(why) = swapped::is_refuted(&effect, screen.base) {
-                return Err(Box::new(not_significant(effect, why)));
-            }
-            if is_tried_outright(effect.kind)
-                || effect.kind == EffectKind::Treatment(Treatment::ProcessNoise)
-            {
-                return Ok(Seen {
-                    effect,
-                    screened: None,
-                });
-            }
-            match screened(screen, &effect) {
-                Ok(screened) => Ok(Seen {
-                    effect,
-                    screened: Some(screened),
-                }),
-                Err(why) => Err(Box::new(not_fitted(effect, why))),
-            }
-        });
-        for seen in seen.collect::<Vec<_>>() {
+        let one = stop::shared(|effect: &Effect| seen(screen, effect));
+        for seen in some.par_iter().map(one).collect::<Vec<_>>() {
             match seen {
                 Ok(seen) => all.push(seen),
                 Err(unfit) => refused.push(*unfit),
@@ -163,6 +144,29 @@ fn screen_all(
         }
     }
     Ok(all)
+}
+
+/// A candidate, screened where it can be; or why it is refused.
+fn seen(screen: &Screen<'_>, effect: &Effect) -> Result<Seen, Box<RefusedEffect>> {
+    let effect = effect.clone();
+    if let Some(why) = swapped::is_refuted(&effect, screen.base) {
+        return Err(Box::new(not_significant(effect, why)));
+    }
+    if is_tried_outright(effect.kind)
+        || effect.kind == EffectKind::Treatment(Treatment::ProcessNoise)
+    {
+        return Ok(Seen {
+            effect,
+            screened: None,
+        });
+    }
+    match screened(screen, &effect) {
+        Ok(screened) => Ok(Seen {
+            effect,
+            screened: Some(screened),
+        }),
+        Err(why) => Err(Box::new(not_fitted(effect, why))),
+    }
 }
 
 /// The screen of a candidate, from the best of its starts.
@@ -214,17 +218,17 @@ fn try_promising(
             .extend(left.iter().map(|seen| not_tried(seen, &passed, threshold)));
         ask(watcher)?;
         let trials: Vec<(Effect, Result<Trial, String>)> = (tried.into_par_iter())
-            .map(|seen| {
+            .map(stop::shared(|seen: Seen| {
                 let effect = seen.effect.clone();
                 (effect, Trial::of(null, seen.effect, seen.screened))
-            })
+            }))
             .collect();
         let judged: Vec<_> = trials
             .into_par_iter()
-            .map(|(effect, trial)| match trial {
+            .map(stop::shared(|(effect, trial)| match trial {
                 Ok(trial) => Ok(pass(null, trial, threshold)),
                 Err(why) => Err(Box::new(not_fitted(effect, why))),
-            })
+            }))
             .collect();
         for judged in judged {
             match judged {

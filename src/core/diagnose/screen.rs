@@ -19,6 +19,7 @@ use super::fitted::Fitted;
 use super::projection::{Basis, dot, least_squares, norm};
 use super::stack::{Layout, sensitivities};
 use crate::model::{Edited, Per};
+use crate::stop;
 
 /// One way to weigh the residual, with the declared model projected out.
 struct Metric {
@@ -268,6 +269,7 @@ impl<'c> Screen<'c> {
             .collect();
         let count = clear.len();
         let gram = DMatrix::from_fn(count, count, |i, j| {
+            stop::check();
             dot(&clear[i], &clear[j]) / (scale[i] * scale[j])
         });
         let moment = DVector::from_fn(count, |i, _| dot(&clear[i], &metric.residual) / scale[i]);
@@ -357,7 +359,10 @@ pub(super) fn independent_questions(directions: &[&[f64]]) -> f64 {
     if count < 2 {
         return count as f64;
     }
-    let correlation = DMatrix::from_fn(count, count, |i, j| dot(directions[i], directions[j]));
+    let correlation = DMatrix::from_fn(count, count, |i, j| {
+        stop::check();
+        dot(directions[i], directions[j])
+    });
     let Some(eigen) = nalgebra::SymmetricEigen::try_new(correlation, f64::EPSILON, 10_000) else {
         return count as f64;
     };

@@ -6,6 +6,7 @@
 //! distribution against the normal one.
 
 use super::colour::Autoregression;
+use crate::stop;
 
 /// Deviation of the contaminating distribution, in those of the noise.
 const WIDE: f64 = 8.0;
@@ -91,6 +92,7 @@ fn standardised(colour: &Autoregression, series: &[f64]) -> (Vec<f64>, Vec<f64>)
         .collect();
     let deviation = colour.deviation();
     let of = |k: usize| {
+        stop::check_sometimes(k);
         if !series[k].is_finite() {
             return (f64::NAN, 0.0);
         }
@@ -103,6 +105,7 @@ fn standardised(colour: &Autoregression, series: &[f64]) -> (Vec<f64>, Vec<f64>)
     let (raw, sizes): (Vec<f64>, Vec<f64>) = (0..series.len()).map(of).unzip();
     let whole = robust_deviation(&raw).max(f64::MIN_POSITIVE);
     let lambda = (0..raw.len()).map(|k| {
+        stop::check_sometimes(k);
         let around = k.saturating_sub(AROUND)..(k + AROUND + 1).min(raw.len());
         let lambda = raw[k] / robust_deviation(&raw[around]).max(whole);
         if lambda.is_finite() { lambda } else { 0.0 }
@@ -117,6 +120,7 @@ fn contamination(lambda: &[f64], found: usize) -> Option<f64> {
     let count = lambda.len().max(1) as f64;
     let mut share = 0.01;
     for _ in 0..20 {
+        stop::check();
         let contaminated: f64 = lambda
             .iter()
             .map(|&l| share * wide(l) / ((1.0 - share) * normal(l) + share * wide(l)))
@@ -159,6 +163,7 @@ fn stands_alone(k: usize, size: f64, residual: &[f64], measured: &[f64], lambda:
 
 /// The smallest step of a recording.
 fn quantum(measured: &[f64]) -> f64 {
+    stop::check();
     let steps = measured.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let least = steps.filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);
     if least.is_finite() { least } else { 0.0 }
@@ -196,6 +201,7 @@ fn stuck(residual: &[f64], measured: &[f64]) -> Vec<Spike> {
 }
 
 fn middle(series: &[f64], k: usize) -> f64 {
+    stop::check_sometimes(k);
     let around = k.saturating_sub(SIDE)..(k + SIDE + 1).min(series.len());
     let mut values: Vec<f64> = series[around].to_vec();
     values.retain(|value| value.is_finite());

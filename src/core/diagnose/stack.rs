@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::estimate::{Problem, TimeHistory, Unusable};
 use crate::simulate::{Columns, Sensitivities};
+use crate::stop;
 
 /// One output along one segment.
 #[derive(Clone, PartialEq, Debug)]
@@ -58,6 +59,7 @@ impl Layout {
         let of_output = |output: usize| {
             let (mut samples, mut ahead, mut behind) = (0.0, 0.0, 0.0);
             for series in self.series.iter().filter(|s| s.output == output) {
+                stop::check();
                 for at in series.range.clone().filter(|&at| after[at].is_finite()) {
                     samples += 1.0;
                     ahead += before[at] * before[at];
@@ -173,7 +175,11 @@ pub(super) fn linearised(
             sample: diverged.sample,
         })?;
     }
-    if !stacked.iter().flatten().all(|value| value.is_finite()) {
+    let is_finite = |column: &Vec<f64>| {
+        stop::check();
+        column.iter().all(|value| value.is_finite())
+    };
+    if !stacked.iter().all(is_finite) {
         return Err(Unusable::NotFinite);
     }
     Ok(Linearised {

@@ -23,6 +23,7 @@ use super::side_by_side::{SPAN, SideBySide};
 use super::simulation::{Diverged, initial_state};
 use super::stepper::{Stepper, between};
 use crate::model::{LANES, Lanes, Model, Program, Workspace};
+use crate::stop;
 
 /// The machinery for one model, reusable for any segment, θ and ȳ.
 pub(crate) struct Adjoint<'m> {
@@ -97,6 +98,7 @@ impl<'m> Adjoint<'m> {
         let mut kept = Checkpoints::default();
         let mut sample = vec![0.0; self.model.outputs.len()];
         for first in (0..segment.len()).step_by(SPAN) {
+            stop::check();
             kept.elapsed.push(elapsed);
             kept.states.extend_from_slice(&state);
             let len = SPAN.min(segment.len() - first);
@@ -145,6 +147,7 @@ impl<'m> Adjoint<'m> {
         let outputs = self.model.outputs.len();
         let (mut y, mut y_bar) = (vec![0.0; outputs], vec![0.0; outputs]);
         for (block, &since) in checkpoints.elapsed.iter().enumerate().rev() {
+            stop::check();
             let first = block * SPAN;
             let len = SPAN.min(segment.len() - first);
             let mut state = checkpoints.states[block * n..(block + 1) * n].to_vec();

@@ -6,6 +6,7 @@ use super::segment::Segment;
 use super::simulation::{initial_state, simulate};
 use super::stepper::Stepper;
 use crate::model::{Model, Scalar, Workspace};
+use crate::stop;
 
 /// The machinery, shared by any number of simulations that go along side by side.
 pub(crate) struct March<'m, T> {
@@ -92,6 +93,7 @@ impl<'m, T: Scalar> March<'m, T> {
         let program = &self.model.observation;
         program.set_parameters(&mut self.observation, parameters);
         for k in standing.next..until.min(segment.len()) {
+            stop::check_sometimes(k);
             let workspace = &mut self.observation;
             program.states(workspace).copy_from_slice(&standing.state);
             for (to, samples) in program.inputs(workspace).iter_mut().zip(&segment.inputs) {

@@ -10,6 +10,7 @@ use super::pack::{PACK, Pack, multiply_add, packs};
 use super::segment::Segment;
 use super::transition::{meets, moved};
 use crate::model::{BLOCK, Model};
+use crate::stop;
 
 /// One product of the recursion: an entry of ∂f/∂x times a row of ∂x/∂θ.
 #[derive(Clone, Copy)]
@@ -49,6 +50,9 @@ struct Scratch {
     slope: Aligned<Pack>,
     sum: Aligned<Pack>,
 }
+
+/// Rows of packs beyond which one step takes long.
+const LONG: usize = 256;
 
 impl Recursion {
     pub(super) fn new(model: &Model, columns: &Columns, stages: usize) -> Self {
@@ -126,7 +130,11 @@ impl Recursion {
         dynamics: &Linearised<'_>,
         rows: &mut [Pack],
     ) {
+        let is_long = self.by_state.len() > LONG;
         for k in 0..steps {
+            if is_long {
+                stop::check();
+            }
             let h = segment.steps.length(first + k);
             step(self, stages, h, k, dynamics, rows);
         }

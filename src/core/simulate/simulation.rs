@@ -8,6 +8,7 @@ use super::refined::Refined;
 use super::segment::Segment;
 use super::stepper::Stepper;
 use crate::model::{Model, Scalar};
+use crate::stop;
 
 /// The simulation left the range of numbers.
 #[derive(Clone, Copy, PartialEq, Debug, thiserror::Error)]
@@ -110,6 +111,7 @@ fn run<T: Scalar>(
     let mut outputs = vec![T::from_f64(0.0); model.outputs.len()];
     let mut elapsed = 0.0;
     for k in 0..segment.len() {
+        stop::check_sometimes(k);
         model
             .observation
             .states(&mut observation)

@@ -9,6 +9,7 @@ use super::segment::{Segment, Steps};
 use super::simulation::{Diverged, initial_state};
 use super::stepper::{Stepper, between};
 use crate::model::{BLOCK, LANES, Lanes, Model, Program, StepBlock, Workspace};
+use crate::stop;
 
 /// The trajectory of a model along a segment: states, inputs and times at the samples of a block.
 pub(super) struct Trajectory<'m> {
@@ -122,6 +123,7 @@ impl<'m> Trajectory<'m> {
         first: usize,
         len: usize,
     ) -> Result<(), Diverged> {
+        stop::check();
         self.place_inputs(segment, first, len);
         if let Some(stride) = self.stride {
             self.multiply(segment, first, len, stride.length);

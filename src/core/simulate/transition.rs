@@ -13,6 +13,7 @@ use super::linearised::Linearised;
 use super::method::Stage;
 use super::pack::{PACK, Pack};
 use crate::model::{BLOCK, Model};
+use crate::stop;
 
 /// Samples taken at a time, in vectors: so few that all slots of them stay in the nearest memory.
 const VECTORS: usize = 2;
@@ -86,6 +87,7 @@ impl Transition {
             let before = slots.clone();
             let mut stage = StagePlan::default();
             for (at, &own) in own.iter().enumerate() {
+                stop::check();
                 let (row, column) = (at / width, at % width);
                 let factors = (0..states).filter_map(|state| {
                     let entry = own_state(&dynamics.by_state, row, state)?;
@@ -143,6 +145,7 @@ impl Transition {
         dynamics: &Linearised<'_>,
     ) {
         for group in 0..steps.div_ceil(GROUP) {
+            stop::check();
             let lengths = of(lengths, group);
             for s in 0..stages.len() {
                 let advance = stages.get(s + 1).map(|next| next.advance);

@@ -6,6 +6,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use crate::stop;
 use num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 
@@ -30,15 +31,20 @@ impl ChirpZ {
         let mut planner = FftPlanner::new();
         let forward = planner.plan_fft_forward(length);
         let chirp = |n: usize| turn(step, 0.5 * (n as f64) * (n as f64));
-        let into = (0..samples).map(|n| (turn(first, n as f64) * chirp(n)).conj());
+        let into = (0..samples).map(|n| {
+            stop::check_sometimes(n);
+            (turn(first, n as f64) * chirp(n)).conj()
+        });
         let mut kernel = vec![Complex64::ZERO; length];
         for (m, value) in kernel.iter_mut().take(count).enumerate() {
             *value = chirp(m);
         }
         for m in 1..samples {
+            stop::check_sometimes(m);
             kernel[length - m] = chirp(m);
         }
         forward.process(&mut kernel);
+        stop::check();
         // the inverse transform is not divided by its length
         kernel.iter_mut().for_each(|value| *value /= length as f64);
         Self {
@@ -53,16 +59,19 @@ impl ChirpZ {
 
     /// Of `samples` values.
     pub fn of(&self, signal: &[f64]) -> Vec<Complex64> {
+        stop::check();
         let mut values = vec![Complex64::ZERO; self.kernel.len()];
         let turned = signal.iter().take(self.samples).zip(&self.into);
         for (value, (x, chirp)) in values.iter_mut().zip(turned) {
             *value = chirp * x;
         }
         self.forward.process(&mut values);
+        stop::check();
         for (value, kernel) in values.iter_mut().zip(&self.kernel) {
             *value *= kernel;
         }
         self.inverse.process(&mut values);
+        stop::check();
         let out = self.out.iter().zip(values);
         out.map(|(chirp, value)| chirp * value).collect()
     }

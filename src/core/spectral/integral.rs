@@ -10,6 +10,7 @@ use num_complex::Complex64;
 use super::chirp_z::ChirpZ;
 use super::frequencies::Frequencies;
 use super::moments::moments;
+use crate::stop;
 
 /// What a signal does between its samples.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -82,6 +83,7 @@ impl FourierIntegral {
             between => between,
         };
         let corrected = |k: usize| {
+            stop::check_sometimes(k);
             let rule = Rule::new(between, self.omega[k] * self.step);
             let first = signal.iter().zip(rule.first);
             let first: Complex64 = first.map(|(x, weight)| weight * x).sum();

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::candidates::{Candidates, DEPENDENT};
 use super::report::Term;
+use crate::stop::check;
 
 /// ŷ = Xθ̂ by QR decomposition.
 pub(super) struct Fit {
@@ -48,8 +49,7 @@ impl Fit {
         for (mut column, length) in scaled.column_iter_mut().zip(scale.iter()) {
             column /= *length;
         }
-        let decomposition = scaled.qr();
-        let (basis, upper) = (decomposition.q(), decomposition.r());
+        let (basis, upper) = decomposed(scaled);
         if upper
             .diagonal()
             .iter()
@@ -58,6 +58,7 @@ impl Fit {
             return None;
         }
         let inverse = upper.clone().try_inverse()?;
+        check();
         let projected = basis.tr_mul(&candidates.response);
         let residual = &candidates.response - &basis * &projected;
         let diagonal = |i: usize| inverse.row(i).norm_squared() / scale[i].powi(2);
@@ -108,6 +109,7 @@ impl Fit {
 
     /// What of a column the terms do not explain already.
     pub(super) fn left_of(&self, column: &DVector<f64>) -> DVector<f64> {
+        check();
         column - &self.basis * self.basis.tr_mul(column)
     }
 
@@ -136,5 +138,50 @@ impl Fit {
             partial_f: self.partial_f(place),
         })
         .collect()
+    }
+}
+
+/// X = QR by the process of Gram and Schmidt, taken twice for each column, which leaves no more than rounding (Giraud, Langou
+/// and Rozložník, Computers and Mathematics with Applications 50, 2005): Q and R. A column of which nothing is left stays 0.
+fn decomposed(mut columns: DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
+    let count = columns.ncols();
+    let mut upper = DMatrix::zeros(count, count);
+    for j in 0..count {
+        check();
+        let (before, mut others) = columns.columns_range_pair_mut(..j, j..);
+        let mut column = others.column_mut(0);
+        for _ in 0..2 {
+            let shares = before.tr_mul(&column);
+            column.gemv(-1.0, &before, &shares, 1.0);
+            let mut above = upper.view_mut((0, j), (j, 1));
+            above += shares;
+        }
+        let length = column.norm();
+        upper[(j, j)] = length;
+        if length > 0.0 {
+            column /= length;
+        }
+    }
+    (columns, upper)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against reflections, of columns that are nearly dependent: powers of one variable.
+    #[test]
+    fn a_decomposition_is_that_by_reflections() {
+        let columns =
+            DMatrix::from_fn(200, 9, |row, power| (row as f64 / 200.0).powi(power as i32));
+        let (basis, upper) = decomposed(columns.clone());
+        let off = (basis.tr_mul(&basis) - DMatrix::identity(9, 9)).abs().max();
+        assert!(off < 1e-14, "{off:e}");
+        let off = (&basis * &upper - &columns).abs().max();
+        assert!(off < 1e-13, "{off:e}");
+        let reflected = columns.qr().r();
+        for (own, other) in upper.diagonal().iter().zip(reflected.diagonal().iter()) {
+            assert!((own - other.abs()).abs() < 1e-10 * own, "{own} {other}");
+        }
     }
 }

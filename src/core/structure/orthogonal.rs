@@ -12,6 +12,7 @@ use super::candidates::{Candidates, DEPENDENT, first_of_largest};
 use super::least_squares::Fit;
 use super::options::{StructureMethod, StructureOptions};
 use super::report::{STOPPED, StepVerdict, Structure, StructureStep};
+use crate::stop::check;
 
 /// Terms after the least predicted squared error, without a lesser one, after which none is looked for.
 const RISES: usize = 10;
@@ -183,6 +184,7 @@ impl Remainder {
                 .flatten()
                 .chain([&mut self.response])
             {
+                check();
                 let share = left.dot(direction);
                 left.axpy(-share, direction, 1.0);
             }
@@ -200,6 +202,7 @@ impl Remainder {
             .iter()
             .enumerate()
             .filter_map(|(term, column)| {
+                check();
                 let column = column.as_ref()?;
                 let length = column.norm_squared();
                 let share = column.dot(&self.response);

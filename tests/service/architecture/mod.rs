@@ -18,16 +18,23 @@ const CRATES: [(&str, &str); 2] = [
 ];
 
 /// Each room and those it may use. An arrow that is not here is a change of design: make it on purpose.
-const ROOMS: [(&str, &[&str]); 17] = [
-    ("flight", &[]),
-    ("spectral", &[]),
-    ("structure", &["flight"]),
+const ROOMS: [(&str, &[&str]); 18] = [
+    ("stop", &[]),
+    ("flight", &["stop"]),
+    ("spectral", &["stop"]),
+    ("structure", &["flight", "stop"]),
     ("response", &["spectral", "flight"]),
     ("ingest", &["flight"]),
-    ("model", &["flight"]),
-    ("simulate", &["model", "flight"]),
-    ("estimate", &["simulate", "spectral", "model", "flight"]),
-    ("diagnose", &["estimate", "simulate", "model", "flight"]),
+    ("model", &["flight", "stop"]),
+    ("simulate", &["model", "flight", "stop"]),
+    (
+        "estimate",
+        &["simulate", "spectral", "model", "flight", "stop"],
+    ),
+    (
+        "diagnose",
+        &["estimate", "simulate", "model", "flight", "stop"],
+    ),
     ("dynamics", &["estimate", "simulate", "model", "flight"]),
     (
         "job",
@@ -39,10 +46,14 @@ const ROOMS: [(&str, &[&str]); 17] = [
             "simulate",
             "model",
             "flight",
+            "stop",
         ],
     ),
     ("store", &["job", "estimate", "model", "flight", "ingest"]),
-    ("work", &["store", "job", "estimate", "model", "flight"]),
+    (
+        "work",
+        &["store", "job", "estimate", "model", "flight", "stop"],
+    ),
     (
         "dashboard",
         &[
@@ -190,6 +201,30 @@ fn the_core_is_synchronous_and_deterministic() {
         .filter(|(file, path, _)| bound(file) && core::is_foreign(path))
         .map(|(file, path, line)| {
             format!("{file}:{line}: `{}` does not belong here", path.join("::"))
+        })
+        .collect();
+    fail_if_any(&faults);
+}
+
+/// What a thread of its own does ends with the rest only if it heeds the same flag: `stop::shared`.
+#[test]
+fn work_that_is_shared_out_heeds_the_wish_to_stop() {
+    const SHARES_OUT: [&str; 5] = [
+        "par_iter",
+        "par_chunks",
+        "par_bridge",
+        ".spawn(",
+        "rayon::join",
+    ];
+    let faults: Vec<String> = (sources().iter())
+        .filter(|(file, _)| is_of_the_core(file))
+        .filter_map(|(file, text)| {
+            let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+            let places: usize = SHARES_OUT.map(|word| code.matches(word).count()).iter().sum();
+            let heeding = code.matches("shared(").count();
+            (places > heeding).then(|| {
+                format!("{file}: work is shared out in {places} places, and {heeding} take the flag along")
+            })
         })
         .collect();
     fail_if_any(&faults);

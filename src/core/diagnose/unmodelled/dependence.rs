@@ -12,6 +12,7 @@ use super::report::ForceCurve;
 use super::responses::Response;
 use super::shapes::Shapes;
 use super::smoothness::{Posterior, Smoothness};
+use crate::stop;
 
 /// Directions of a curve that are seen less than this, relative to the best seen, are imitated by the declared model.
 const IMITATED: f64 = 1e-3;
@@ -47,7 +48,7 @@ pub(super) struct Dependence {
 impl Evidence<'_> {
     /// Dependences on all of some quantities, the largest share first.
     pub(super) fn dependences(&self, quantities: &[Quantity]) -> Vec<Dependence> {
-        let of = |quantity: &Quantity| self.dependence(quantity);
+        let of = stop::shared(|quantity: &Quantity| self.dependence(quantity));
         let mut found: Vec<Dependence> = quantities.par_iter().filter_map(of).collect();
         found.sort_by(|a, b| b.share.total_cmp(&a.share));
         found

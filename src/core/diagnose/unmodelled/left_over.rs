@@ -13,6 +13,7 @@ use crate::diagnose::candidates::Ingredients;
 use crate::diagnose::case::Case;
 use crate::diagnose::fitted::Fitted;
 use crate::diagnose::screen::critical;
+use crate::stop;
 
 /// Noise alone seems to be more once in so many diagnoses.
 const FALSE_ALARM: f64 = 1e-3;
@@ -81,7 +82,9 @@ pub(in crate::diagnose) fn left_over(case: &Case, fitted: &Fitted) -> Option<Lef
         Some(force(equation, explained))
     };
     let mut all: Vec<(&Equation, ForceElsewhere)> = (equations.par_iter())
-        .filter_map(|equation| Some((equation, of(equation, false)?)))
+        .filter_map(stop::shared(|equation| {
+            Some((equation, of(equation, false)?))
+        }))
         .collect();
     let best_first = |a: &(&Equation, ForceElsewhere), b: &(&Equation, ForceElsewhere)| {
         b.1.likelihood_ratio.total_cmp(&a.1.likelihood_ratio)
@@ -89,11 +92,13 @@ pub(in crate::diagnose) fn left_over(case: &Case, fitted: &Fitted) -> Option<Lef
     all.sort_by(best_first);
     all.par_iter_mut()
         .take(LOOKED_AT_CLOSELY)
-        .for_each(|(equation, found)| {
-            if let Some(closer) = of(equation, true) {
-                *found = closer;
-            }
-        });
+        .for_each(stop::shared(
+            |(equation, found): &mut (&Equation, ForceElsewhere)| {
+                if let Some(closer) = of(equation, true) {
+                    *found = closer;
+                }
+            },
+        ));
     all.sort_by(best_first);
     let mut all = all.into_iter().map(|(_, force)| force);
     let best = all.next()?;

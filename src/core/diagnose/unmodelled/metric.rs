@@ -19,6 +19,8 @@ use super::normal::Normal;
 use super::responses::Response;
 use super::smoothness::Posterior;
 use crate::diagnose::colour::Colour;
+use crate::diagnose::projection::products;
+use crate::stop;
 
 /// Directions of what is free that are weaker than this, relative to the strongest, are rounding.
 const WEAKEST: f64 = 1e-10;
@@ -93,6 +95,7 @@ impl<'f> Metric<'f> {
         let mut imitated = DMatrix::zeros(count, self.span.ncols());
         let mut first = 0;
         for response in responses {
+            stop::check();
             let white = self.whiten(response);
             let (rows, columns) = (response.rows.clone(), white.ncols());
             let span = self.span.rows(rows.start, rows.len());
@@ -179,6 +182,7 @@ impl<'f> Metric<'f> {
         };
         let mut draws = Vec::new();
         for _ in 0..PAIRS {
+            stop::check();
             let mut theta = normal_vector(self.span.ncols(), chance) * noise;
             let (responses, sizes) = match force {
                 None => (&[][..], none.clone()),
@@ -231,7 +235,7 @@ fn normal_vector(count: usize, chance: &mut ChaCha8Rng) -> DVector<f64> {
 
 /// An orthonormal basis Q of columns A = C diag(scale), C of length 1; T with Q = A T; and ln|AᵀA|.
 fn orthonormal(columns: &DMatrix<f64>, scale: &[f64]) -> Option<(DMatrix<f64>, DMatrix<f64>, f64)> {
-    let gram = columns.tr_mul(columns);
+    let gram = products(columns, columns);
     if !gram.iter().all(|value| value.is_finite()) {
         return None;
     }
@@ -250,7 +254,9 @@ fn orthonormal(columns: &DMatrix<f64>, scale: &[f64]) -> Option<(DMatrix<f64>, D
     let mut basis = DMatrix::from_fn(scale.len(), kept.len(), |row, i| {
         eigen.eigenvectors[(row, kept[i])] / eigen.eigenvalues[kept[i]].sqrt()
     });
+    stop::check();
     let span = columns * &basis;
+    stop::check();
     for (mut row, scale) in basis.row_iter_mut().zip(scale) {
         row /= *scale;
     }

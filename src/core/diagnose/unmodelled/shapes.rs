@@ -4,6 +4,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::splines::Splines;
 use crate::simulate::Segment;
+use crate::stop;
 
 /// The splines in time of one flight.
 #[derive(Clone, Debug)]
@@ -67,6 +68,7 @@ impl Shapes {
 
     /// One shape, sample by sample.
     pub(super) fn shape(&self, index: usize) -> Vec<f64> {
+        stop::check();
         let of = |seconds: &f64| self.splines.value(index, *seconds);
         self.elapsed.iter().map(of).collect()
     }
@@ -83,19 +85,21 @@ impl Shapes {
 
     /// Variance of the force at each sample, from the sizes' covariance.
     pub(super) fn variance(&self, covariance: &DMatrix<f64>) -> Vec<f64> {
-        let of = |seconds: &f64| {
+        let of = |(k, seconds): (usize, &f64)| {
+            stop::check_sometimes(k);
             let (first, values) = self.splines.at(*seconds);
             let values = DVector::from_column_slice(&values);
             let block = covariance.view((first, first), (4, 4));
             (block * &values).dot(&values).max(0.0)
         };
-        self.elapsed.iter().map(of).collect()
+        self.elapsed.iter().enumerate().map(of).collect()
     }
 
     /// What finds the sizes whose force follows a time history best.
     pub(super) fn fit(&self) -> Option<Fit<'_>> {
         let mut gram = DMatrix::identity(self.count, self.count) * RIDGE;
-        for &seconds in &self.elapsed {
+        for (k, &seconds) in self.elapsed.iter().enumerate() {
+            stop::check_sometimes(k);
             let (first, values) = self.splines.at(seconds);
             for (i, a) in values.iter().enumerate() {
                 for (j, b) in values.iter().enumerate() {
@@ -118,6 +122,7 @@ pub(super) struct Fit<'s> {
 
 impl Fit<'_> {
     pub(super) fn sizes(&self, force: &[f64]) -> DVector<f64> {
+        stop::check();
         let mut moment = DVector::zeros(self.shapes.count);
         for (&seconds, force) in self.shapes.elapsed.iter().zip(force) {
             let (first, values) = self.shapes.splines.at(seconds);

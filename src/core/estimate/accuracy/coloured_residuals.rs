@@ -21,6 +21,7 @@ use crate::estimate::evaluation::evaluator::Evaluator;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::history::TimeHistory;
 use crate::simulate::Block;
+use crate::stop;
 
 /// A segment's end leaves a filter ringing; this many samples of it count.
 const MOST_RINGING: usize = 10_000;
@@ -79,6 +80,7 @@ impl Colour {
 
 /// Σ_k e_k e_(k+lag)
 fn lagged(e: &[f64], lag: usize) -> f64 {
+    stop::check();
     let pairs = e.iter().zip(e.iter().skip(lag));
     pairs.map(|(a, b)| a * b).filter(|v| v.is_finite()).sum()
 }
@@ -97,6 +99,7 @@ fn correlation(a: &[f64], b: &[f64], same: bool) -> f64 {
     if same {
         return 1.0;
     }
+    stop::check();
     let both = a.iter().zip(b);
     let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
     for (a, b) in both.filter(|(a, b)| a.is_finite() && b.is_finite()) {
@@ -200,6 +203,7 @@ impl<'c> Filter<'c> {
     /// u_j(k) = Σ_i (R⁻¹)_ij S_i(k) + Σ_m a_jm u_j(k − m)
     fn add(&mut self, block: &Block<'_>, measured: &[Vec<f64>]) {
         for (j, measured) in measured.iter().enumerate() {
+            stop::check();
             for k in 0..block.len {
                 let at = self.begin_row(j);
                 if measured[block.first + k].is_finite() {
@@ -246,6 +250,7 @@ impl<'c> Filter<'c> {
         };
         let rows: Vec<DMatrix<f64>> = (0..outputs).map(latest).collect();
         for w in 0..outputs {
+            stop::check();
             let mut mixed = DMatrix::zeros(self.width, len);
             for (j, rows) in rows.iter().enumerate() {
                 let share = self.colour.root[(j, w)];

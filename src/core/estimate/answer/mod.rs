@@ -52,6 +52,19 @@ impl Solution {
             || outcome == Outcome::Cancelled
     }
 
+    /// The same, for somebody who asked to stop `during` what was to better it.
+    pub(crate) fn stopped(mut self, during: &str) -> Self {
+        let found = &mut self.estimate;
+        if found.outcome != Outcome::Cancelled {
+            found.reason = format!(
+                "stopped on request while {during}; the first try is kept: {}",
+                found.reason
+            );
+            found.outcome = Outcome::Cancelled;
+        }
+        self
+    }
+
     /// The same, as the end of a way whose beginning was another solution.
     pub(crate) fn following(mut self, before: Self) -> Self {
         let (first, last) = (before.estimate, &mut self.estimate);

@@ -10,6 +10,7 @@ use crate::estimate::evaluation::evaluator::Evaluator;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::progress::Observer;
+use crate::stop;
 
 /// A minimum is another one where -ln L differs by more than this.
 const ANOTHER: f64 = 0.1;
@@ -67,14 +68,18 @@ pub(crate) fn descend_with<'p, E: Evaluate<'p>>(
         if iteration == problem.options.max_iterations {
             break Stopped::Budget { distance };
         }
-        if fallback.turns_at(iteration)
-            && let Ok(first) = Iterate::at(problem, &mut evaluator, start.clone())
-        {
-            search = Search::new(problem, fallback.method());
-            spent = Some((std::mem::replace(&mut current, first), distance));
-            taken = Taken::default();
-            iteration += 1;
-            continue;
+        if fallback.turns_at(iteration) {
+            let first = || Iterate::at(problem, &mut evaluator, start.clone());
+            let Ok(first) = stop::droppable(first) else {
+                break Stopped::OnRequest;
+            };
+            if let Ok(first) = first {
+                search = Search::new(problem, fallback.method());
+                spent = Some((std::mem::replace(&mut current, first), distance));
+                taken = Taken::default();
+                iteration += 1;
+                continue;
+            }
         }
         if on_the_spot == NOWHERE {
             if has_turned {
@@ -83,12 +88,17 @@ pub(crate) fn descend_with<'p, E: Evaluate<'p>>(
             search = Search::new(problem, fallback.turn());
             (on_the_spot, has_turned) = (0, true);
         }
-        let mut found = search.onward(&mut evaluator, &current, newton);
-        if let Err(nothing) = found {
-            search = Search::new(problem, fallback.turn());
-            let other = search.onward(&mut evaluator, &current, newton);
-            found = other.map_err(|other| other.or(nothing));
-        }
+        let onward = || {
+            let found = search.onward(&mut evaluator, &current, newton);
+            found.or_else(|nothing| {
+                search = Search::new(problem, fallback.turn());
+                let other = search.onward(&mut evaluator, &current, newton);
+                other.map_err(|other| other.or(nothing))
+            })
+        };
+        let Ok(found) = stop::droppable(onward) else {
+            break Stopped::OnRequest;
+        };
         match found {
             Ok(found) => {
                 (current, taken) = *found;

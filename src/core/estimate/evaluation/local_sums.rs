@@ -7,6 +7,10 @@ use crate::estimate::likelihood::sums::{Product, Sums, pair, pairs};
 use crate::estimate::linear::products::{add_combination, add_cross_products, add_products, dot};
 use crate::estimate::problem::Problem;
 use crate::simulate::{Block, PACK, Pack, Segment, packs};
+use crate::stop;
+
+/// Columns beyond which the products of one output alone take long.
+const WIDE: usize = 64;
 
 pub(crate) struct LocalSums {
     full: bool,
@@ -62,7 +66,11 @@ impl LocalSums {
         let residuals = &self.block_residuals;
         for i in 0..outputs {
             let rows = self.missing.rows(block, i);
+            let is_wide = self.widths[i] > WIDE;
             for j in if self.full { 0..i } else { i..i } {
+                if is_wide {
+                    stop::check();
+                }
                 self.residuals[(i, j)] += dot(&residuals[i], &residuals[j]);
                 let to = &mut self.products[pair(i, j, true)];
                 add_cross_products(
@@ -72,6 +80,9 @@ impl LocalSums {
                     self.missing.rows(block, j),
                     self.widths[j],
                 );
+            }
+            if is_wide {
+                stop::check();
             }
             self.residuals[(i, i)] += dot(&residuals[i], &residuals[i]);
             add_products(

@@ -11,6 +11,7 @@ use super::local_sums::LocalSums;
 use crate::estimate::problem::unusable::{Unusable, left_range};
 use crate::estimate::problem::{Problem, set_parameters};
 use crate::simulate::{Block, Sensitivities};
+use crate::stop;
 
 /// Fewer samples than these are not worth a thread of their own: it takes some 10 µs to wake one.
 const LEAST_SAMPLES: usize = 1000;
@@ -91,9 +92,11 @@ pub(crate) fn sums(
         return strand.sums(problem, 0..problem.segments.len(), theta, full);
     }
     let parts = parts(problem, strands.len());
+    let of_part =
+        |(strand, part): (&mut Strand<'_>, Range<usize>)| strand.sums(problem, part, theta, full);
     let found: Vec<Result<Vec<LocalSums>, Unusable>> = (strands.par_iter_mut())
         .zip(parts)
-        .map(|(strand, part)| strand.sums(problem, part, theta, full))
+        .map(stop::shared(of_part))
         .collect();
     let mut all = Vec::with_capacity(problem.segments.len());
     for part in found {

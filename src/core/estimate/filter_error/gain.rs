@@ -11,6 +11,7 @@ use super::riccati::SteadyCovariance;
 use crate::estimate::evaluation::linearised::{at_start, slopes_at_start};
 use crate::model::{Jacobian, Model};
 use crate::simulate::Segment;
+use crate::stop;
 
 /// The place at which a gain is computed: one segment, all its parameters (SI), the intensities by state, and R⁻¹.
 #[derive(Clone, Copy)]
@@ -89,6 +90,7 @@ impl Gain {
     }
 
     fn change(&self, setting: &Setting<'_>, column: Column) -> Change {
+        stop::check();
         let (states, outputs) = (self.k.nrows(), self.k.ncols());
         let Some(steady) = &self.steady else {
             return Change {

@@ -34,6 +34,7 @@ use crate::estimate::descent::stopped::Stopped;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::progress::Observer;
+use crate::stop;
 use iterate::{GainNoise, Iterate};
 use limit::restore;
 use relaxation::relaxed;
@@ -85,17 +86,23 @@ pub fn filter_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
         if fallback.turns_at(iteration) {
             damping = damping::start(fallback.method());
         }
-        let way = (fallback.method(), &mut damping);
-        let mut found = search(&mut evaluator, &current, way);
-        // while R has still to follow, that is what comes next
-        if let Err(nothing) = found
-            && lag <= problem.options.tolerance
-        {
-            let method = fallback.turn();
-            damping = damping::start(method);
-            let other = search(&mut evaluator, &current, (method, &mut damping));
-            found = other.map_err(|other| other.or(nothing));
-        }
+        let onward = || {
+            let way = (fallback.method(), &mut damping);
+            let found = search(&mut evaluator, &current, way);
+            // while R has still to follow, that is what comes next
+            if lag > problem.options.tolerance {
+                return found;
+            }
+            found.or_else(|nothing| {
+                let method = fallback.turn();
+                damping = damping::start(method);
+                let other = search(&mut evaluator, &current, (method, &mut damping));
+                other.map_err(|other| other.or(nothing))
+            })
+        };
+        let Ok(found) = stop::droppable(onward) else {
+            break Stopped::OnRequest;
+        };
         let (lower, how) = match found {
             Ok(found) => found,
             // nothing is left to gain with this R in the gain, but R itself still has to follow
@@ -109,8 +116,11 @@ pub fn filter_error(problem: &Problem, observer: &mut Observer<'_>) -> Result<So
             Err(Nothing { in_range: true }) => break Stopped::Stalled { distance },
             Err(Nothing { in_range: false }) => break Stopped::Diverged,
         };
-        let Ok(next) = relaxed(&mut evaluator, &current, lower) else {
-            break Stopped::Stalled { distance };
+        let follow = || relaxed(&mut evaluator, &current, lower);
+        let next = match stop::droppable(follow) {
+            Ok(Ok(next)) => next,
+            Ok(Err(_)) => break Stopped::Stalled { distance },
+            Err(_) => break Stopped::OnRequest,
         };
         (current, taken) = (next, how);
         iteration += 1;

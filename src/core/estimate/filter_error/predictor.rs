@@ -11,6 +11,7 @@ use crate::estimate::problem::Problem;
 use crate::estimate::problem::missing::present;
 use crate::model::{Jacobian, Model, Program, Workspace};
 use crate::simulate::{Segment, Stepper, between, initial_state};
+use crate::stop;
 
 /// One sample.
 pub(super) struct Predicted<'a> {
@@ -61,6 +62,7 @@ impl<'p> Predictor<'p> {
         let mut tangent = Tangent::new(model, columns, parameters);
         let mut elapsed = 0.0;
         for k in 0..segment.len() {
+            stop::check();
             self.observe(segment, (k, elapsed), &state, &tangent, &mut sample);
             sink(&Predicted {
                 sample: k,

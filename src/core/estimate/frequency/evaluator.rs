@@ -8,6 +8,7 @@ use super::response::{Response, Sizes};
 use super::transformed::Transformed;
 use crate::estimate::problem::unusable::Unusable;
 use crate::simulate::path_out_of_bounds;
+use crate::stop;
 
 /// Evaluates a transformed problem at any θ.
 pub(super) struct FrequencyEvaluator<'p> {
@@ -73,6 +74,7 @@ impl<'p> FrequencyEvaluator<'p> {
         };
         let mut room = response.room();
         for frequency in 0..response.spectra.omega.len() {
+            stop::check();
             response
                 .at(frequency, &mut room)
                 .ok_or(Unusable::NotFinite)?;

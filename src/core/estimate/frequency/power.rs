@@ -8,6 +8,8 @@
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
+use crate::stop;
+
 /// Frequencies at either side that count, at least and as a share of all.
 const LEAST_SIDE: usize = 4;
 const SIDE: f64 = 0.4;
@@ -51,21 +53,38 @@ impl Power {
         }
     }
 
-    /// E(e eᴴ) at a frequency.
-    pub(super) fn at(&self, k: usize) -> DMatrix<Complex64> {
+    /// E(e eᴴ) at each frequency, one after the other: the sums of neighbours move along.
+    pub(super) fn each(&self) -> impl Iterator<Item = DMatrix<Complex64>> + '_ {
+        let count = self.scaled.len();
+        let outputs = self.scaled.first().map_or(0, Vec::len);
         // at the edges of the band as many frequencies, on one side
-        let width = (2 * self.side + 1).min(self.scaled.len());
-        let first = k.saturating_sub(self.side).min(self.scaled.len() - width);
-        let roots = &self.roots[k];
-        let mut sum = DMatrix::zeros(roots.len(), roots.len());
-        for residual in &self.scaled[first..first + width] {
-            for i in 0..roots.len() {
-                for j in 0..roots.len() {
-                    sum[(i, j)] += residual[i] * residual[j].conj() * (roots[i] * roots[j]);
-                }
+        let width = (2 * self.side + 1).min(count);
+        let mut sum = DMatrix::zeros(outputs, outputs);
+        let (mut from, mut to) = (0, 0);
+        (0..count).map(move |k| {
+            let first = k.saturating_sub(self.side).min(count - width);
+            while to < first + width {
+                stop::check_sometimes(to);
+                add(&mut sum, &self.scaled[to], 1.0);
+                to += 1;
             }
+            while from < first {
+                add(&mut sum, &self.scaled[from], -1.0);
+                from += 1;
+            }
+            let roots = &self.roots[k];
+            let of = |i: usize, j: usize| sum[(i, j)] * (roots[i] * roots[j] / width as f64);
+            DMatrix::from_fn(outputs, outputs, of)
+        })
+    }
+}
+
+/// Adds e eᴴ, or takes it off.
+fn add(sum: &mut DMatrix<Complex64>, e: &[Complex64], sign: f64) {
+    for (i, a) in e.iter().enumerate() {
+        for (j, b) in e.iter().enumerate() {
+            sum[(i, j)] += a * b.conj() * sign;
         }
-        sum / Complex64::from(width as f64)
     }
 }
 
@@ -81,6 +100,7 @@ fn trend(omega: &[f64], residuals: &[Vec<Complex64>], output: usize, close: f64)
         return trend;
     }
     for _ in 0..ROUNDS {
+        stop::check();
         // sums of 1, ω² and ω⁴, and of the power by these, each with its weight
         let mut sums = [0.0; 5];
         for ((p, power), omega) in trend.iter().zip(&power).zip(omega) {
@@ -162,15 +182,38 @@ mod tests {
         };
         let residuals: Vec<Vec<Complex64>> = omega.iter().enumerate().map(residual).collect();
         let power = Power::of(&omega, &residuals, 1.0);
-        for k in [0, 50, 200, 399] {
-            let found = power.at(k)[(0, 0)].re / truth(omega[k]);
+        for (k, found) in power.each().enumerate() {
+            let found = found[(0, 0)].re / truth(omega[k]);
             assert!((found - 1.0).abs() < 0.1, "{k}: {found}");
         }
         // and nothing is nothing
         let none = vec![vec![Complex64::ZERO]; 10];
-        assert_eq!(
-            Power::of(&omega[..10], &none, 1.0).at(3)[(0, 0)],
-            Complex64::ZERO
-        );
+        let power = Power::of(&omega[..10], &none, 1.0);
+        assert!(power.each().all(|power| power[(0, 0)] == Complex64::ZERO));
+    }
+
+    /// Against the average over each frequency's neighbours, of two outputs that go together, few and many frequencies.
+    #[test]
+    fn sums_that_move_along_are_those_of_the_neighbours() {
+        for count in [1, 3, 9, 40, 101] {
+            let omega: Vec<f64> = (1..=count).map(f64::from).collect();
+            let one = |k: usize| Complex64::from_polar(1.0 + (k % 7) as f64, 1.3 * k as f64);
+            let residuals: Vec<Vec<Complex64>> = (0..omega.len())
+                .map(|k| vec![one(k), one(k) * 0.5 + one(3 * k + 1)])
+                .collect();
+            let power = Power::of(&omega, &residuals, 1.0);
+            let width = (2 * power.side + 1).min(omega.len());
+            let all: Vec<_> = power.each().collect();
+            assert_eq!(all.len(), omega.len());
+            for (k, found) in all.iter().enumerate() {
+                let first = k.saturating_sub(power.side).min(omega.len() - width);
+                let near = &power.scaled[first..first + width];
+                for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                    let sum: Complex64 = near.iter().map(|e| e[i] * e[j].conj()).sum();
+                    let mean = sum / width as f64 * (power.roots[k][i] * power.roots[k][j]);
+                    assert!((found[(i, j)] - mean).norm() < 1e-11, "{count}: {k}");
+                }
+            }
+        }
     }
 }

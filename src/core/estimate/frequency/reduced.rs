@@ -18,6 +18,7 @@ use crate::estimate::options::Noise;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::parameter::Bound;
+use crate::stop;
 
 /// A share of the information that is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -126,10 +127,10 @@ fn gradient_covariance(
         // closer than independent frequencies, as many of them as are between two of those
         let power = Power::of(&spectra.omega, &residuals, close);
         let whole = Complex64::from(close.recip());
-        for k in 0..rows.len() {
-            let power = power.at(k) * whole;
-            let power = &weight * power * &weight;
-            let rows = DMatrix::from_row_slice(outputs, width, &rows[k]);
+        for (power, rows) in power.each().zip(&rows) {
+            stop::check();
+            let power = &weight * (power * whole) * &weight;
+            let rows = DMatrix::from_row_slice(outputs, width, rows);
             let own = (rows.adjoint() * power * &rows).map(|entry| 0.5 * entry.re);
             for (a, &row) in columns.places.iter().enumerate() {
                 for (b, &column) in columns.places.iter().enumerate() {

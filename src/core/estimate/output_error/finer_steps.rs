@@ -9,6 +9,7 @@ use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::progress::Watcher;
 use crate::estimate::start::found::Start;
+use crate::stop;
 
 /// # Errors
 /// The start gives no cost.
@@ -28,10 +29,11 @@ pub(crate) fn from_start(
             may_shoot: false,
         };
         let number = found.estimate.iterations + 1;
-        let Ok(run) = Run::from(&next, &start, number, watcher) else {
-            break;
+        let solution = match stop::droppable(|| Run::from(&next, &start, number, watcher)) {
+            Ok(Ok(run)) => run.solution,
+            Ok(Err(_)) => break,
+            Err(_) => return Ok(found.stopped("going on with shorter integration steps")),
         };
-        let solution = run.solution;
         if !solution.may_follow(&found) {
             break;
         }

@@ -17,6 +17,7 @@ use crate::estimate::report::progress::{Watcher, unobserved};
 use crate::estimate::start::found::Start;
 use crate::estimate::start::multi_start::multi_start;
 use crate::flight::{Finding, FindingCode};
+use crate::stop;
 
 /// An output of which less is explained is looked at,
 const GOOD: f64 = 0.9;
@@ -48,19 +49,25 @@ pub(super) fn with_second_look(
         && problem.options.max_iterations > 0
         && first.estimate.outcome != Outcome::Cancelled
         && work <= MOST_WORK;
-    let Some(poor) = ours.then(|| poor(problem, &first.estimate)).flatten() else {
-        return Ok(first);
-    };
-    let Ok(found) = multi_start(problem, STARTS, SEED, SPREAD, watcher) else {
-        return Ok(first);
-    };
-    let start = Start {
-        theta: found.theta,
-        stopped: found.stopped,
-        may_shoot: false,
+    let poor = stop::droppable(|| ours.then(|| poor(problem, &first.estimate)).flatten());
+    let poor = match poor {
+        Ok(Some(poor)) => poor,
+        Ok(None) => return Ok(first),
+        Err(_) => return Ok(first.stopped("looking at its fit")),
     };
     let number = first.estimate.iterations + 1;
-    let second = Run::from(problem, &start, number, watcher);
+    let from_others = || -> Result<Run, Unusable> {
+        let found = multi_start(problem, STARTS, SEED, SPREAD, watcher)?;
+        let start = Start {
+            theta: found.theta,
+            stopped: found.stopped,
+            may_shoot: false,
+        };
+        Run::from(problem, &start, number, watcher)
+    };
+    let Ok(second) = stop::droppable(from_others) else {
+        return Ok(first.stopped("trying other starts"));
+    };
     let before = first.estimate.cost;
     let (mut kept, came) = match second {
         Ok(second) if second.solution.estimate.cost < before - OTHER => {

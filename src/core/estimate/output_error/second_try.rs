@@ -14,6 +14,7 @@ use crate::estimate::report::start::{StartKind, StartReport};
 use crate::estimate::start::find_start;
 use crate::estimate::start::found::Start;
 use crate::estimate::start::shooting::multiple_shooting;
+use crate::stop;
 
 /// A stalled iteration is at its minimum, but for rounding, where the cost slopes by less than this over one standard
 /// error.
@@ -49,11 +50,10 @@ pub(super) fn from_start(
         shot.stopped = first.tell(say, watcher).is_break();
     }
     let number = first.solution.estimate.iterations + 1;
-    let Ok(second) = Run::from(problem, &shot, number, watcher) else {
-        return Ok(match shot.stopped {
-            true => first.cancelled(),
-            false => first.solution,
-        });
+    let second = match stop::droppable(|| Run::from(problem, &shot, number, watcher)) {
+        Ok(Ok(second)) => second,
+        Ok(Err(_)) if !shot.stopped => return Ok(first.solution),
+        _ => return Ok(first.cancelled()),
     };
     let is_cancelled = second.solution.estimate.outcome == Outcome::Cancelled;
     let (kept, which) = match second.solution.estimate.cost < first.solution.estimate.cost {
@@ -124,16 +124,7 @@ impl Run {
 
     /// The better run, where the second was stopped on request.
     fn cancelled(self) -> Solution {
-        let mut solution = self.solution;
-        let found = &mut solution.estimate;
-        if found.outcome != Outcome::Cancelled {
-            found.reason = format!(
-                "stopped on request while trying once more, from multiple shooting; the first try is kept: {}",
-                found.reason
-            );
-            found.outcome = Outcome::Cancelled;
-        }
-        solution
+        (self.solution).stopped("trying once more, from multiple shooting")
     }
 
     fn tell(&self, text: String, watcher: &mut Watcher<'_>) -> ControlFlow<()> {

@@ -9,6 +9,7 @@ use multiversion::multiversion;
 
 use super::local_fit::{Kernel, LocalFit};
 use crate::estimate::linear::products::dot;
+use crate::stop;
 
 /// A state and its derivative, sample by sample.
 pub(crate) struct Smoothed {
@@ -87,6 +88,7 @@ impl<'t> Windows<'t> {
             noise: 0.0,
         };
         for k in 0..values.len() {
+            stop::check_sometimes(k);
             let shared = shared.as_ref().map(|(value, slope)| (value[k], slope[k]));
             // a missing value makes both none
             let shared = shared.filter(|(value, slope)| value.is_finite() && slope.is_finite());
@@ -157,6 +159,7 @@ impl<'t> Windows<'t> {
         values: &[f64],
         weights: fn(&Kernel) -> &[f64],
     ) -> Vec<f64> {
+        stop::check();
         let (len, half) = (values.len(), self.half);
         let mut result = vec![0.0; len];
         if let (Some(middle), true) = (kernels.get(half), len > 2 * half) {

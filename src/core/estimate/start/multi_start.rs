@@ -14,6 +14,7 @@ use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::progress::{Progress, Watcher};
 use crate::estimate::report::start::{StartKind, StartReport};
+use crate::stop::{caught, check, droppable, shared};
 
 /// Costs that differ by less than this are of one optimum: a seventh of a standard error away, at most.
 const SAME_OPTIMUM: f64 = 0.01;
@@ -41,19 +42,29 @@ pub(crate) fn multi_start(
         .map_or(1, NonZero::get)
         .min(starts);
     let (send, runs) = mpsc::channel();
+    // where it is dropped, no further one is begun
+    let one = shared(|number: usize| {
+        droppable(|| {
+            let theta = random_start(problem, number, seed, spread);
+            run(problem, number, theta, &stop)
+        })
+    });
     let mut tally = Tally::default();
     std::thread::scope(|scope| {
         for _ in 0..threads {
             let send = send.clone();
-            let (next, stop) = (&next, &stop);
+            let (next, stop, one) = (&next, &stop, &one);
             scope.spawn(move || {
                 loop {
                     let number = next.fetch_add(1, Ordering::Relaxed);
                     if number >= starts || stop.load(Ordering::Relaxed) {
                         return;
                     }
-                    let theta = random_start(problem, number, seed, spread);
-                    if send.send(run(problem, number, theta, stop)).is_err() {
+                    let Ok(Ok(run)) = caught(|| one(number)) else {
+                        stop.store(true, Ordering::Relaxed);
+                        return;
+                    };
+                    if send.send(run).is_err() {
                         return;
                     }
                 }
@@ -75,6 +86,7 @@ pub(crate) fn multi_start(
             }
         }
     });
+    check();
     let stopped = stop.load(Ordering::Relaxed);
     match tally.best {
         Some((theta, _)) => Ok(Start {

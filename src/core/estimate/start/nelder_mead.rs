@@ -8,6 +8,7 @@ use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::progress::{Progress, Watcher};
 use crate::estimate::report::start::{StartKind, StartReport};
+use crate::stop;
 
 /// The first simplex reaches this share of each parameter's start, ...
 const REACH: f64 = 0.1;
@@ -46,7 +47,10 @@ pub(crate) fn nelder_mead(
         if done || stopped {
             break;
         }
-        search.turn(&mut corners);
+        stopped = stop::droppable(|| search.turn(&mut corners)).is_err();
+        if stopped {
+            break;
+        }
     }
     let best = corners.swap_remove(0);
     match best.cost.is_finite() {

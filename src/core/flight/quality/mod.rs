@@ -22,6 +22,7 @@ pub use record::{Record, Series};
 use std::borrow::Cow;
 
 use super::{Finding, Maneuver};
+use crate::stop;
 
 /// Everything odd about a maneuver: first the time axis, then channel by channel, then channels against each other.
 pub fn quality(maneuver: &Maneuver) -> Vec<Finding> {
@@ -41,6 +42,7 @@ pub fn quality_of(record: &Record<'_>) -> Vec<Finding> {
     findings.extend(repeated.finding());
     findings.extend(rows::blocks(record));
     for series in record.series.iter().filter(|series| series.is_used) {
+        stop::check();
         let (name, values) = (series.name, &series.values);
         findings.extend(missing::missing(name, values));
         if let Some(constant) = repeats::constant(name, values) {

@@ -5,6 +5,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::ops::Range;
 
 use crate::flight::{Finding, FindingCode};
+use crate::stop;
 
 use super::record::Record;
 
@@ -67,6 +68,7 @@ impl RepeatedRows {
             is_repeated[segment.start] = false;
         }
         for channel in &changing {
+            stop::check();
             for (k, pair) in channel.values.windows(2).enumerate() {
                 is_repeated[k + 1] &= pair[0] == pair[1];
             }
@@ -175,6 +177,7 @@ pub(super) fn blocks(record: &Record<'_>) -> Option<Finding> {
     }
     let hashes: Vec<u64> = (0..record.time.len())
         .map(|k| {
+            stop::check_sometimes(k);
             let mut hash = DefaultHasher::new();
             changing
                 .iter()
@@ -212,6 +215,7 @@ fn longest_block(hashes: &[u64]) -> Option<(Range<usize>, usize)> {
         }
     };
     for (k, hash) in hashes.iter().enumerate() {
+        stop::check_sometimes(k);
         run = match run {
             Some((start, first))
                 if hashes[first + (k - start)] == *hash && first + (k - start) < start =>

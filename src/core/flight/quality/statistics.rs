@@ -1,9 +1,11 @@
 //! Medians, percentiles and small least squares of samples that may be missing.
 
+use crate::stop;
 use nalgebra::{DMatrix, DVector};
 
 /// The values that are numbers, sorted.
 pub(super) fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    stop::check();
     let mut sorted: Vec<f64> = values.filter(|value| value.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);
     sorted

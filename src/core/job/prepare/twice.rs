@@ -7,6 +7,7 @@ use super::stretch::Stretch;
 use crate::flight::{Finding, FindingCode};
 use crate::job::spec::JobSpec;
 use crate::simulate::Segment;
+use crate::stop;
 
 /// Fewer rows, or fewer different ones, may be alike at rest.
 const LEAST: usize = 20;
@@ -23,6 +24,7 @@ pub(super) fn findings(spec: &JobSpec, used: &[Used<'_, '_>]) -> Vec<Finding> {
     for (segment, stretch) in used {
         let index = stretch.index;
         for (sample, _) in stretch.recorded() {
+            stop::check_sometimes(sample);
             let hash = row_hash(segment, sample);
             let first = *seen.entry(hash).or_insert(index);
             if first != index {

@@ -10,6 +10,7 @@ use crate::flight::{Fault, Faults};
 use crate::job::no_start::no_start;
 use crate::job::plan::Plan;
 use crate::job::result::JobResult;
+use crate::stop;
 
 /// Runs the plan of a diagnosis; `watcher` is told of its steps and may stop it.
 ///
@@ -23,7 +24,7 @@ pub fn run_diagnosis(
         let message = "the job was not prepared as a diagnosis";
         return Err(Fault::new("/kind", "bad_option", message).into());
     };
-    match diagnose(case, watcher) {
+    match stop::droppable(|| diagnose(case, watcher)).unwrap_or(Err(Inconclusive::Stopped)) {
         Ok(conclusion) => finish(
             plan,
             JobResult {

@@ -10,6 +10,7 @@ use crate::flight::Faults;
 use crate::job::no_start::no_start;
 use crate::job::plan::Plan;
 use crate::job::result::JobResult;
+use crate::stop;
 
 /// What a study tells as it goes.
 #[derive(Clone, Copy, Debug)]
@@ -40,10 +41,10 @@ pub fn run_study(
     let mut listener = |step: Option<&StudyStep>| {
         observer(step.map_or(StudyProgress::Underway, StudyProgress::Finding))
     };
-    match study::study(&plan.problem, clock, &mut listener) {
-        Ok(study) => result.study = Some(study),
-        Err(NoStudy::Unusable(why)) => return Err(no_start(&plan.problem, why).into()),
-        Err(NoStudy::Stopped) => {
+    match stop::droppable(|| study::study(&plan.problem, clock, &mut listener)) {
+        Ok(Ok(study)) => result.study = Some(study),
+        Ok(Err(NoStudy::Unusable(why))) => return Err(no_start(&plan.problem, why).into()),
+        Ok(Err(NoStudy::Stopped)) | Err(_) => {
             result.estimate.outcome = Outcome::Cancelled;
             result.estimate.reason = format!(
                 "the study was stopped on request; of the estimation: {}",

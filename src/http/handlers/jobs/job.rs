@@ -312,8 +312,8 @@ async fn get_job_spec(
 
 /// Ask to stop a job.
 ///
-/// A job that waits is cancelled at once. One that runs stops after the iteration under way; its
-/// best iterate is kept as the result. Asking twice is asking once.
+/// A job that waits is cancelled at once. One that runs ends within a second: what is under way is dropped, and its
+/// best iterate is kept as the result if one can be made of it by then. Asking twice is asking once.
 #[utoipa::path(post, path = "/v1/jobs/{id}/cancel", tag = "Jobs", operation_id = "cancelJob",
     params(("id" = Uuid, Path)),
     responses(

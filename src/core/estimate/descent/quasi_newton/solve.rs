@@ -17,6 +17,7 @@ use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::iteration::Iteration;
 use crate::estimate::report::progress::Observer;
+use crate::stop;
 
 /// How often the end of the descent may turn out to be none: the information matrix is then taken for the
 /// Hessian, and the descent goes on.
@@ -77,13 +78,19 @@ pub(crate) fn descend<'p>(
     let (stopped, last) = loop {
         let out_of_budget = iteration == problem.options.max_iterations;
         let at_end = optimiser.distance() < problem.options.tolerance;
-        if !(told_to_stop || out_of_budget || at_end)
-            && let Ok(moved) = optimiser.step(&mut |theta: &[f64]| adjoint.at(theta).ok())
-        {
-            iteration += 1;
-            let report = report(problem, &mut adjoint, &optimiser, iteration, moved.length)?;
-            told_to_stop = observer(&report).is_break();
-            continue;
+        if !(told_to_stop || out_of_budget || at_end) {
+            let mut objective = |theta: &[f64]| adjoint.at(theta).ok();
+            match stop::droppable(|| optimiser.step(&mut objective)) {
+                Ok(Ok(moved)) => {
+                    iteration += 1;
+                    let length = moved.length;
+                    let report = report(problem, &mut adjoint, &optimiser, iteration, length)?;
+                    told_to_stop = observer(&report).is_break();
+                    continue;
+                }
+                Ok(Err(_)) => {}
+                Err(_) => told_to_stop = true,
+            }
         }
         // the Hessian gathered so far may be wrong: look at the information matrix itself
         let last = Iterate::at(problem, &mut evaluator, optimiser.theta.clone())?;

@@ -11,6 +11,7 @@ use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::problem::{Problem, set_parameters};
 use crate::model::Scalar;
 use crate::simulate::{March, Standing};
+use crate::stop;
 
 /// Samples in a stretch.
 pub(crate) const STRETCH: usize = 256;
@@ -177,6 +178,7 @@ impl LocalSums {
     fn add(&mut self, stretch: &Differentiated<'_>, full: bool) {
         let (slopes, residuals) = (stretch.slopes, stretch.residuals);
         for (product, (i, j)) in self.products.iter_mut().zip(pairs(slopes.len(), full)) {
+            stop::check();
             self.sums.residuals[(i, j)] += residuals[i].dot(&residuals[j]);
             product.gemm_tr(1.0, &slopes[j], &slopes[i], 1.0);
         }

@@ -6,6 +6,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::beginning::Beginning;
 use super::intervals::{Nodes, Piece};
+use crate::stop;
 
 /// How a state of node j follows from those of node j + 1 and θ: ds_j = constant − factor [ds_(j+1), dθ].
 struct Eliminated {
@@ -51,6 +52,7 @@ pub(super) fn eliminate(
         let mut descent = -jacobian.tr_mul(&weights.component_mul(&beginning.jump));
         let mut eliminated = Vec::new();
         for (j, piece) in pieces.iter().enumerate() {
+            stop::check();
             information += &piece.information;
             descent += &piece.descent;
             if let Some(next) = own.get(j + 1) {

@@ -7,6 +7,7 @@ use crate::estimate::likelihood::sums::ResidualSums;
 use crate::estimate::problem::Problem;
 use crate::model::{Model, ModelDocument, Output, Parameter, Per, Start};
 use crate::simulate::{Block, Columns, Segment, Sensitivities, simulate};
+use crate::stop;
 
 /// States at the beginnings of intervals: by segment, then interval.
 pub(super) type Nodes = Vec<Vec<DVector<f64>>>;
@@ -269,6 +270,7 @@ impl Piece {
             errors.push(error);
         }
         for i in 0..outputs {
+            stop::check();
             for j in (0..outputs).filter(|&j| weights[(i, j)] != 0.0) {
                 self.information
                     .gemm_tr(weights[(i, j)], &rows[i], &rows[j], 1.0);

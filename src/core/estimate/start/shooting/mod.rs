@@ -33,6 +33,7 @@ use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
 use crate::estimate::report::progress::unobserved;
 use crate::estimate::report::start::{StartKind, StartReport};
+use crate::stop;
 use beginning::beginning;
 use elimination::eliminate;
 use intervals::{Cut, Nodes};
@@ -94,8 +95,17 @@ pub(crate) fn multiple_shooting(
             false => problem.clone(),
             true => with_measured_noise(problem),
         };
-        let Some(closed) = shoot(&way, problem, &theta, interval, told) else {
-            continue;
+        let closed = match stop::droppable(|| shoot(&way, problem, &theta, interval, told)) {
+            Ok(Some(closed)) => closed,
+            Ok(None) => continue,
+            // half a way leads nowhere
+            Err(_) => {
+                let theta = best.map_or(theta, |best| best.theta);
+                return Ok(Shot {
+                    theta,
+                    stopped: true,
+                });
+            }
         };
         stopped = closed.stopped;
         if best.as_ref().is_none_or(|best| closed.cost < best.cost) {
