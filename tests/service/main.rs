@@ -10,6 +10,7 @@ mod common {
     pub(crate) mod filter_case;
     pub(crate) mod flight_data;
     pub(crate) mod jobs;
+    pub(crate) mod layouts;
     pub(crate) mod preprocessing;
     pub(crate) mod process;
     pub(crate) mod published_cases;
@@ -40,6 +41,7 @@ mod findings;
 mod flown;
 mod jobs;
 mod keys;
+mod layouts;
 mod lifecycle;
 mod limits;
 mod logs;
