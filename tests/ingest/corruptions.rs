@@ -188,7 +188,8 @@ fn what_was_put_wrong_is_found() {
         ("one row twice", &["repeated_rows"], &twice),
         ("a block of rows twice", &["repeated_rows"], &block),
         ("a frozen channel", &["repeated_values"], &frozen),
-        ("a gap", &["gap"], &gap),
+        // a gap is longer than five steps
+        ("lost rows", &["gap", "uneven_sampling"], &gap),
         ("uneven sampling", &["uneven_sampling"], &jitter),
         ("missing values", &["missing_values"], &missing),
         ("a spike", &["spikes"], &spike),
