@@ -58,7 +58,7 @@ fn upload(view: &ManeuversView) -> Markup {
     html! {
         div.drop id="drop" {
             label { "Drop recordings here, or choose them"
-                input type="file" id="choose" multiple accept=".csv,.txt,.tsv,.json,.mat,.asc,.dat,.xlsx,.xlsm,.parquet,.h5,.hdf5,.tdms,.mf4,.ulg,.ulog,.bin,.gz,.zip";
+                input type="file" id="choose" multiple accept=".csv,.txt,.tsv,.log,.dat,.out,.asc,.lvm,.vbo,.ict,.json,.mat,.xlsx,.xlsm,.parquet,.h5,.hdf5,.nc,.tdms,.mf4,.ulg,.ulog,.bin,.gz,.zip";
             }
             p.soft { "CSV with names and units, Excel workbooks, Parquet, logs of PX4 and ArduPilot, TDMS, MDF 4, MAT, HDF5, JSON, or a matrix as text; any of them packed with gzip or zip. Columns and units of CSV are shown before anything is stored." }
         }

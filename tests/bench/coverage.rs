@@ -1,5 +1,5 @@
 //! How often the 95 % intervals contain the truth: `cargo bench --bench coverage [-- SEEDS [FIRST]]` prints the tables.
-//! Seeds count from FIRST, 1 if not given.
+//! Seeds count from FIRST, 1 if not given. `--short-period` leaves the flight path reconstruction out.
 
 #[path = "../common"]
 mod common {
@@ -15,6 +15,7 @@ use serde_json::{Value, json};
 use trimtab_core::job::JobSpec;
 use trimtab_core::simulate::NoiseColour;
 
+use common::coloured::Logged;
 use common::coverage::{Coverage, fit, over_seeds};
 use common::{coloured, reconstruction};
 
@@ -50,16 +51,26 @@ fn main() {
             NoiseColour::BandLimited { bandwidth: 2.0 },
         ),
     ];
-    for (name, colour) in colours {
+    for (name, colour) in &colours {
         let begun = Instant::now();
-        let coverage = coloured::short_period(colour, first..first + seeds);
+        let coverage = coloured::short_period(*colour, first..first + seeds);
         coverage.print(&format!(
             "short period, {name} noise ({:.1?})",
             begun.elapsed()
         ));
     }
 
-    reconstruct(first..first + seeds);
+    for by in [Logged::WithGaps, Logged::Held, Logged::HeldWithGaps] {
+        for (name, colour) in &colours[..2] {
+            let begun = Instant::now();
+            let coverage = coloured::logged(*colour, by, first..first + seeds);
+            let took = begun.elapsed();
+            coverage.print(&format!("short period, {by:?}, {name} noise ({took:.1?})"));
+        }
+    }
+    if !std::env::args().any(|argument| argument == "--short-period") {
+        reconstruct(first..first + seeds);
+    }
 }
 
 /// Flight path reconstruction, with noise and with half of it: a bias from the noise, which an estimate has that is not

@@ -119,7 +119,57 @@ fn what_was_put_wrong_is_found() {
         let value = values[row];
         values[row..row + length].fill(value);
     };
-    let kinds: [(&str, &[&str], &Wrong); 10] = [
+    let gap = |seed: u64, time: &mut Vec<f64>, channels: &mut Vec<(String, Channel)>| {
+        let (row, length) = (20 + draw(seed, 11, 500), 3 + draw(seed, 12, 60));
+        time.drain(row..row + length);
+        for (_, channel) in channels {
+            channel.values.drain(row..row + length);
+        }
+    };
+    // a program that waits between samples, now longer and now shorter
+    let jitter = |seed: u64, time: &mut Vec<f64>, _: &mut Vec<(String, Channel)>| {
+        let mut now = time[0];
+        for (k, t) in time.iter_mut().enumerate() {
+            *t = now;
+            now += 0.04 * (0.7 + 0.6 * draw(seed, 100 + k as u64, 1000) as f64 / 1000.0);
+        }
+    };
+    let missing = move |seed: u64, _: &mut Vec<f64>, channels: &mut Vec<(String, Channel)>| {
+        let values = of(channels, output(seed));
+        for place in 0..=draw(seed, 13, 30) as u64 {
+            let row = draw(seed, 20 + place, values.len());
+            values[row] = f64::NAN;
+        }
+    };
+    let spike = move |seed: u64, _: &mut Vec<f64>, channels: &mut Vec<(String, Channel)>| {
+        let values = of(channels, output(seed));
+        let (least, most) = values
+            .iter()
+            .fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(*v), b.max(*v)));
+        let row = 5 + draw(seed, 14, values.len() - 10);
+        let size = (most - least) * (0.5 + draw(seed, 15, 100) as f64 / 50.0);
+        values[row] += if draw(seed, 16, 2) == 0 { size } else { -size };
+    };
+    // a heading that turns through north, or through south
+    let wrap = |seed: u64, time: &mut Vec<f64>, channels: &mut Vec<(String, Channel)>| {
+        let (turn, half) = (std::f64::consts::TAU, draw(seed, 17, 2) == 0);
+        let rate = (4.0 + draw(seed, 18, 10) as f64).to_radians();
+        let heading = |t: &f64| {
+            let plain = if half { 2.5 } else { 5.0 } + rate * t;
+            let wrapped = plain.rem_euclid(turn);
+            if half && wrapped > turn / 2.0 {
+                wrapped - turn
+            } else {
+                wrapped
+            }
+        };
+        let channel = Channel {
+            values: time.iter().map(heading).collect(),
+            ..channels[0].1.clone()
+        };
+        channels.push(("psi".to_string(), channel));
+    };
+    let kinds: [(&str, &[&str], &Wrong); 15] = [
         ("held", &["held_channel"], &held),
         (
             "held, rates that do not divide",
@@ -138,6 +188,12 @@ fn what_was_put_wrong_is_found() {
         ("one row twice", &["repeated_rows"], &twice),
         ("a block of rows twice", &["repeated_rows"], &block),
         ("a frozen channel", &["repeated_values"], &frozen),
+        // a gap is longer than five steps
+        ("lost rows", &["gap", "uneven_sampling"], &gap),
+        ("uneven sampling", &["uneven_sampling"], &jitter),
+        ("missing values", &["missing_values"], &missing),
+        ("a spike", &["spikes"], &spike),
+        ("a wrap", &["wrap"], &wrap),
     ];
     let mut missed = Vec::new();
     for (name, codes, wrong) in kinds {

@@ -10,6 +10,14 @@ fn bytes(name: &str) -> Vec<u8> {
     std::fs::read(path).expect("a recording")
 }
 
+fn unpacked(name: &str) -> Vec<u8> {
+    let mut unpacked = Vec::new();
+    let packed = bytes(name);
+    let mut packed = flate2::read::GzDecoder::new(packed.as_slice());
+    std::io::Read::read_to_end(&mut packed, &mut unpacked).expect("it is whole");
+    unpacked
+}
+
 fn read(bytes: &[u8], mapping: Option<&Mapping>) -> Result<Reading, IngestError> {
     read_recording(bytes, Format::Mat, None, mapping, &Limits::default())
 }
@@ -163,6 +171,96 @@ fn no_damage_to_an_hdf5_file_panics() {
                     look(&damaged, mapping);
                 }
             }
+        }
+    }
+}
+
+/// Groups with many members have them in a heap with a tree: here of two levels above the leaves, by name and by age.
+#[test]
+fn groups_with_many_members_are_read() {
+    let file = unpacked("dense.h5.gz");
+    for alpha in ["air/alpha", "air/alpha again, 0", "air/alpha again, 1299"] {
+        let sources = ["air/time", alpha, "air/q"];
+        let [time, alpha, q] =
+            sources.map(|source| source.replace([' ', ','], "_").replace("__", "_"));
+        let reading = read(&file, Some(&mapping(&time, &alpha, &q)));
+        let reading = reading.unwrap_or_else(|error| panic!("{alpha}: {error}"));
+        assert_is_the_recording(&reading.maneuver, &alpha);
+    }
+    // units stand beside datasets, as netCDF has them
+    let text = r#"{"time": {"from": "air.time", "unit": "s"}, "channels": {"alpha": {"from": "air.alpha"}}}"#;
+    let own = read(&file, Some(&Mapping::from_json(text).unwrap())).unwrap();
+    let alpha = &own.maneuver.channels()["alpha"].values;
+    assert_eq!(alpha[0], 1.5_f64.to_radians());
+    let limits = Limits {
+        max_columns: 1000,
+        ..Limits::default()
+    };
+    let refused = read_recording(&file, Format::Unstated, None, None, &limits).unwrap_err();
+    assert_eq!(refused.faults()[0].code, code::TOO_MANY_COLUMNS);
+}
+
+/// `save -v7.3` of arrays of structs, and of cells.
+#[test]
+fn arrays_of_structs_and_cells_of_matlab_are_read() {
+    let file = bytes("v73_structs.mat");
+    for [time, alpha, q] in [
+        ["run(1).t", "run(2).alpha", "run(2).inner.q"],
+        ["sample.t", "sample.alpha", "sample.q"],
+        ["c[0]", "c[1]", "c[2]"],
+    ] {
+        let reading = read(&file, Some(&mapping(time, alpha, q)));
+        let reading = reading.unwrap_or_else(|error| panic!("{alpha}: {error}"));
+        assert_is_the_recording(&reading.maneuver, alpha);
+    }
+    let other = read(
+        &file,
+        Some(&mapping("run(1).t", "run(1).alpha", "run(2).inner.q")),
+    )
+    .unwrap();
+    let first = other.maneuver.channels()["alpha"].values[0];
+    assert_eq!(first, (-1.5_f64).to_radians());
+    for (source, expected) in [
+        ("run.inner", "each of 2 structs"),
+        ("run(3).alpha", "to rec(2).alpha"),
+        ("c[7]", "to c[2] of cells"),
+        ("run(2).beta", "'run/alpha'"),
+        ("run(1).inner.q", "is not a struct"),
+        ("sample.note", "not numbers"),
+        ("sample(2).note", "char"),
+        ("c(2).x", "is not a struct"),
+    ] {
+        let error = read(&file, Some(&mapping("c[0]", source, "c[2]"))).unwrap_err();
+        let fault = &error.faults()[0];
+        assert_eq!(fault.pointer, "/channels/alpha/from", "{source}");
+        assert!(fault.message.contains(expected), "{source}: {fault}");
+    }
+}
+
+/// Whatever byte is another, the answer is a recording or a fault.
+#[test]
+fn no_damage_to_heaps_and_references_panics() {
+    let structs = bytes("v73_structs.mat");
+    let of_structs = mapping("sample.t", "run(2).alpha", "c[2]");
+    for at in (512..structs.len()).step_by(17) {
+        for with in [0, 1, 0xff] {
+            let mut damaged = structs.clone();
+            damaged[at] = with;
+            let _ = read(&damaged, Some(&of_structs));
+        }
+        let _ = read(&structs[..at], Some(&of_structs));
+    }
+    // the first blocks of each kind, of which there are many
+    let dense = unpacked("dense.h5.gz");
+    let of_dense = mapping("air/time", "air/alpha", "air/q");
+    for mark in [b"FRHP", b"FHIB", b"FHDB", b"BTHD", b"BTIN", b"BTLF"] {
+        let mut found = dense.windows(4).enumerate();
+        let begins = found.find(|(_, word)| word == mark).map(|(at, _)| at);
+        let begins = begins.expect("a block of each kind");
+        for at in (begins..begins + 150).step_by(3) {
+            let mut damaged = dense.clone();
+            damaged[at] ^= 0xff;
+            let _ = read(&damaged, Some(&of_dense));
         }
     }
 }

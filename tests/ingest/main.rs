@@ -3,6 +3,7 @@
 #[path = "../common"]
 mod common {
     pub(crate) mod flight_data;
+    pub(crate) mod layouts;
     pub(crate) mod repository;
 }
 
@@ -14,8 +15,10 @@ mod hdf5;
 mod kinds;
 mod layouts;
 mod mdf4;
+mod mutations;
 mod newcomers;
 mod parquet;
+mod programs;
 mod structs;
 mod tdms;
 mod times;

@@ -8,6 +8,7 @@ use trimtab_core::estimate::Outcome;
 use trimtab_core::job::JobSpec;
 use trimtab_core::simulate::NoiseColour;
 
+use crate::common::coloured::Logged;
 use crate::common::coverage::{fit, over_seeds};
 use crate::common::{coloured, reconstruction};
 
@@ -41,6 +42,27 @@ fn intervals_hold_for_white_and_coloured_noise() {
         );
         assert!(corrected > 0.90, "{colour:?}: {corrected}");
         assert!(conventional < 0.80, "{colour:?}: {conventional}");
+    }
+}
+
+/// The same of recordings with gaps that are integrated through, and of a channel that was held and is made fresh. The noise is drawn anew
+/// for each seed, and the truth is that of the scenario.
+#[test]
+fn intervals_hold_through_gaps_and_for_held_channels_made_fresh() {
+    for (by, colour) in [
+        (Logged::WithGaps, NoiseColour::White),
+        (Logged::Held, NoiseColour::White),
+        (
+            Logged::HeldWithGaps,
+            NoiseColour::FirstOrder {
+                correlation_time: 0.1,
+            },
+        ),
+    ] {
+        let coverage = coloured::logged(colour, by, 1..61);
+        coverage.print(&format!("{by:?}, {colour:?}"));
+        let corrected = coverage.pooled(|row| &row.corrected);
+        assert!((0.90..0.99).contains(&corrected), "{by:?}: {corrected}");
     }
 }
 

@@ -163,8 +163,8 @@ fn the_gain_of_one_state_is_the_closed_form() {
     assert!((r / innovations - 1.0).abs() < 1e-5);
 }
 
-/// Several segments with samples missing, each with an initial state of its own that is unknown; central differences whose truncation
-/// error is below 1e-7 of the gradient.
+/// Several segments with samples missing, each with an initial state of its own that is unknown, and one or several integration steps
+/// from each sample to the next; central differences whose truncation error is below 1e-7 of the gradient.
 #[test]
 fn the_gradient_is_that_of_the_likelihood() {
     let mut own = model();
@@ -181,10 +181,18 @@ fn the_gradient_is_that_of_the_likelihood() {
             _ => (k + output) % 5 == 1,
         };
         let maneuvers = maneuvers.each_ref().map(|whole| sparse(whole, is_lost));
-        for integrator in ["rk4", "rk2", "euler"] {
+        for (integrator, steps) in [
+            ("rk4", 1),
+            ("rk2", 1),
+            ("euler", 1),
+            ("rk4", 3),
+            ("euler", 2),
+        ] {
             let noise = json!({"kind": "estimated", "structure": structure});
-            let options =
-                json!({"estimator": "filter_error", "noise": noise, "integrator": integrator});
+            let options = json!({
+                "estimator": "filter_error", "noise": noise,
+                "integrator": integrator, "steps_per_sample": steps,
+            });
             let plan = prepare(own.clone(), options, &maneuvers).expect("a plan");
             let mut evaluator = FilterEvaluator::new(&plan.problem).expect("start values");
             let z = evaluator.start();
@@ -202,7 +210,7 @@ fn the_gradient_is_that_of_the_likelihood() {
                 let error = (difference + scaled(place)).abs() / largest;
                 assert!(
                     error < 1e-6,
-                    "{structure} {integrator}, unknown {place}: {error:e}"
+                    "{structure} {integrator} {steps}, unknown {place}: {error:e}"
                 );
             }
         }

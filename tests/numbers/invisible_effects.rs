@@ -51,6 +51,7 @@ fn refused(document: ModelDocument) -> HashMap<String, Refusal> {
         channels: channels
             .map(|(name, c)| (name.clone(), (c.values.clone(), c.unit.dimension)))
             .collect(),
+        own: Default::default(),
     };
     let case = Case {
         document,

@@ -326,6 +326,24 @@ fn equation_error_is_an_estimator_of_its_own() {
     assert_eq!(estimate.correlation.len(), 7);
 }
 
+/// Its noise is that of derivatives, and it begins with the start values: what says otherwise would not be used.
+#[test]
+fn equation_error_refuses_what_it_does_not_use() {
+    let recording = maneuver(6.0, 7, 1.0);
+    for (option, value) in [
+        ("noise", json!({"kind": "given", "variance": [1e-6, 1e-6]})),
+        ("noise", json!({"kind": "estimated", "structure": "full"})),
+        ("start", json!({"kind": "equation_error"})),
+        ("start", json!({"kind": "nelder_mead"})),
+    ] {
+        let options = json!({"estimator": "equation_error", option: value});
+        let faults = try_solve(model(|_| 1.0), options, &recording).expect_err("a fault");
+        assert_eq!(faults[0].pointer, format!("/options/{option}"), "{value}");
+    }
+    let document = json!({"estimator": "equation_error", "start": {"kind": "document"}});
+    assert!(try_solve(model(|_| 1.0), document, &recording).is_ok());
+}
+
 #[test]
 fn a_state_that_no_output_measures_is_integrated() {
     let recording = maneuver(6.0, 7, 1.0);

@@ -11,6 +11,7 @@ mod common {
     pub(crate) mod filter_case;
     pub(crate) mod flight_data;
     pub(crate) mod jobs;
+    pub(crate) mod layouts;
     pub(crate) mod preprocessing;
     pub(crate) mod process;
     pub(crate) mod published_cases;
@@ -41,6 +42,7 @@ mod findings;
 mod flown;
 mod jobs;
 mod keys;
+mod layouts;
 mod lifecycle;
 mod limits;
 mod logs;

@@ -3,6 +3,7 @@
 use std::process::Command;
 
 use crate::common::server::{Answer, Server};
+use reqwest::Method;
 use serde_json::json;
 use trimtab::http::Config;
 use trimtab::ingest::{Format, Limits, read};
@@ -31,6 +32,33 @@ async fn send(server: &Server, parts: &[(&str, &str, &str)]) -> Answer {
             body,
         )
         .await
+}
+
+/// A client makes a boundary anew each time it sends: with its key the request is the same.
+#[tokio::test]
+async fn sent_again_with_another_boundary_it_is_the_same_request() {
+    let server = Server::start_with(Config::default(), 0).await;
+    let sent = async |boundary: &str, content: &str| {
+        let body = format!(
+            "--{boundary}\r\nContent-Disposition: form-data; name=\"file\"; filename=\"imu.csv\"\r\n\r\n{content}\r\n--{boundary}--\r\n"
+        );
+        let request = server
+            .request(Method::POST, "/v1/maneuvers")
+            .header(
+                "content-type",
+                format!("multipart/form-data; boundary={boundary}"),
+            )
+            .header("idempotency-key", "several")
+            .body(body);
+        crate::common::server::send(request).await
+    };
+    let first = sent("x", IMU).await;
+    assert_eq!(first.status, 201, "{}", first.text());
+    let again = sent("----y1", IMU).await;
+    assert_eq!(again.header("idempotency-replayed"), "true");
+    assert_eq!(again.bytes, first.bytes);
+    let other = sent("x", AIR).await;
+    assert_eq!(other.problem(422, "idempotency_key_reused"), []);
 }
 
 fn digest_of_both() -> String {

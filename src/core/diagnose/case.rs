@@ -105,7 +105,8 @@ fn unknowns(model: &Model, flights: &[&Flight], values: &Values) -> Result<Unkno
         if let Some(value) = values.get(&(info.name.clone(), None)).or_else(of_segment) {
             return Ok(*value);
         }
-        match &info.document.start {
+        let own = flights[segment].own.get(&info.name);
+        match own.unwrap_or(&info.document.start) {
             Start::Value(value) => Ok(info.unit.to_si(*value)),
             Start::FromData(text) => ChannelFormula::parse(text)
                 .and_then(|formula| formula.number(flights[segment]))

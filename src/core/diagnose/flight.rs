@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 
 use crate::estimate::Role;
 use crate::flight::Dimension;
-use crate::model::{Model, Recorded};
+use crate::model::{Model, Recorded, Start};
 use crate::simulate::{Segment, Steps, Substeps};
 
 /// One continuous stretch of a recording.
@@ -21,6 +21,9 @@ pub struct Flight {
     pub steps: Steps,
     /// SI, by name: the model's inputs and outputs under the model's names, then all else that was recorded.
     pub channels: IndexMap<String, (Vec<f64>, Dimension)>,
+    /// What parameters of each maneuver's own have or begin with here, in their units, by name; where there is nothing, what the
+    /// document says.
+    pub own: IndexMap<String, Start>,
 }
 
 impl Flight {

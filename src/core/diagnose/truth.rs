@@ -133,6 +133,7 @@ impl Truth<'_> {
             time,
             steps: Steps::Even(self.step),
             channels,
+            own: IndexMap::new(),
         }
     }
 }

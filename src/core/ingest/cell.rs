@@ -173,7 +173,13 @@ const MISSING: [&str; 48] = [
 /// Whether a cell holds a sign for "no value".
 pub(super) fn is_missing(text: &str) -> bool {
     let is_overflow = |text: &str| text.len() > 1 && text.bytes().all(|byte| byte == b'*');
-    MISSING.iter().any(|word| text.eq_ignore_ascii_case(word)) || is_overflow(text)
+    // --.--, as a display shows it
+    let is_blank = |text: &str| {
+        text.len() > 1 && text.contains('-') && text.bytes().all(|byte| b"-.:".contains(&byte))
+    };
+    MISSING.iter().any(|word| text.eq_ignore_ascii_case(word))
+        || is_overflow(text)
+        || is_blank(text)
 }
 
 #[cfg(test)]

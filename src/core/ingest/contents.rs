@@ -3,9 +3,9 @@
 use std::borrow::Cow;
 
 use super::{
-    IngestError, Limits, flysight,
+    IngestError, Limits, ames, dataflash, flysight,
     format::Format,
-    mat,
+    mat, octave,
     packed::{self, Unpacked},
     recognition::Kind,
 };
@@ -23,6 +23,10 @@ pub(super) enum Contents {
     Tdms,
     Mdf4,
     FlySight,
+    /// A table of text whose header says more of it.
+    Ames,
+    /// Variables as Octave writes them as text.
+    Octave,
     /// A table of text.
     Table,
     /// A table of text, or a matrix of which a mapping names the parts.
@@ -60,6 +64,9 @@ pub(super) fn open<'a>(
         Some(Kind::Mdf4) => Contents::Mdf4,
         Some(Kind::Foreign(foreign)) => return Err(foreign.fault().into()),
         None if flysight::is_of_several(&bytes) => Contents::FlySight,
+        None if dataflash::is_text(&bytes) => Contents::DataFlash,
+        None if octave::is_octave(&bytes) => Contents::Octave,
+        None if ames::is_ames(&bytes) => Contents::Ames,
         Some(Kind::Gzip) | None => of_text(&bytes, of_name.unwrap_or(format)),
     };
     Ok(Opened { bytes, contents })

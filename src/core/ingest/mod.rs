@@ -17,6 +17,7 @@
 //!
 //! Invariant: no bytes panic, and none use more memory than [`Limits`] allow.
 
+mod ames;
 mod ascii;
 mod assemble;
 mod axis;
@@ -47,6 +48,7 @@ mod mdf4;
 mod messages;
 mod name;
 mod note;
+mod octave;
 mod origin;
 mod packed;
 mod parquet;
@@ -152,6 +154,8 @@ fn read_contents(
             csv::read_columns(&mut columns, mapping, limits)
         }
         (Contents::FlySight, _) => flysight::read(bytes, mapping, limits),
+        (Contents::Ames, _) => ames::read(bytes, charset, mapping, limits),
+        (Contents::Octave, _) => octave::read(bytes, mapping, limits),
         (Contents::Tdms, _) => tdms::read(bytes, mapping, limits),
         (Contents::Mdf4, _) => mdf4::read(bytes, mapping, limits),
         (Contents::Hdf5, _) => match hdf5::open(bytes, limits)? {
@@ -186,7 +190,7 @@ pub fn inspect(
 ) -> Result<Option<Inspection>, IngestError> {
     let Opened { bytes, contents } = contents::open(bytes, format, limits)?;
     let inspected = match contents {
-        Contents::Table | Contents::TableOrMatrix => {
+        Contents::Table | Contents::TableOrMatrix | Contents::Ames => {
             csv::inspect(&bytes, charset, mapping, limits)?
         }
         Contents::Workbook => {

@@ -65,6 +65,7 @@ const UNPACK: &str = "unpack it, or pack it with gzip or zip";
 const MDF3: &str =
     "convert it, in Python with asammdf.MDF('file.mdf').convert('4.10').save('file.mf4')";
 const ROS: &str = "write the topics as CSV, with rostopic echo -b file.bag -p /topic > topic.csv (ROS 1), or with PlotJuggler";
+const NMEA: &str = "write it as CSV, with gpsbabel -i nmea -f file.nmea -o unicsv -F file.csv";
 const PICTURE: &str = "send the numbers behind it, as CSV";
 
 /// Where bytes stand, what they are, and what is then to be done. The first that fits counts.
@@ -109,12 +110,10 @@ const FOREIGN: &[Foreign] = &[
         "a blackbox log of Betaflight or iNAV",
         "write it as CSV, with blackbox_decode file.bbl or the Blackbox Explorer",
     ),
-    foreign(
-        0,
-        b"FMT, 128, 89, FMT",
-        "a log of ArduPilot as text (.log)",
-        "send the .bin that it was made from, or write one message of it as CSV, with mavlogdump.py --format csv --types ATT file.log > file.csv",
-    ),
+    foreign(0, b"$GPGGA,", "a log of NMEA sentences", NMEA),
+    foreign(0, b"$GPRMC,", "a log of NMEA sentences", NMEA),
+    foreign(0, b"$GNGGA,", "a log of NMEA sentences", NMEA),
+    foreign(0, b"$GNRMC,", "a log of NMEA sentences", NMEA),
     foreign(
         0,
         b"\x93NUMPY",
@@ -191,6 +190,27 @@ const TELEMETRY: Foreign = foreign(
     "send the .bin of the flight controller, or write this as CSV, with mavlogdump.py --format csv --types ATTITUDE file.tlog > file.csv",
 );
 
+const IGC: Foreign = foreign(
+    0,
+    b"",
+    "a flight of a glider (.igc)",
+    "write it as CSV, with gpsbabel -i igc -f file.igc -o unicsv -F file.csv",
+);
+
+const IGOR: Foreign = foreign(
+    0,
+    b"",
+    "a text of Igor with waves one behind the other (.itx)",
+    "save the waves together, in one block or as general text with their names",
+);
+
+const CAN_BUS: Foreign = foreign(
+    0,
+    b"",
+    "a trace of a CAN bus (.asc), whose frames are not decoded",
+    "decode it with its .dbc, in Python with asammdf or cantools decode --single-line file.dbc < file.asc, and send the signals as CSV or MDF",
+);
+
 impl Kind {
     /// `None` for text, and for what is not known.
     pub(super) fn of(bytes: &[u8]) -> Option<Self> {
@@ -233,6 +253,9 @@ impl Kind {
             .iter()
             .find(fits)
             .or_else(|| is_telemetry(bytes).then_some(&TELEMETRY))
+            .or_else(|| is_of_glider(bytes).then_some(&IGC))
+            .or_else(|| is_of_can_bus(bytes).then_some(&CAN_BUS))
+            .or_else(|| has_waves_apart(bytes).then_some(&IGOR))
             .map(Self::Foreign)
     }
 }
@@ -241,6 +264,28 @@ impl Kind {
 fn is_text(bytes: &[u8]) -> bool {
     let is_of_text = |byte: &u8| !byte.is_ascii_control() || b"\t\r\n".contains(byte);
     bytes.iter().take(256).all(is_of_text)
+}
+
+/// `A`, the maker and the number of a recorder, and then the header of the flight.
+fn is_of_glider(bytes: &[u8]) -> bool {
+    let first = &bytes[..bytes.len().min(512)];
+    let is_maker =
+        matches!(first, [b'A', maker @ ..] if maker.iter().take(3).all(u8::is_ascii_alphanumeric));
+    is_maker && memchr::memmem::find(first, b"\nHFDTE").is_some()
+}
+
+/// `date`, and `base hex` or `base dec` in the line below it.
+fn is_of_can_bus(bytes: &[u8]) -> bool {
+    let first = &bytes[..bytes.len().min(512)];
+    first.starts_with(b"date ") && memchr::memmem::find(first, b"\nbase ").is_some()
+}
+
+/// A text of Igor with more than one block.
+fn has_waves_apart(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"IGOR")
+        && memchr::memmem::find_iter(bytes, b"\nWAVES")
+            .nth(1)
+            .is_some()
 }
 
 /// Microseconds since 1970 from 2001 to 2100, and the mark of a message.

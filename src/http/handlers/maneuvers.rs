@@ -17,8 +17,8 @@ use crate::flight::{Flown, Maneuver};
 use crate::http::answer::format::{Format, cacheable};
 use crate::http::code::Code;
 use crate::http::problem::{Problem, ProblemDocument};
-use crate::http::request::body;
 use crate::http::request::query::{Id, Parameters, bad_cursor, page_limit, search};
+use crate::http::request::{body, multipart};
 use crate::http::service::{Server, Service};
 use crate::ingest::{self, Summary};
 use crate::store::{ManeuverFilter, ManeuverRecord, Uploaded};
@@ -157,10 +157,10 @@ async fn upload_maneuver(
     let content_type = body::content_type(&headers).to_owned();
     let media_type = body::media_type(&headers);
     let format = ingest::Format::from_content_type(&media_type);
-    let is_several = media_type == several::MEDIA_TYPE;
+    let is_several = media_type == multipart::MEDIA_TYPE;
     if format.is_none() && !is_several {
         let known = ingest::Format::CONTENT_TYPES.iter().copied();
-        let known: Vec<&str> = known.chain([several::MEDIA_TYPE]).collect();
+        let known: Vec<&str> = known.chain([multipart::MEDIA_TYPE]).collect();
         return Err(body::unsupported(&media_type, &known));
     }
     let name = query.name.unwrap_or_default();
@@ -178,9 +178,13 @@ async fn upload_maneuver(
     if is_several || ingest::is_packed(&bytes) {
         service.room.extend(&mut room, limit).await?;
     }
-    let said = match is_several {
-        true => Some(several::said(&service, &content_type, &bytes).await?),
-        false => None,
+    let (bytes, several) = match is_several {
+        true => {
+            let parts = multipart::parts(&content_type, bytes.into()).await?;
+            let said = several::said(&service, &parts).await?;
+            (Vec::new(), Some((parts, said)))
+        }
+        false => (bytes, None),
     };
     let _room = room;
     let limits = ingest::Limits {
@@ -189,8 +193,8 @@ async fn upload_maneuver(
     };
     let read = move || {
         let mapping = mapping.as_ref();
-        let read = match &said {
-            Some(said) => several::read(&content_type, &bytes, said, mapping, &limits)?,
+        let read = match &several {
+            Some((parts, said)) => several::read(parts, said, mapping, &limits)?,
             None => {
                 let format = format.unwrap_or(ingest::Format::Unstated);
                 let charset = ingest::Format::charset(&content_type);

@@ -9,12 +9,10 @@ use super::mappings;
 use crate::http::code::Code;
 use crate::http::problem::Problem;
 use crate::http::request::json;
-use crate::http::request::multipart::{self, Part};
+use crate::http::request::multipart::Part;
 use crate::http::service::Service;
 use crate::ingest::{self, Format, IngestError, Limits, Mapping, Reading};
 use crate::job::Fault;
-
-pub(super) const MEDIA_TYPE: &str = "multipart/form-data";
 
 /// Characters of the name of a file.
 const LONGEST_NAME: usize = 200;
@@ -42,17 +40,12 @@ pub(super) struct Said {
 }
 
 /// What a body says of its files.
-pub(super) async fn said(
-    service: &Service,
-    content_type: &str,
-    body: &[u8],
-) -> Result<Said, Problem> {
+pub(super) async fn said(service: &Service, parts: &[Part]) -> Result<Said, Problem> {
     let mut said = Said {
         offsets: BTreeMap::new(),
         mappings: BTreeMap::new(),
     };
-    let parts = multipart::parts(content_type, body)?;
-    let files = files(&parts)?;
+    let files = files(parts)?;
     let fields: Vec<&Part> = parts.iter().filter(|part| part.file.is_none()).collect();
     for (number, part) in fields.iter().enumerate() {
         let name = short(&part.name);
@@ -99,7 +92,7 @@ fn short(name: &str) -> String {
 }
 
 /// The files of a body with their names.
-fn files<'p, 'a>(parts: &'p [Part<'a>]) -> Result<Vec<(&'p str, &'p Part<'a>)>, Problem> {
+fn files(parts: &[Part]) -> Result<Vec<(&str, &Part)>, Problem> {
     let files = parts
         .iter()
         .filter_map(|part| Some((part.file.as_deref()?, part)));
@@ -147,16 +140,14 @@ fn check<'n>(
 
 /// Reads the files of a body as one recording; `mapping` is that of those of which none is said.
 pub(super) fn read(
-    content_type: &str,
-    body: &[u8],
+    parts: &[Part],
     said: &Said,
     mapping: Option<&Mapping>,
     limits: &Limits,
 ) -> Result<Reading, Problem> {
-    let parts = multipart::parts(content_type, body)?;
     let mut readings = Vec::new();
     let mut faults = Vec::new();
-    for (name, part) in files(&parts)? {
+    for (name, part) in files(parts)? {
         let extension = name
             .rsplit_once('.')
             .and_then(|(_, extension)| Format::from_extension(extension));
@@ -165,7 +156,7 @@ pub(super) fn read(
         let format = extension.or(stated).unwrap_or(Format::Unstated);
         let charset = Format::charset(&part.content_type);
         let mapping = said.mappings.get(name).or(mapping);
-        match ingest::read_recording(part.bytes, format, charset, mapping, limits) {
+        match ingest::read_recording(&part.bytes, format, charset, mapping, limits) {
             Ok(reading) => readings.push(ingest::Part {
                 name: name.to_string(),
                 reading,

@@ -12,7 +12,8 @@ use uuid::Uuid;
 
 use crate::http::code::Code;
 use crate::http::problem::Problem;
-use crate::http::request::body;
+use crate::http::request::{body, multipart};
+use crate::http::room::{Occupied, Room};
 use crate::http::service::{Server, Service};
 use crate::store::{KeptAnswer, Once};
 
@@ -72,8 +73,8 @@ async fn of_key(service: &Service, request: Request, next: Next) -> Result<Respo
     };
     let room = &service.room;
     let body = body::read(&parts.headers, body, limit, setting, room).await?;
-    let (body, _room) = (body.bytes, body.room);
-    let asked = digest(&parts, &body);
+    let (body, _room) = (Bytes::from(body.bytes), body.room);
+    let asked = digest(&parts, &body, room).await?;
     let id = match service.store.take_in_hand(&key, &asked).await? {
         Once::Do(id) => id,
         Once::Done(answer) => return Ok(replay(answer)),
@@ -115,14 +116,35 @@ fn key(headers: &HeaderMap) -> Result<String, Problem> {
 }
 
 /// What is asked for: the path with its query, the kind of the body, and the body.
-fn digest(parts: &Parts, body: &[u8]) -> String {
+async fn digest(parts: &Parts, body: &Bytes, room: &Room) -> Result<String, Problem> {
+    let media_type = body::media_type(&parts.headers);
     let mut digest = Sha256::new();
     digest.update(parts.uri.to_string());
     digest.update([0]);
-    digest.update(body::media_type(&parts.headers));
+    digest.update(&media_type);
     digest.update([0]);
-    digest.update(body);
-    hex::encode(digest.finalize())
+    match of_parts(parts, &media_type, body, room).await? {
+        Some(parts) => digest.update(parts),
+        None => digest.update(body),
+    }
+    Ok(hex::encode(digest.finalize()))
+}
+
+/// A body of several files is the same with another boundary. One that cannot be read is refused later, and goes by its bytes.
+async fn of_parts(
+    parts: &Parts,
+    media_type: &str,
+    body: &Bytes,
+    room: &Room,
+) -> Result<Option<[u8; 32]>, Problem> {
+    if media_type != multipart::MEDIA_TYPE {
+        return Ok(None);
+    }
+    // its parts stand beside it for a moment
+    let mut beside = Occupied::default();
+    room.extend(&mut beside, body.len()).await?;
+    let content_type = body::content_type(&parts.headers);
+    Ok(multipart::digest(content_type, body.clone()).await.ok())
 }
 
 async fn keep(service: &Service, key: &str, response: Response) -> Result<Response, Problem> {

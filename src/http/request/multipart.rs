@@ -1,22 +1,28 @@
-//! Bodies of several files: `multipart/form-data`, RFC 7578.
+//! Bodies of several files: `multipart/form-data`, RFC 7578, by the crate `multer`.
 
-use memchr::memmem;
+use axum::body::Bytes;
+use axum::http::header;
+use futures_util::stream;
+use multer::{Error, Field, Multipart};
+use sha2::{Digest, Sha256};
 
 use crate::http::code::Code;
 use crate::http::problem::Problem;
 
+pub(crate) const MEDIA_TYPE: &str = "multipart/form-data";
+
 /// A part of a body.
-pub(crate) struct Part<'a> {
+pub(crate) struct Part {
     /// Of the field.
     pub name: String,
     /// Of the file, where it is one.
     pub file: Option<String>,
     /// With its parameters; empty where it is not stated.
     pub content_type: String,
-    pub bytes: &'a [u8],
+    pub bytes: Bytes,
 }
 
-impl Part<'_> {
+impl Part {
     /// In lower case and without parameters; empty where it is not stated.
     pub(crate) fn media_type(&self) -> String {
         let media_type = self.content_type.split(';').next().unwrap_or_default();
@@ -26,111 +32,106 @@ impl Part<'_> {
 
 /// Parts of one body.
 const MOST: usize = 100;
+/// Bytes of the headers of a part.
 const LONGEST_HEAD: usize = 16_384;
 
 /// The parts of a body, in their order.
 ///
 /// # Errors
 /// The boundary is not stated, or the body is not written as it says.
-pub(crate) fn parts<'a>(content_type: &str, body: &'a [u8]) -> Result<Vec<Part<'a>>, Problem> {
-    let boundary = parameter(content_type, "boundary");
+pub(crate) async fn parts(content_type: &str, body: Bytes) -> Result<Vec<Part>, Problem> {
+    let boundary = multer::parse_boundary(content_type).ok();
     let boundary = boundary.filter(|boundary| (1..=70).contains(&boundary.len()));
     let boundary =
         boundary.ok_or_else(|| bad("the Content-Type has no boundary of 1 to 70 characters"))?;
-    let delimiter = format!("\r\n--{boundary}");
-    let finder = memmem::Finder::new(delimiter.as_bytes());
-    let first = &delimiter.as_bytes()[2..];
-    let mut rest = match body.strip_prefix(first).filter(|rest| ends_line(rest)) {
-        Some(rest) => rest,
-        // what stands before the first is no part
-        None => match find(&finder, body) {
-            Some(at) => &body[at + delimiter.len()..],
-            None => return Err(bad("there is no part between boundaries")),
-        },
-    };
+    let body = stream::iter([Ok::<_, std::convert::Infallible>(body)]);
+    let mut multipart = Multipart::new(body, boundary);
     let mut parts = Vec::new();
-    while !rest.starts_with(b"--") {
+    while let Some(field) = multipart
+        .next_field()
+        .await
+        .map_err(|error| unread(&error))?
+    {
         if parts.len() == MOST {
             return Err(bad(&format!("there are more than {MOST} parts")));
         }
-        let end = memmem::find(&rest[..rest.len().min(LONGEST_HEAD)], b"\r\n\r\n");
-        let end = end.ok_or_else(|| bad("a part has no end of its head"))?;
-        let (head, content) = (&rest[..end], &rest[end + 4..]);
-        let length = find(&finder, content)
-            .ok_or_else(|| bad("the last part has no end: the body was cut off"))?;
-        parts.push(part(head, &content[..length])?);
-        rest = &content[length + delimiter.len()..];
+        parts.push(part(field).await?);
     }
     Ok(parts)
 }
 
-/// Where a delimiter is; a line that only begins like it is none.
-fn find(finder: &memmem::Finder, text: &[u8]) -> Option<usize> {
-    let length = finder.needle().len();
-    let mut all = finder.find_iter(text);
-    all.find(|at| ends_line(&text[at + length..]))
+/// What is asked for by a body, whatever its boundary is: a client that sends it again makes another one.
+///
+/// # Errors
+/// Those of [`parts`].
+pub(crate) async fn digest(content_type: &str, body: Bytes) -> Result<[u8; 32], Problem> {
+    let mut digest = Sha256::new();
+    for part in parts(content_type, body).await? {
+        let file = part.file.as_deref();
+        let texts = [
+            Some(part.name.as_bytes()),
+            file.map(str::as_bytes),
+            Some(part.content_type.as_bytes()),
+            Some(&part.bytes[..]),
+        ];
+        for text in texts {
+            // a text that is absent is not an empty one
+            digest.update([u8::from(text.is_some())]);
+            digest.update((text.map_or(0, <[u8]>::len) as u64).to_le_bytes());
+            digest.update(text.unwrap_or_default());
+        }
+    }
+    Ok(digest.finalize().into())
 }
 
-/// Whether a delimiter ends here: with its line, or as the last of the body.
-fn ends_line(rest: &[u8]) -> bool {
-    let blank = |byte: &&u8| matches!(**byte, b' ' | b'\t');
-    let padding = rest.iter().take_while(blank).count();
-    rest.starts_with(b"--") || rest[padding..].starts_with(b"\r\n")
-}
-
-fn part<'a>(head: &[u8], bytes: &'a [u8]) -> Result<Part<'a>, Problem> {
-    let head = String::from_utf8_lossy(head);
-    let header = |wanted: &str| {
-        head.lines().find_map(|line| {
-            let (name, value) = line.split_once(':')?;
-            name.trim()
-                .eq_ignore_ascii_case(wanted)
-                .then(|| value.trim().to_string())
-        })
-    };
-    let disposition = header("content-disposition").unwrap_or_default();
-    let name = parameter(&disposition, "name");
+async fn part(field: Field<'_>) -> Result<Part, Problem> {
+    let headers = field.headers().iter();
+    let length = headers.map(|(name, value)| name.as_str().len() + value.len());
+    if length.sum::<usize>() > LONGEST_HEAD {
+        return Err(bad(&format!(
+            "the headers of a part are longer than {LONGEST_HEAD} bytes"
+        )));
+    }
+    let name = field.name().map(unescaped);
     let name = name.ok_or_else(|| bad("a part has no name in its Content-Disposition"))?;
+    let content_type = field.headers().get(header::CONTENT_TYPE);
+    let content_type = content_type.and_then(|value| value.to_str().ok());
     Ok(Part {
         name,
-        file: parameter(&disposition, "filename"),
-        content_type: header("content-type").unwrap_or_default(),
-        bytes,
+        file: field.file_name().map(unescaped),
+        content_type: content_type.unwrap_or_default().to_string(),
+        bytes: bytes(field).await?,
     })
 }
 
-/// A parameter of a header, quoted or not.
-fn parameter(header: &str, wanted: &str) -> Option<String> {
-    let mut rest = header.split_once(';')?.1;
-    loop {
-        let (name, value) = rest.split_once('=')?;
-        let value = value.trim_start();
-        let (text, behind) = match value.strip_prefix('"') {
-            Some(quoted) => unquoted(quoted)?,
-            None => {
-                let end = value.find(';').unwrap_or(value.len());
-                (value[..end].trim().to_string(), &value[end..])
-            }
+/// The content of a part. All of the body is there: it is one piece, which is not copied.
+async fn bytes(mut field: Field<'_>) -> Result<Bytes, Problem> {
+    let mut content = Bytes::new();
+    while let Some(piece) = field.chunk().await.map_err(|error| unread(&error))? {
+        content = match content.is_empty() {
+            true => piece,
+            false => [content, piece].concat().into(),
         };
-        if name.trim().eq_ignore_ascii_case(wanted) {
-            return Some(text);
-        }
-        rest = behind.trim_start().strip_prefix(';')?;
     }
+    Ok(content)
 }
 
-/// A text up to its closing quote, and what is behind it. Browsers write a quote in it as `%22`.
-fn unquoted(text: &str) -> Option<(String, &str)> {
-    let mut plain = String::new();
-    let mut letters = text.char_indices();
-    while let Some((at, letter)) = letters.next() {
-        match letter {
-            '"' => return Some((plain.replace("%22", "\""), &text[at + 1..])),
-            '\\' => plain.push(letters.next()?.1),
-            letter => plain.push(letter),
+/// Browsers write a quote in a name as `%22`.
+fn unescaped(name: &str) -> String {
+    name.replace("%22", "\"")
+}
+
+fn unread(error: &Error) -> Problem {
+    match error {
+        Error::IncompleteFieldData { .. } => bad("the last part has no end: the body was cut off"),
+        Error::IncompleteStream => bad(
+            "the body was cut off, has no part between boundaries, or has a line that begins as the boundary does",
+        ),
+        Error::ReadHeaderFailed(_) | Error::IncompleteHeaders => {
+            bad("the headers of a part cannot be read, or are more than 32")
         }
+        other => bad(&other.to_string()),
     }
-    None
 }
 
 fn bad(why: &str) -> Problem {
@@ -142,6 +143,8 @@ fn bad(why: &str) -> Problem {
 
 #[cfg(test)]
 mod tests {
+    use futures_util::FutureExt;
+
     use super::*;
 
     const BODY: &str = "preamble\r\n--x\r\nContent-Disposition: form-data; name=\"file\"; filename=\"a;\\\"b.csv\"\r\nContent-Type: text/csv; charset=utf-8\r\n\r\nt,a\r\n0,1\r\n\r\n--x\r\ncontent-disposition: form-data; name=offsets\r\n\r\n{}\r\n--x--\r\nepilogue";
@@ -149,13 +152,19 @@ mod tests {
     /// Name, file, content type and text.
     type Told = (String, Option<String>, String, String);
 
+    /// All of a body is there: nothing waits.
+    fn at_once<T>(future: impl Future<Output = Result<T, Problem>>) -> Option<T> {
+        future.now_or_never().expect("nothing to wait for").ok()
+    }
+
     fn told(content_type: &str, body: &str) -> Option<Vec<Told>> {
-        let parts = parts(content_type, body.as_bytes()).ok()?;
+        let body = Bytes::copy_from_slice(body.as_bytes());
+        let parts = at_once(parts(content_type, body))?;
         let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
         Some(
             parts
                 .into_iter()
-                .map(|part| (part.name, part.file, part.content_type, text(part.bytes)))
+                .map(|part| (part.name, part.file, part.content_type, text(&part.bytes)))
                 .collect(),
         )
     }
@@ -197,22 +206,68 @@ mod tests {
     }
 
     #[test]
-    fn a_line_that_begins_like_a_delimiter_is_content() {
-        let body = "--x\r\ncontent-disposition: form-data; name=a\r\n\r\n1\r\n--xy\r\n--x-\r\n2\r\n--x  \r\n\
-                    content-disposition: form-data; name=b\r\n\r\n\r\n--x--";
-        let told = told("multipart/form-data; boundary=x", body).unwrap();
-        let texts: Vec<&str> = told.iter().map(|part| part.3.as_str()).collect();
-        assert_eq!(texts, ["1\r\n--xy\r\n--x-\r\n2", ""]);
+    fn a_line_that_begins_as_the_boundary_is_refused() {
+        let body = |line: &str| {
+            format!(
+                "--x\r\ncontent-disposition: form-data; name=a\r\n\r\n1\r\n{line}\r\n2\r\n--x  \r\n\
+                 content-disposition: form-data; name=b\r\n\r\n\r\n--x--"
+            )
+        };
+        let told_of = |line: &str| told("multipart/form-data; boundary=x", &body(line));
+        let texts = told_of("--yx").unwrap().into_iter().map(|part| part.3);
+        assert_eq!(texts.collect::<Vec<_>>(), ["1\r\n--yx\r\n2", ""]);
+        // RFC 2046, 5.1.1: a line that begins with the delimiter is one, whatever follows
+        assert_eq!(told_of("--xy"), None);
+        assert_eq!(told_of("--x-"), None);
+    }
+
+    #[test]
+    fn media_types_have_no_parameters() {
         let media_types = ["Text/CSV; charset=utf-8", ""].map(|content_type| {
             let part = Part {
                 name: String::new(),
                 file: None,
                 content_type: content_type.to_string(),
-                bytes: &[],
+                bytes: Bytes::new(),
             };
             part.media_type()
         });
         assert_eq!(media_types, ["text/csv", ""]);
+    }
+
+    /// What tells one request from another is in the parts, not in the line between them.
+    #[test]
+    fn a_digest_goes_by_the_parts() {
+        let of = |boundary: &str, body: &str| {
+            let content_type = format!("multipart/form-data; boundary={boundary}");
+            let body = body.replace("--x", &format!("--{boundary}"));
+            at_once(digest(&content_type, body.into_bytes().into())).unwrap()
+        };
+        assert_eq!(of("x", BODY), of("----z7", BODY));
+        assert_eq!(of("x", BODY), of("x", &BODY[10..]));
+        for (from, to) in [
+            ("0,1", "0,2"),
+            ("name=offsets", "name=offset"),
+            ("b.csv", "c.csv"),
+            ("utf-8", "utf-16"),
+            ("; filename=\"a;\\\"b.csv\"", ""),
+        ] {
+            assert!(BODY.contains(from));
+            assert_ne!(of("x", BODY), of("x", &BODY.replace(from, to)), "{from}");
+        }
+    }
+
+    #[test]
+    fn heads_have_an_end() {
+        let body = |length: usize| {
+            let more = "a".repeat(length);
+            format!(
+                "--x\r\ncontent-disposition: form-data; name=a\r\nmore: {more}\r\n\r\n1\r\n--x--"
+            )
+        };
+        let told_of = |length| told("multipart/form-data; boundary=x", &body(length));
+        assert!(told_of(16_000).is_some());
+        assert!(told_of(16_384).is_none());
     }
 
     #[test]

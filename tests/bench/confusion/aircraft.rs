@@ -338,5 +338,6 @@ fn flight(maneuver: &Maneuver, role: Role, label: &str, step: f64) -> Flight {
                 )
             })
             .collect(),
+        own: Default::default(),
     }
 }

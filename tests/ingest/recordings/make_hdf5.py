@@ -1,5 +1,6 @@
 """Writes the HDF5 files beside this: python3 make_hdf5.py (h5py, pandas, tables)."""
 
+import gzip
 from pathlib import Path
 
 import h5py
@@ -75,3 +76,44 @@ fields["time [s]"], fields["alpha [deg]"], fields["q [deg/s]"] = time, alpha, ra
 fields["phase"] = b"climb"
 with h5py.File(here / "fields.h5", "w") as file:
     file["flight"] = fields
+
+with h5py.File(here / "dense.h5", "w", libver="latest") as file:
+    air = file.create_group("air", track_order=True)
+    for name, values in {"time": time, "alpha": alpha, "q": rate}.items():
+        air[name] = values
+    air["alpha"].attrs["units"] = np.bytes_("deg")
+    for number in range(1300):
+        air[f"alpha again, {number}"] = air["alpha"]
+(here / "dense.h5.gz").write_bytes(gzip.compress((here / "dense.h5").read_bytes(), mtime=0))
+(here / "dense.h5").unlink()
+
+
+def referred(file, values, kind="double"):
+    """What MATLAB puts an element of an array of structs, or a cell, into."""
+    refs = file.require_group("#refs#")
+    return matlab(refs, f"e{len(refs)}", np.asarray(values), kind).ref
+
+
+def references(parent, name, all):
+    return parent.create_dataset(name, data=np.array(all, h5py.ref_dtype).reshape(-1, 1), dtype=h5py.ref_dtype)
+
+
+with h5py.File(here / "v73_structs.mat", "w", userblock_size=512) as file:
+    run = file.create_group("run")
+    run.attrs["MATLAB_class"] = np.bytes_("struct")
+    references(run, "t", [referred(file, time.reshape(5, 1)) for _ in range(2)])
+    references(run, "alpha", [referred(file, factor * alpha.reshape(5, 1)) for factor in (-1, 1)])
+    inner = file.require_group("#refs#").create_group("inner")
+    inner.attrs["MATLAB_class"] = np.bytes_("struct")
+    matlab(inner, "q", rate.reshape(5, 1))
+    references(run, "inner", [referred(file, np.zeros((1, 1))), inner.ref])
+    sample = file.create_group("sample")
+    sample.attrs["MATLAB_class"] = np.bytes_("struct")
+    for name, values in {"t": time, "alpha": alpha, "q": rate}.items():
+        references(sample, name, [referred(file, [[value]]) for value in values])
+    sample_note = [referred(file, np.array([[ord("a")]], "u2"), "char") for _ in time]
+    references(sample, "note", sample_note)
+    cells = references(file, "c", [referred(file, values.reshape(5, 1)) for values in (time, alpha, rate)])
+    cells.attrs["MATLAB_class"] = np.bytes_("cell")
+with open(here / "v73_structs.mat", "r+b") as file:
+    file.write(b"MATLAB 7.3 MAT-file, as h5py writes it".ljust(124) + b"\x00\x02IM")

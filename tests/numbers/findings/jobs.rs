@@ -1,11 +1,13 @@
 //! What a job asks for and what its fit comes to: constants, inputs between samples, budgets.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::{codes, fit, normal, short_period};
 use crate::common::plans::{parameter, plan, recording, scatter, solve, try_plan};
 use serde_json::{Value, json};
 use trimtab_core::flight::{Channel, Maneuver, Severity, Unit};
+use trimtab_core::job;
 
 /// y = m a u with a mass of each maneuver's own; a by linear regression, in closed form: Σ m u z / Σ (m u)².
 #[test]
@@ -33,7 +35,7 @@ fn constants_formulas_and_starts_hold_for_one_maneuver() {
         {"id": "heavy", "label": "heavy", "constants": {"m": 1.25}, "start": {"b": 0.5}},
         {"id": "light", "label": "light", "constants": {"m": 1.08}, "channels": {"u": "-u"}},
     ], "options": {"noise": {"kind": "given", "variance": [0.01]}, "tolerance": 1e-10}});
-    let result = solve(model.clone(), changes, &maneuvers);
+    let result = solve(model.clone(), changes.clone(), &maneuvers);
     let (mut up, mut down) = (0.0, 0.0);
     for (maneuver, m, b, sign) in [
         (&maneuvers[0], 1.25, 0.5, 1.0),
@@ -55,6 +57,19 @@ fn constants_formulas_and_starts_hold_for_one_maneuver() {
         .map(|row| (row.segment.as_deref(), row.estimate))
         .collect();
     assert_eq!(masses, [(Some("heavy"), 1.25), (Some("light"), 1.08)]);
+    // a diagnosis takes whatever a fit takes: with masses of their own nothing is left to be explained
+    let mut asked = changes;
+    asked["kind"] = json!("diagnose");
+    let diagnosed = plan(model.clone(), asked, &maneuvers);
+    let diagnosed = job::run_diagnosis(&diagnosed, &mut |_| ControlFlow::Continue(()));
+    let diagnosed = diagnosed.unwrap_or_else(|faults| panic!("{faults:#?}"));
+    assert!((parameter(&diagnosed, "a").estimate - up / down).abs() < 1e-6);
+    let rows = diagnosed.estimate.parameters.iter();
+    let masses: Vec<f64> = rows
+        .filter(|row| row.name == "m")
+        .map(|row| row.estimate)
+        .collect();
+    assert_eq!(masses, [1.25, 1.08]);
     for (field, name, code) in [
         ("constants", "n", "unknown_constant"),
         ("channels", "n", "unknown_channel"),
@@ -198,11 +213,20 @@ fn constants_stand_in_what_was_flown() {
             "/maneuvers/1/constants/m".to_string()
         )
     );
+    // a diagnosis takes them, too
     let mut diagnosis = by_recording;
     diagnosis["kind"] = json!("diagnose");
-    assert_eq!(
-        refused(diagnosis),
-        ("bad_option".to_string(), "/constants/m".to_string())
+    let diagnosis = plan(model.clone(), diagnosis, &maneuvers);
+    let masses = diagnosis
+        .problem
+        .unknowns
+        .all
+        .iter()
+        .filter(|unknown| unknown.fixed);
+    let masses: Vec<f64> = masses.map(|unknown| unknown.start).collect();
+    assert!(
+        (masses[0] / 1250.0 - 1.0).abs() < 1e-12 && masses[1] == 1080.0,
+        "{masses:?}"
     );
 }
 

@@ -26,6 +26,20 @@ const WEEK: f64 = 7.0 * 86_400.0;
 pub(super) const NOT_A_NUMBER: &str =
     "is not a number; write it like -1.5e-3, or leave the cell empty where there is no value";
 
+/// A time of day without signs between its parts; zeros before it may be left out.
+fn unpacked(cell: &str) -> Option<Stamp> {
+    let cell = unquote(cell).replace(',', ".");
+    let (whole, fraction) = cell.split_once('.').unwrap_or((&cell, ""));
+    if whole.is_empty() || whole.len() > 6 || !whole.bytes().all(|byte| byte.is_ascii_digit()) {
+        return None;
+    }
+    let whole = format!("{whole:0>6}");
+    let (hours, rest) = whole.split_at(2);
+    let (minutes, seconds) = rest.split_at(2);
+    let behind = if fraction.is_empty() { "" } else { "." };
+    Stamp::parse(&format!("{hours}:{minutes}:{seconds}{behind}{fraction}"))
+}
+
 impl Clock {
     pub(super) fn new(time: Time, marks: Marks) -> Self {
         Self {
@@ -77,6 +91,7 @@ impl Clock {
                 self.seconds(Some(stamp.map_err(Some)?))
             }
             Time::Stamps { .. } => self.seconds(Stamp::parse(cell)),
+            Time::Packed { .. } => self.seconds(unpacked(cell)),
             Time::Dated { .. } => self.seconds(Stamp::parse_with_date(day, cell)),
         }
     }
@@ -120,7 +135,7 @@ impl Clock {
                     week * WEEK as i128 * 1_000_000_000,
                 ))
             }
-            Time::Stamps { .. } | Time::Dated { .. } | Time::Parts(_) => {
+            Time::Stamps { .. } | Time::Packed { .. } | Time::Dated { .. } | Time::Parts(_) => {
                 Origin::of_stamp(self.watch.first()?)
             }
         }

@@ -29,10 +29,11 @@ impl<'a> Head<'a> {
             |best: (usize, f64), other: (usize, f64)| if other.1 >= best.1 { other } else { best };
         let first_best =
             |best: (usize, f64), other: (usize, f64)| if other.1 > best.1 { other } else { best };
+        let is_of_units_alone = matches!(&rows[..], [(_, cells)] if are_bracketed_units(cells));
         let units = (rows.iter().enumerate())
             .map(|(at, (_, cells))| (at, share_of_units(cells)))
             .reduce(last_best)
-            .filter(|&(_, share)| rows.len() > 1 && share >= 0.6)
+            .filter(|&(_, share)| (rows.len() > 1 || is_of_units_alone) && share >= 0.6)
             .map(|(at, _)| rows.remove(at));
         let names = (rows.iter().enumerate())
             .map(|(at, (_, cells))| (at, likeness_to_names(cells)))
@@ -44,12 +45,61 @@ impl<'a> Head<'a> {
             })
             .reduce(first_best)
             .map(|(at, _)| rows.remove(at));
+        let [names, units] = [names, units].map(|row| row.map(without_word_for_row));
+        let (names, units) = match (names, units) {
+            (Some(names), None) => with_units_before(names),
+            other => other,
+        };
         Self {
             names,
             units,
             others: rows.into_iter().map(|(line, _)| line).collect(),
         }
     }
+}
+
+type Row<'a> = (Line<'a>, Vec<&'a str>);
+
+/// Whether every cell that says something is a unit in brackets: `(SEC) (DEG)`.
+fn are_bracketed_units(cells: &[&str]) -> bool {
+    let mut said = cells.iter().filter(|cell| !cell.is_empty()).peekable();
+    said.peek().is_some()
+        && said.all(|cell| {
+            let inner = cell.strip_prefix(['(', '[']);
+            let inner = inner.and_then(|cell| cell.strip_suffix([')', ']']));
+            inner.is_some_and(|unit| Unit::parse(unit).is_ok())
+        })
+}
+
+/// `ChannelTitle=` before the titles says what the line is, and is no title.
+fn without_word_for_row((line, mut names): Row) -> Row {
+    let is_word = |cell: &str| cell.ends_with(['=', ':']);
+    if let [first, others @ ..] = names.as_mut_slice()
+        && is_word(first)
+        && !others.iter().any(|other| is_word(other))
+    {
+        *first = "";
+    }
+    (line, names)
+}
+
+/// Names with their units before them, where nearly all are written so: `degrees/Pitch`, `knots/IAS`.
+fn with_units_before<'a>((line, cells): Row<'a>) -> (Option<Row<'a>>, Option<Row<'a>>) {
+    let parted = |cell: &&'a str| {
+        let (unit, name) = cell.split_once('/')?;
+        let are_said = !unit.is_empty() && !name.is_empty();
+        let is_one = are_said && Unit::parse(unit).is_ok() && Unit::parse(cell).is_err();
+        is_one.then_some((unit, name))
+    };
+    let said = cells.iter().filter(|cell| !cell.is_empty()).count();
+    let all: Vec<Option<(&str, &str)>> = cells.iter().map(parted).collect();
+    if said < 3 || all.iter().flatten().count() * 10 < said * 8 {
+        return (Some((line, cells)), None);
+    }
+    let both = all.iter().zip(&cells);
+    let names = both.map(|(parted, cell)| parted.map_or(*cell, |(_, name)| name));
+    let units = all.iter().map(|parted| parted.map_or("", |(unit, _)| unit));
+    (Some((line, names.collect())), Some((line, units.collect())))
 }
 
 /// How many of the cells that are not empty are units.
@@ -195,6 +245,19 @@ mod tests {
             ("t;a;b".to_string(), String::new())
         );
         assert_eq!(roles(&["t;a;b", "float;float;float"]).0, "t;a;b");
+        assert_eq!(roles(&["Titles=;a;b"]).0, ";a;b");
+        assert_eq!(roles(&["t:;a:;b:"]).0, "t:;a:;b:");
+        let before = roles(&["seconds/t;degrees/Pitch;G/G-load"]);
+        assert_eq!(before.0, "t;Pitch;G-load");
+        assert_eq!(before.1, "seconds;degrees;G");
+        assert_eq!(
+            roles(&["/imu/q;/imu/az;/fcs/de"]).0,
+            "/imu/q;/imu/az;/fcs/de"
+        );
+        assert_eq!(
+            roles(&["(s);(deg)"]),
+            (String::new(), "(s);(deg)".to_string())
+        );
         assert_eq!(
             roles(&["[s];[deg];1", names]),
             (names.to_string(), "[s];[deg];1".to_string())

@@ -9,10 +9,12 @@ use super::super::{
 };
 use super::{
     delimiter::Delimiter,
+    elsewhere,
     head::share_of_units,
     labview::units_of_labview,
     sample::{self, Held, Kind, Looked},
-    sample_rows::{SampleRows, width},
+    sample_rows::{SampleRows, by_wide_blanks, width},
+    stated::{self, Stated},
 };
 
 /// What a mapping, or nobody, says of the layout.
@@ -36,6 +38,8 @@ pub(super) struct Layout<'a> {
     pub(super) misfit: Option<(Line<'a>, usize)>,
     /// The rows, and the number of the line before them.
     pub(super) rows: Lines<'a>,
+    /// The step between samples that the lines above say.
+    pub(super) stated: Option<Stated>,
     /// The first rows that have as many cells.
     pub(super) first: Vec<Vec<&'a str>>,
 }
@@ -103,6 +107,7 @@ fn header_only<'a>(
         above: vec![(first.line, cells)],
         misfit: None,
         rows: first.behind.clone(),
+        stated: None,
         first: Vec::new(),
     })
 }
@@ -207,13 +212,20 @@ impl Block {
             Some(at) => at + 1 + rows.start(&lines[at + 1..]),
             None => rows.start(lines),
         };
-        let (above, misfit) = match header {
+        let (mut above, mut misfit) = match header {
             Some(at) => (
                 vec![(lines[at].line, delimiter.cells(lines[at].said()))],
                 None,
             ),
             None => header_lines(&lines[..start], &rows),
         };
+        if header.is_none() {
+            let elsewhere = elsewhere::names(&lines[..start], count);
+            let elsewhere = elsewhere.or_else(|| rows.behind_row_names(lines, start, misfit));
+            if let Some(names) = elsewhere {
+                (above, misfit) = (vec![names], None);
+            }
+        }
         let width = match above.iter().map(|(_, cells)| width(cells)).max() {
             Some(width) => width,
             None if rows.ends_empty => count - 1,
@@ -230,6 +242,7 @@ impl Block {
             width,
             above: above.collect(),
             misfit,
+            stated: stated::step(&lines[..start]),
             rows: lines[start..]
                 .first()
                 .map_or(lines[lines.len() - 1].behind.clone(), |looked| {
@@ -290,12 +303,6 @@ fn is_heading(cells: &[&str]) -> bool {
         }
         None => false,
     }
-}
-
-/// Titles with blanks in them stand two blanks apart.
-fn by_wide_blanks(line: &str) -> Vec<&str> {
-    let cells = line.split("  ").map(str::trim);
-    cells.filter(|cell| !cell.is_empty()).collect()
 }
 
 #[cfg(test)]

@@ -77,7 +77,15 @@ const FINER: [(&str, &[&str]); 3] = [
     ),
     (
         "ns",
-        &["nanosecond", "nanoseconds", "nanos", "nsec", "nsecs", "ns"],
+        &[
+            "nanosecond",
+            "nanoseconds",
+            "nanos",
+            "nano",
+            "nsec",
+            "nsecs",
+            "ns",
+        ],
     ),
 ];
 /// Words before these that say whose clock it is.
@@ -112,11 +120,8 @@ pub(super) fn found(titles: &Titles) -> Option<InParts> {
     let second = second.filter(|&at| is_within(titles, at, 61.0));
     if let (Some(hour), Some(minute), Some(second)) = (hour, minute, second) {
         let [year, month, day] = date(titles, hour);
-        let finer = FINER
-            .iter()
-            .find(|(_, words)| is_called(titles, second + 1, words));
-        let finest = match finer {
-            Some((unit, _)) => (Some(second), second + 1, *unit),
+        let finest = match finer_than(titles, second) {
+            Some((at, unit)) => (Some(second), at, unit),
             None => (None, second, "s"),
         };
         let parts = Parts {
@@ -130,6 +135,27 @@ pub(super) fn found(titles: &Titles) -> Option<InParts> {
         columns: [before(YEAR, day), None, Some(day), None, None, None],
     };
     in_unit(titles, parts, second, "s").filter(|_| is_within(titles, second, 86_401.0))
+}
+
+/// The column of what is finer than the second: behind it, or elsewhere with the same word for whose clock it is.
+fn finer_than(titles: &Titles, second: usize) -> Option<(usize, &'static str)> {
+    let whose = whose(titles, second);
+    let of_same_clock = |at: &usize| {
+        *at == second + 1 || *at != second && whose.is_some() && self::whose(titles, *at) == whose
+    };
+    let columns = (second + 1..titles.width).chain(0..second);
+    let mut columns = columns.filter(of_same_clock);
+    columns.find_map(|at| {
+        let mut finer = FINER.iter();
+        let found = finer.find(|(_, words)| is_called(titles, at, words));
+        found.map(|(unit, _)| (at, *unit))
+    })
+}
+
+/// The word for whose clock a column is of.
+fn whose(titles: &Titles, at: usize) -> Option<&'static str> {
+    let name = titles.any_label(at).name.to_ascii_lowercase();
+    WHOSE.into_iter().find(|whose| name.starts_with(whose))
 }
 
 /// Year, month and day before the hour, or the day of the year.
@@ -168,6 +194,7 @@ fn is_called(titles: &Titles, at: usize, words: &[&str]) -> bool {
     let bare = WHOSE.iter().find_map(|whose| letters.strip_prefix(whose));
     let is_one = |name: &str| words.contains(&name);
     at < titles.width
+        && !titles.is_empty(at)
         && (is_one(&letters) || bare.is_some_and(is_one))
         && titles.stamp(at).is_none()
         && !titles.is_text(at)

@@ -259,6 +259,15 @@ impl Making<'_, '_> {
         self.plan.left_out.sort_by_key(|(_, fault)| place_of(fault));
     }
 
+    /// Whether a column is called as time is and has nothing in it, or the same as that of time.
+    fn is_time_again(&self, at: usize) -> bool {
+        let titles = self.titles;
+        let is_again =
+            |time: usize| titles.title(time) == titles.title(at) && titles.are_alike(time, at);
+        let is_called_time = titles.any_label(at).is_called_time_or_stamp();
+        is_called_time && titles.is_empty(at) || self.plan.time.column().is_some_and(is_again)
+    }
+
     /// The channel of a column; `None` where there is nothing in it.
     fn channel(&mut self, at: usize) -> Result<Option<Column>, (&'static str, String)> {
         let title = self.titles.title(at);
@@ -269,6 +278,9 @@ impl Making<'_, '_> {
                 None if !self.titles.first.is_empty() => Ok(None),
                 _ => Err((code::EMPTY_NAME, message)),
             };
+        }
+        if self.is_time_again(at) {
+            return Ok(None);
         }
         let label = self.titles.label(at)?;
         if label.name.len() > self.limits.max_name_length {

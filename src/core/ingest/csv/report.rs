@@ -25,6 +25,18 @@ pub(super) fn findings(
         let remedy = "nothing needs to be done within one recording; what another clock recorded beside it has an offset, which a mapping can say";
         findings.push(note(FindingCode::Recognised, message.to_string(), remedy));
     }
+    if let Time::Even { step, .. } = plan.time
+        && described.mapping.time.step.is_none()
+        && let Some(stated) = described.titles.stated
+    {
+        let message = format!(
+            "no column has times: samples are {step} s apart, as line {} says",
+            stated.line
+        );
+        let remedy =
+            "give the step in a mapping where it is another: time = {step = 0.02, unit = \"s\"}";
+        findings.push(note(FindingCode::Recognised, message, remedy));
+    }
     let why = |(title, fault): &(String, Fault)| {
         let why = fault.message.split_once(": ");
         let why = why.map_or(fault.message.as_str(), |(_, why)| why);

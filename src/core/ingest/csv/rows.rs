@@ -217,7 +217,10 @@ impl<'a> Reader<'a> {
             count += 1;
             let end = from + length;
             if end >= bytes.len() {
-                let is_behind_last = count == width + 1 && text[from..].trim().is_empty();
+                // a remark to a row may stand behind it
+                let last = text[from..].trim();
+                let is_nothing = last.is_empty() || last.starts_with('#');
+                let is_behind_last = count == width + 1 && is_nothing;
                 if count != width && !is_behind_last {
                     return Err(if ending::is_empty(text, delimiter) {
                         Trouble::Empty

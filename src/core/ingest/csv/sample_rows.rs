@@ -1,6 +1,6 @@
 //! The rows among the first lines of a file: where they begin, and which of their columns have numbers.
 
-use super::super::cell::unquote;
+use super::super::{cell::unquote, lines::Line};
 use super::{
     delimiter::Delimiter,
     sample::{Held, Looked},
@@ -59,7 +59,8 @@ impl SampleRows {
             .filter(move |cells| cells.len() == count)
     }
 
-    /// The cells of a header's line. Rows without a remark have no cell for it: its title does not count.
+    /// The cells of a line as the rows have them. Rows without a remark have no cell for it: its title does not count, nor does a
+    /// remark.
     pub(super) fn titles<'a>(&self, looked: &Looked<'a>) -> Vec<&'a str> {
         let said = looked.said();
         // FlySight 2 says with a word of its own which line of the header is which
@@ -72,6 +73,29 @@ impl SampleRows {
             cells.pop();
         }
         cells
+    }
+
+    /// The titles in the line above the rows, where these begin with a name or a number of their own that has no title, as R and
+    /// pandas write them.
+    pub(super) fn behind_row_names<'a>(
+        &self,
+        lines: &[Looked<'a>],
+        start: usize,
+        misfit: Option<(Line<'a>, usize)>,
+    ) -> Option<(Line<'a>, Vec<&'a str>)> {
+        let (line, _) = misfit?;
+        let cells = self.delimiter.cells(line.text);
+        if cells.len() + 1 != self.count {
+            return None;
+        }
+        let rows: Vec<Vec<&str>> = self.rows(&lines[start..]).take(50).collect();
+        let number = |row: &Vec<&str>| unquote(row[0]).parse::<i64>().ok();
+        let numbers: Option<Vec<i64>> = rows.iter().map(number).collect();
+        let numbers = numbers.filter(|numbers| numbers.len() > 1 && numbers[0] <= 1)?;
+        let are_counted = numbers.windows(2).all(|pair| pair[1] == pair[0] + 1);
+        let mut titles = vec![""];
+        titles.extend(cells);
+        are_counted.then_some((line, titles))
     }
 
     /// What the columns of numbers hold in a line.
@@ -128,5 +152,11 @@ fn is_remark(title: &str) -> bool {
     let words = [
         "comment", "comments", "remark", "remarks", "note", "notes", "message",
     ];
-    words.contains(&title.as_str())
+    title.starts_with('#') || words.contains(&title.as_str())
+}
+
+/// Titles with blanks in them stand two blanks apart.
+pub(super) fn by_wide_blanks(line: &str) -> Vec<&str> {
+    let cells = line.split("  ").map(str::trim);
+    cells.filter(|cell| !cell.is_empty()).collect()
 }

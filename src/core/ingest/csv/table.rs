@@ -69,6 +69,7 @@ impl<'a> Table<'a> {
             units: head.units,
             first: layout.first,
             width: layout.width,
+            stated: layout.stated,
         };
         Ok(Self {
             delimiter: layout.delimiter,

@@ -9,6 +9,7 @@ use super::super::{
 };
 use super::{
     parts::{self, InParts, Parts},
+    time_column::{found, unit_word},
     titles::Titles,
 };
 use crate::flight::{Dimension, Fault, Unit};
@@ -27,6 +28,10 @@ pub(super) enum Time {
         unit: Unit,
     },
     Stamps {
+        at: usize,
+    },
+    /// Times of day without signs between their parts: `101500.25`.
+    Packed {
         at: usize,
     },
     /// Times of day, and the dates that they are of.
@@ -71,6 +76,7 @@ impl Time {
             Self::Numbers { at, .. }
             | Self::Epoch { at, .. }
             | Self::Stamps { at }
+            | Self::Packed { at }
             | Self::Dated { at, .. }
             | Self::Week { at, .. }
             | Self::Parts(InParts { at, .. }) => Some(at),
@@ -121,6 +127,11 @@ pub(super) fn of(titles: &Titles, said: &MappedTime, faults: &mut Vec<Fault>) ->
     let (from, date, week) = (from?, date?, week?);
     if !are_known {
         return None;
+    }
+    if from.is_none_or(|at| titles.is_empty(at))
+        && let Some(even) = stated(titles, found(titles))
+    {
+        return Some(even);
     }
     if let Some(at) = from.filter(|_| said.has_parts()) {
         return in_parts(titles, parts, at, said)
@@ -224,40 +235,29 @@ fn no_time(titles: &Titles) -> Fault {
     )
 }
 
-/// The first column called t or time; or by another word for it; or that has time stamps; or the first of all where it has a
-/// unit of time. `T[K]` before `t[s]` is a temperature: one with a unit of time, or with time stamps, goes first.
-fn found(titles: &Titles) -> Option<usize> {
-    titles.names.as_ref()?;
-    let of_all = |condition: &dyn Fn(usize) -> bool| (0..titles.width).find(|&at| condition(at));
-    let is_time = |at: usize| titles.any_label(at).is_called_time();
-    let is_clock = |at: usize| titles.any_label(at).is_called_time_or_stamp();
-    let has_unit = |at: usize| titles.any_label(at).has_unit_of_time();
-    let is_stamp = |at: usize| titles.stamp(at).is_some();
-    let is_readable = |at: usize| !titles.is_text(at) && !titles.has_dates(at);
-    of_all(&|at| is_time(at) && has_unit(at))
-        .or_else(|| of_all(&|at| is_time(at) && is_stamp(at)))
-        .or_else(|| of_all(&|at| is_clock(at) && (has_unit(at) || is_stamp(at))))
-        .or_else(|| of_all(&|at| is_time(at) && is_readable(at)))
-        .or_else(|| of_all(&|at| is_clock(at) && is_readable(at)))
-        .or_else(|| of_all(&is_stamp))
-        .or_else(|| {
-            of_all(&|at| {
-                has_unit(at)
-                    && titles.title(at).to_lowercase().contains("time")
-                    && increases(titles, at)
-            })
-        })
-        .or_else(|| of_all(&is_time))
-        .or_else(|| Some(0).filter(|&at| has_unit(at) && increases(titles, at)))
-}
-
-fn increases(titles: &Titles, at: usize) -> bool {
-    let numbers = titles
+/// The times that the lines above a table say: even ones, where no column has any; or those of a first column without a title
+/// that goes on by the step.
+fn stated(titles: &Titles, found: Option<usize>) -> Option<Time> {
+    let step = titles.stated?.step;
+    let is_there = found.is_some_and(|at| !titles.is_empty(at));
+    let is_in_parts = parts::found(titles).is_some();
+    if is_there || is_in_parts || titles.names.is_none() {
+        return None;
+    }
+    let first = titles
         .first
         .iter()
-        .filter_map(|row| row.get(at)?.trim().parse::<f64>().ok());
-    let numbers: Vec<f64> = numbers.collect();
-    numbers.len() > 1 && numbers.windows(2).all(|pair| pair[0] < pair[1])
+        .filter_map(|row| row.first()?.trim().parse::<f64>().ok());
+    let first: Vec<f64> = first.collect();
+    let goes_on = first.len() > 1
+        && first
+            .windows(2)
+            .all(|pair| ((pair[1] - pair[0]) / step - 1.0).abs() < 1e-3);
+    let unit = RecordedUnit::parse_time("s").ok()?.unit();
+    Some(match titles.title(0).is_empty() && goes_on {
+        true => Time::Numbers { at: 0, unit },
+        false => Time::Even { start: 0.0, step },
+    })
 }
 
 /// The column of dates that goes with a column of times of day.
@@ -301,6 +301,14 @@ fn written(
     week: Option<usize>,
 ) -> Result<Time, (&'static str, String)> {
     let label = titles.label(at)?;
+    let unit = if said.unit.is_empty() {
+        label.unit
+    } else {
+        &said.unit
+    };
+    if unit.to_ascii_lowercase().starts_with("hhmmss") && !titles.is_text(at) {
+        return Ok(Time::Packed { at });
+    }
     if titles.stamp(at).is_some() {
         let unit = if said.unit.is_empty() {
             label.unit
@@ -332,6 +340,8 @@ fn written(
         RecordedUnit::parse_time(label.unit)?.unit()
     } else if let Some(unit) = unit_of_epoch(number) {
         unit
+    } else if let Some(unit) = unit_word(titles, at) {
+        RecordedUnit::parse_time(unit)?.unit()
     } else {
         RecordedUnit::parse_time("")?.unit()
     };

@@ -9,7 +9,7 @@ use super::super::{
     stamp::Stamp,
     text::{quoted, short_message},
 };
-use super::sample::Held;
+use super::{sample::Held, stated::Stated};
 use crate::flight::Unit;
 
 /// What a table says of its columns.
@@ -21,6 +21,8 @@ pub(super) struct Titles<'a> {
     /// The cells of the first rows.
     pub(super) first: Vec<Vec<&'a str>>,
     pub(super) width: usize,
+    /// The step between samples that the lines above the table say.
+    pub(super) stated: Option<Stated>,
 }
 
 /// Whether a text means a title.
@@ -155,8 +157,13 @@ impl<'a> Titles<'a> {
             && times.windows(2).all(|pair| pair[0] < pair[1])
     }
 
+    /// Whether the first rows have cells, and none of this column says something.
+    pub(super) fn is_empty(&self, at: usize) -> bool {
+        !self.first.is_empty() && self.first_said(at).is_none()
+    }
+
     /// Whether two columns begin with the same cells.
-    fn are_alike(&self, one: usize, other: usize) -> bool {
+    pub(super) fn are_alike(&self, one: usize, other: usize) -> bool {
         let mut rows = self.first.iter();
         self.first.len() > 1 && rows.all(|row| row.get(one) == row.get(other))
     }
@@ -266,6 +273,7 @@ mod tests {
             names: Some((line, names)),
             units: None,
             first: Vec::new(),
+            stated: None,
         }
     }
 

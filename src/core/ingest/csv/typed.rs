@@ -107,6 +107,7 @@ impl Head {
             units: Some((line, self.units.clone())),
             first: self.first.iter().map(|row| cells(row)).collect(),
             width: self.names.len(),
+            stated: None,
         }
     }
 }

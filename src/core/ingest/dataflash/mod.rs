@@ -1,10 +1,13 @@
-//! Logs of ArduPilot (DataFlash, `.bin`): kinds of messages, each of which the log defines itself.
+//! Logs of ArduPilot (DataFlash, `.bin`, and `.log` as text): kinds of messages, each of which the log defines itself.
 //!
 //! The format is that of AP_Logger (ardupilot.org, "Onboard Message Log Messages"; its messages FMT, FMTU, UNIT and MULT).
 //! No crate was found that is kept, bounded and light. Bytes that are no message are passed over, as other readers do.
 
 mod definition;
 mod scan;
+mod text;
+
+pub(super) use text::is_text;
 
 use super::{IngestError, Limits, mapping::Mapping, messages::Log, reading::Reading};
 
@@ -17,7 +20,15 @@ pub(super) fn read(
     mapping: Option<&Mapping>,
     limits: &Limits,
 ) -> Result<Reading, IngestError> {
-    let tables = scan::tables(bytes)?;
+    let of_text = match text::is_text(bytes) {
+        true => Some(text::binary(bytes, limits)?),
+        false => None,
+    };
+    let bytes = of_text.as_deref().unwrap_or(bytes);
+    let tables = scan::tables(bytes).map_err(|fault| match of_text {
+        Some(_) => text::has_nothing(),
+        None => fault,
+    })?;
     Log::of(bytes, tables, limits).read(mapping, "ardupilot")
 }
 

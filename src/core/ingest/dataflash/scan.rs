@@ -8,9 +8,9 @@ use super::super::{code, fault::of_file};
 use super::definition::{Definition, HEAD};
 use crate::flight::Fault;
 
-const MARK: [u8; 2] = [0xa3, 0x95];
+pub(super) const MARK: [u8; 2] = [0xa3, 0x95];
 /// The kind of the messages that define others, and their length.
-const FMT: u8 = 128;
+pub(super) const FMT: u8 = 128;
 const FMT_LENGTH: usize = 89;
 
 fn damaged(at: usize, why: &str) -> Fault {

@@ -141,6 +141,11 @@ impl<S: Samples> Archive for Source<S> {
         Ok(Matrix::of_rows(&self.values, 1))
     }
 
+    fn unit(&self, path: &[String]) -> Option<String> {
+        let (_, _, channel) = self.find(path)?;
+        Some(channel.label().1.to_string()).filter(|unit| !unit.is_empty())
+    }
+
     fn own_time(&self, path: &[String]) -> Option<OwnTime> {
         let (at, group, _) = self.find(path)?;
         (group.time != Time::Unknown).then(|| OwnTime {

@@ -1,5 +1,6 @@
 //! Groups of channels, and where their values come from.
 
+use super::super::label::Label;
 use crate::flight::Fault;
 
 /// What a file has: groups of channels, whose values it gives when it is asked.
@@ -38,6 +39,19 @@ pub(in super::super) struct Channel {
     pub(in super::super) unit: String,
     /// What the file knows it by.
     pub(in super::super) at: usize,
+}
+
+impl Channel {
+    /// Its name without its unit, and the unit: that beside the name, else the one in brackets or at the end of the name.
+    pub(super) fn label(&self) -> (&str, &str) {
+        let label = Label::split(&self.name);
+        // Altitude (baro): what is in brackets is no unit where the file says one beside the name
+        match self.unit.is_empty() {
+            false => (&self.name, &self.unit),
+            true if label.unit.is_empty() => (label.name, label.unit_in_name().unwrap_or("")),
+            true => (label.name, label.unit),
+        }
+    }
 }
 
 /// The values in a file.

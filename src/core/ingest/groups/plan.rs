@@ -1,7 +1,6 @@
 //! What every channel of a file is called, and in which unit it is.
 
 use super::super::Limits;
-use super::super::label::Label;
 use super::super::name::{Names, is_identifier};
 use super::super::note;
 use super::super::text::quoted;
@@ -61,14 +60,7 @@ impl Plan {
         if group.time == Time::Unknown {
             return Err("the file says no times of it".to_string());
         }
-        let label = Label::split(&channel.name);
-        // Altitude (baro): what is in brackets is no unit where the file says one beside the name
-        let is_stated = !channel.unit.is_empty();
-        let (name, unit) = match is_stated {
-            true => (channel.name.as_str(), channel.unit.as_str()),
-            false if label.unit.is_empty() => (label.name, label.unit_in_name().unwrap_or("")),
-            false => (label.name, label.unit),
-        };
+        let (name, unit) = channel.label();
         let parsed = RecordedUnit::parse(unit).map_err(|(_, message)| message)?;
         let taken = match is_identifier(name) {
             true => names.take(name).is_ok(),

@@ -109,6 +109,21 @@ fn a_mapping_names_groups_and_channels() {
 }
 
 #[test]
+fn a_mapping_without_units_takes_those_of_the_file() {
+    let text = r#"{"channels": {"aoa": {"from": "Alpha_vane"}, "T": {"from": "T_K"}}}"#;
+    let Reading { maneuver, .. } = reading(Some(&Mapping::from_json(text).unwrap())).unwrap();
+    assert_eq!(maneuver.channels()["aoa"].values[0], 1f64.to_radians());
+    assert_eq!(maneuver.channels()["T"].recorded_unit, "K");
+    // one that it says holds, and one that nobody says is asked for
+    let said = text.replace(r#""Alpha_vane""#, r#""Alpha_vane", "unit": "rad""#);
+    let Reading { maneuver, .. } = reading(Some(&Mapping::from_json(&said).unwrap())).unwrap();
+    assert_eq!(maneuver.channels()["aoa"].values[0], 1.0);
+    let silent = text.replace("Alpha_vane", "Air_Data.q");
+    let error = reading(Some(&Mapping::from_json(&silent).unwrap())).unwrap_err();
+    assert_eq!(error.faults()[0].pointer, "/channels/aoa/unit");
+}
+
+#[test]
 fn times_increase_and_limits_hold() {
     let standing = read(two_rates(&[0.2, 0.2]), None, &Limits::default());
     assert_eq!(places(standing), ["time_not_increasing "]);

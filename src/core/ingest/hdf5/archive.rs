@@ -11,17 +11,23 @@ use super::dataset::Dataset;
 use super::datatype::{Field, Type};
 use super::file::File;
 use super::objects::Object;
+use super::references::{self, Followed};
 use super::room;
 use crate::flight::Fault;
 
 pub(in super::super) struct Datasets<'a> {
     file: File<'a>,
+    /// Those of the file, and behind them those that references led to.
     objects: Vec<Object<'a>>,
+    /// How many are of the file.
+    listed: usize,
     /// Bytes that may still be read.
     room: usize,
     /// What was asked for last: as it is stored, or row by row.
     bytes: Vec<u8>,
     values: Vec<f64>,
+    /// Columns of the values that were gathered from an array of structs.
+    columns: usize,
     /// The table that was read last, and its bytes: all of its fields are in them.
     table: Option<(usize, Vec<u8>)>,
 }
@@ -39,18 +45,19 @@ impl<'a> Datasets<'a> {
     pub(super) fn of(file: File<'a>, objects: Vec<Object<'a>>, limits: &Limits) -> Self {
         Self {
             file,
+            listed: objects.len(),
             objects,
             room: room::of(limits),
             bytes: Vec::new(),
             values: Vec::new(),
+            columns: 1,
             table: None,
         }
     }
 
     /// What there is, for a message.
     pub(super) fn contents(&self) -> String {
-        let datasets = self
-            .objects
+        let datasets = self.objects[..self.listed]
             .iter()
             .filter(|object| object.dataset.is_some());
         let name =
@@ -69,7 +76,7 @@ impl<'a> Datasets<'a> {
                         && dataset.count().is_some_and(|count| count > 1)
                 })
             };
-            let mut matrices = (0..self.objects.len()).filter(|&at| is_matrix(&self.objects[at]));
+            let mut matrices = (0..self.listed).filter(|&at| is_matrix(&self.objects[at]));
             return match (matrices.next(), matrices.next()) {
                 (Some(at), None) => Ok((at, None)),
                 _ => Err(unknown(format!(
@@ -97,6 +104,31 @@ impl<'a> Datasets<'a> {
     }
 }
 
+impl Datasets<'_> {
+    /// The object that a path leads to along references, or nothing where it leads to the field of all structs of an array:
+    /// then the values are those. `why` the path leads to nothing else.
+    fn follow(&mut self, path: &[String], why: Option<Why>) -> Result<Option<usize>, Why> {
+        match references::follow(&self.file, path, &mut self.room) {
+            Ok(Followed::Object(object)) => {
+                self.objects.push(Object {
+                    path: path.to_vec(),
+                    ..object
+                });
+                Ok(Some(self.objects.len() - 1))
+            }
+            Ok(Followed::Gathered(values, columns)) => {
+                (self.values, self.columns) = (values, columns);
+                Ok(None)
+            }
+            // of a path without brackets, what the file has tells more
+            Err(of_references) => Err(match path.iter().any(|name| name.contains(['(', '['])) {
+                true => of_references,
+                false => why.unwrap_or(of_references),
+            }),
+        }
+    }
+}
+
 impl Object<'_> {
     /// Whether a path as a mapping writes it leads to it.
     fn is_at(&self, path: &[String]) -> bool {
@@ -106,9 +138,27 @@ impl Object<'_> {
     }
 }
 
+/// Attributes in which programs say a unit: netCDF's, and those of others.
+const UNITS: [&str; 4] = ["units", "unit", "Units", "Unit"];
+
 impl Archive for Datasets<'_> {
+    fn unit(&self, path: &[String]) -> Option<String> {
+        let (at, _) = self.find(path).ok()?;
+        let header = &self.objects[at].header;
+        let mut said = UNITS
+            .iter()
+            .filter_map(|name| attribute::text(&self.file, header, name));
+        said.find(|unit| !unit.is_empty())
+    }
+
     fn matrix(&mut self, path: &[String]) -> Result<Matrix<'_>, Why> {
-        let (at, field) = self.find(path)?;
+        let (at, field) = match self.find(path) {
+            Ok((at, field)) if self.objects[at].references().is_none() => (at, field),
+            found => match self.follow(path, found.err())? {
+                Some(at) => (at, None),
+                None => return Ok(Matrix::of_rows(&self.values, self.columns)),
+            },
+        };
         let object = &self.objects[at];
         let unreadable = |why: String| {
             let message = format!("{} {why}", quoted(&object.name()));

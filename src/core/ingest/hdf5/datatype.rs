@@ -14,6 +14,8 @@ pub(super) enum Type {
     Compound(Vec<Field>, usize),
     /// So many of one kind.
     Array(Box<Type>, usize),
+    /// The address of an object, of so many bytes.
+    Reference(usize),
     /// What it is, and its bytes.
     Other(&'static str, usize),
 }
@@ -36,7 +38,10 @@ impl Type {
             Self::Number(number) => number.width,
             Self::Long => 8,
             Self::Array(of, count) => of.width().saturating_mul(*count),
-            Self::Text(width) | Self::Compound(_, width) | Self::Other(_, width) => *width,
+            Self::Text(width)
+            | Self::Compound(_, width)
+            | Self::Reference(width)
+            | Self::Other(_, width) => *width,
         }
     }
 
@@ -56,6 +61,7 @@ impl Type {
             Self::Text(_) => "text",
             Self::Compound(..) => "a table",
             Self::Array(..) => "arrays",
+            Self::Reference(_) => "references",
             Self::Other(what, _) => what,
         }
     }
@@ -103,7 +109,8 @@ impl Type {
                 Self::Other("bytes", width)
             }
             6 => compound(cursor, version, (bits & 0xffff) as usize, width, depth)?,
-            7 => Self::Other("references", width),
+            7 if bits & 15 == 0 && width <= 8 => Self::Reference(width),
+            7 => Self::Other("references to parts", width),
             8 => enumeration(cursor, version, (bits & 0xffff) as usize, depth)?,
             9 => {
                 Self::within(cursor, depth)?;

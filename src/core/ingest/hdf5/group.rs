@@ -1,9 +1,10 @@
 //! What is in a group, by name.
 
-use super::super::{code, fault::of_file};
-use super::damage::{REWRITE, damaged};
+use super::damage::damaged;
 use super::file::File;
 use super::header::{Header, kind};
+use super::heap::Heap;
+use super::tree;
 use crate::flight::Fault;
 
 /// Nodes of the tree that lists a group.
@@ -12,7 +13,7 @@ const MOST_NODES: usize = 100_000;
 /// The names in a group with the addresses of their headers; at most `most` and one.
 ///
 /// # Errors
-/// The group is damaged, or lists its members in a way that is not read.
+/// The group is damaged.
 pub(super) fn members(
     file: &File,
     header: &Header,
@@ -33,34 +34,34 @@ pub(super) fn members(
             .ok_or_else(|| damaged("the list of a group cannot be read"));
     }
     let mut members = Vec::new();
+    let unread = || damaged("a link cannot be read");
     for message in header.all(kind::LINK).take(most + 1) {
-        let link = link(file, message).ok_or_else(|| damaged("a link cannot be read"))?;
+        let link = link(file, message).ok_or_else(unread)?;
         members.extend(link);
     }
-    if members.is_empty()
-        && header
-            .find(kind::LINK_INFO)
-            .is_some_and(|info| is_dense(file, info))
-    {
-        let message = format!(
-            "a group of the HDF5 file lists what is in it in a way that is not read; {REWRITE}"
-        );
-        return Err(of_file(code::FORMAT_NOT_READ, message));
+    if let Some(info) = header.find(kind::LINK_INFO) {
+        members.extend(dense(file, info, most).ok_or_else(unread)?);
     }
     Ok(members)
 }
 
-/// Whether the links of a group are in a heap.
-fn is_dense(file: &File, info: &[u8]) -> bool {
-    let heap = || {
-        let mut cursor = file.within(info);
-        let flags = cursor.take(2)?[1];
-        cursor.take(if flags & 1 != 0 { 8 } else { 0 })?;
-        let width = cursor.offset();
-        let heap = cursor.address()?;
-        Some(heap != u64::MAX >> (64 - 8 * width))
-    };
-    heap().unwrap_or(false)
+/// The links of a group that are in a heap, by their names.
+fn dense(file: &File, info: &[u8], most: usize) -> Option<Vec<(String, u64)>> {
+    let mut cursor = file.within(info);
+    let flags = cursor.take(2)?[1];
+    cursor.take(if flags & 1 != 0 { 8 } else { 0 })?;
+    let (heap, index) = (cursor.address()?, cursor.address()?);
+    if file.is_undefined(heap) || file.is_undefined(index) {
+        return Some(Vec::new());
+    }
+    let heap = Heap::read(file, heap)?;
+    let mut members = Vec::new();
+    for record in tree::records(file, index, most)? {
+        // behind the hash of the name
+        members.extend(link(file, heap.object(record.get(4..)?)?)?);
+    }
+    members.sort_unstable();
+    Some(members)
 }
 
 /// A message of a link; nothing where it leads to a name or another file.

@@ -3,9 +3,9 @@
 //! The format is described in The HDF Group's "HDF5 File Format Specification". Crates that read it were weighed:
 //! `hdf5-metno` needs the C library; `hdf5-reader`, `hdf5-pure`, `hdf5-pure-rust` and `rust-hdf5` are pure Rust, but of 30,000 to
 //! 140,000 lines, where a recording needs 2,000, and none of them can be given [`Limits`]. Of the format there is here:
-//! superblocks of all versions; groups as symbol tables or links; datasets that are compact, contiguous or in chunks, packed
-//! with deflate or LZF, shuffled or not. Links in a heap, chunks in a tree of version 2 or an extensible array, and other
-//! filters are told, with how to write the file anew.
+//! superblocks of all versions; groups as symbol tables or links, in a heap too; datasets that are compact, contiguous or in
+//! chunks, packed with deflate or LZF, shuffled or not; MATLAB's arrays of structs and cells. Chunks in a tree of version 2 or
+//! an extensible array, and other filters are told, with how to write the file anew.
 //!
 //! A file with one table, that is a frame of pandas or a dataset with fields, is read as its titles say. Of others a mapping
 //! says what is what.
@@ -20,11 +20,14 @@ mod filters;
 mod frame;
 mod group;
 mod header;
+mod heap;
 mod index;
 mod layout;
 mod objects;
 mod pickle;
+mod references;
 mod room;
+mod tree;
 
 use super::{
     IngestError, Limits, code, columns::Columns, fault::of_file, mapping::Mapping, reading::Reading,

@@ -1,5 +1,6 @@
 //! A mapping and a file that has matrices by name become a maneuver.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::super::{
@@ -30,6 +31,36 @@ impl Mapping {
         limits
             .columns(self.channels.len() + 1)
             .map_or(Ok(()), Err)?;
+        let with_units = self.with_units_of(&*archive);
+        with_units.taken_from(archive, limits)
+    }
+
+    /// With the units that the file says, where the mapping says none.
+    fn with_units_of(&self, archive: &impl Archive) -> Cow<'_, Self> {
+        if self
+            .channels
+            .values()
+            .all(|channel| !channel.unit.is_empty())
+        {
+            return Cow::Borrowed(self);
+        }
+        let mut mapping = self.clone();
+        let silent = mapping.channels.values_mut();
+        for channel in silent.filter(|channel| channel.unit.is_empty()) {
+            let sources = channel.from.iter().map(str::parse::<Source>);
+            let mut units = sources
+                .flatten()
+                .filter_map(|source| archive.unit(&source.path));
+            channel.unit = units.next().unwrap_or_default();
+        }
+        Cow::Owned(mapping)
+    }
+
+    fn taken_from(
+        &self,
+        archive: &mut impl Archive,
+        limits: &Limits,
+    ) -> Result<Reading, IngestError> {
         let sources: Vec<Result<Source, String>> = self
             .channels
             .values()
@@ -123,8 +154,7 @@ impl Mapping {
         for (at, (name, channel)) in self.channels.iter().enumerate() {
             if channel.unit.is_empty() {
                 let place = pointer(["channels", name, "unit"]);
-                let message =
-                    "a mapping says the unit of a channel of such a file: - for a pure number";
+                let message = "the file says no unit of it: say it here, - for a pure number";
                 let fault = Fault::new(place, code::INVALID_MAPPING, message);
                 faults.push((Slot::Channel(at), fault));
             }

@@ -10,6 +10,11 @@ pub(in super::super) trait Archive {
     /// A code and a message: there is none, with what there is instead; or it cannot be read.
     fn matrix(&mut self, path: &[String]) -> Result<Matrix<'_>, (&'static str, String)>;
 
+    /// The unit that the file itself says of what is at a path; `None` where it says none.
+    fn unit(&self, _path: &[String]) -> Option<String> {
+        None
+    }
+
     /// The time of the table that a path leads into, where the file itself says which it is.
     fn own_time(&self, _path: &[String]) -> Option<OwnTime> {
         None

@@ -1,7 +1,7 @@
 //! The mappings that come with Trimtab.
 
 /// By name.
-pub(super) const BUNDLED: [(&str, &str); 14] = [
+pub(super) const BUNDLED: [(&str, &str); 16] = [
     ("ardupilot", include_str!("ardupilot.toml")),
     (
         "betaflight-blackbox",
@@ -18,5 +18,7 @@ pub(super) const BUNDLED: [(&str, &str); 14] = [
     ("px4-ulog2csv", include_str!("px4-ulog2csv.toml")),
     ("rostopic", include_str!("rostopic.toml")),
     ("sidpac", include_str!("sidpac.toml")),
+    ("vbox", include_str!("vbox.toml")),
     ("x-plane", include_str!("x-plane.toml")),
+    ("xsens", include_str!("xsens.toml")),
 ];

@@ -1,6 +1,6 @@
 //! Mappings that are proposed for a file.
 
-use super::{MappedChannel, MappedTime, Mapping, Repeated, Titles};
+use super::{MappedChannel, MappedTime, Mapping, NoValue, Repeated, Titles};
 
 /// A mapping in the making.
 #[derive(Default)]
@@ -53,6 +53,30 @@ impl Draft {
             ..MappedChannel::default()
         };
         self.0.channels.insert(name.to_string(), channel);
+    }
+
+    /// A channel whose numbers are multiplied, of which one stands for no value.
+    pub(in super::super) fn scaled(
+        &mut self,
+        name: &str,
+        from: &str,
+        unit: &str,
+        scale: f64,
+        missing: f64,
+    ) {
+        let channel = MappedChannel {
+            from: Titles::One(from.to_string()),
+            unit: unit.to_string(),
+            scale: (scale != 1.0).then_some(scale),
+            missing: vec![NoValue::Number(missing)],
+            ..MappedChannel::default()
+        };
+        self.0.channels.insert(name.to_string(), channel);
+    }
+
+    /// So many lines are before the rows.
+    pub(in super::super) fn skipped(&mut self, lines: usize) {
+        self.0.skip = Some(lines);
     }
 
     pub(in super::super) fn mapping(self) -> Mapping {

@@ -163,6 +163,13 @@ impl Archive for Log<'_> {
         Ok(Matrix::of_rows(&self.values, fields.len()))
     }
 
+    fn unit(&self, path: &[String]) -> Option<String> {
+        let table = self.find(path).ok()?;
+        let name = path.get(1..).unwrap_or_default().join(".");
+        let field = table.fields.get(*table.find(&name).first()?)?;
+        Some(field.unit.clone()).filter(|unit| !unit.is_empty())
+    }
+
     fn own_time(&self, path: &[String]) -> Option<OwnTime> {
         let table = self.find(path).ok()?;
         let field = &table.fields[table.time];

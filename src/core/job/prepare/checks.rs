@@ -2,7 +2,7 @@
 
 use super::structure;
 use super::unknown_name::unknown_name;
-use crate::estimate::{Noise, Options, Problem, Role, StartMethod, has_equation_error};
+use crate::estimate::{Estimator, Noise, Options, Problem, Role, StartMethod, has_equation_error};
 use crate::flight::Fault;
 use crate::job::no_start::no_measured_state;
 use crate::job::spec::{JobKind, JobSpec, ManeuverUse, ModelSource};
@@ -95,6 +95,7 @@ pub(super) fn check_options(options: &Options, model: &Model, faults: &mut Vec<F
             message,
         ));
     }
+    check_equation_error(options, faults);
     if let Noise::Given { variance } = &options.noise {
         let outputs: Vec<&str> = model
             .outputs
@@ -108,6 +109,24 @@ pub(super) fn check_options(options: &Options, model: &Model, faults: &mut Vec<F
             );
             faults.push(Fault::new("/options/noise/variance", "bad_option", message));
         }
+    }
+}
+
+/// Least squares of the equations have a noise of their own, and begin where the document says.
+fn check_equation_error(options: &Options, faults: &mut Vec<Fault>) {
+    if options.estimator != Estimator::EquationError {
+        return;
+    }
+    if options.noise != Noise::default() {
+        let message = "the noise of equation error is that of derivatives, not of outputs: each has a variance of its own, which is estimated; leave this out";
+        faults.push(Fault::new("/options/noise", "bad_option", message));
+    }
+    if !matches!(
+        options.start,
+        StartMethod::Automatic {} | StartMethod::Document {}
+    ) {
+        let message = "\"equation_error\" is least squares and begins with the start values of the parameters; leave this out";
+        faults.push(Fault::new("/options/start", "bad_option", message));
     }
 }
 

@@ -7,10 +7,10 @@ use super::checks::{MOST_EDITS, too_many_edits};
 use super::knowledge;
 use super::stretch::Stretch;
 use crate::diagnose::{Case, Effect, Flight};
-use crate::estimate::{Derivatives, Estimator, Options, Problem, Role, StepsPerSample};
+use crate::estimate::{Derivatives, Estimator, Options, Problem, StepsPerSample};
 use crate::flight::Fault;
-use crate::job::spec::JobSpec;
-use crate::model::{Model, ModelDocument, Recorded, expression};
+use crate::job::spec::{JobSpec, ManeuverUse};
+use crate::model::{Model, ModelDocument, Recorded, Start, expression};
 use crate::simulate::Segment;
 
 /// Most values of all outputs: each candidate is simulated along all of them, and kept.
@@ -22,7 +22,7 @@ pub(super) fn flight(
     model: &Model,
     segment: &Segment,
     stretch: &Stretch<'_>,
-    role: Role,
+    usage: &ManeuverUse,
 ) -> Flight {
     let inputs = model.inputs.iter().zip(&segment.inputs);
     let of_model = inputs.chain(model.outputs.iter().zip(&segment.measured));
@@ -43,11 +43,25 @@ pub(super) fn flight(
     }
     Flight {
         label: segment.label.clone(),
-        role,
+        role: usage.role,
         time: segment.time.clone(),
         steps: segment.steps.clone(),
         channels,
+        own: own(usage),
     }
+}
+
+/// Constants that a maneuver has for itself, which are parameters of it by now, and its start values.
+fn own(usage: &ManeuverUse) -> IndexMap<String, Start> {
+    let constants = usage.constants.iter();
+    let constants =
+        constants.filter_map(|(name, value)| Some((name, Start::Value(value.number()?))));
+    let starts = usage
+        .start
+        .iter()
+        .map(|(name, start)| (name, start.clone()));
+    let all = starts.chain(constants);
+    all.map(|(name, start)| (name.clone(), start)).collect()
 }
 
 /// Recorded channels that the job's formulas use.
@@ -77,20 +91,6 @@ pub(super) fn case(
         let message =
             "a diagnosis uses the technique \"forward_sensitivities\"; leave \"derivatives\" out";
         faults.push(Fault::new("/options/derivatives", "bad_option", message));
-    }
-    for (index, usage) in spec.maneuvers.iter().enumerate() {
-        for (is_empty, field) in [
-            (usage.constants.is_empty(), "constants"),
-            (usage.start.is_empty(), "start"),
-        ] {
-            if !is_empty {
-                let message = format!(
-                    "a diagnosis takes one value for all maneuvers; leave \"{field}\" out here, or give it for the whole job"
-                );
-                let pointer = format!("/maneuvers/{index}/{field}");
-                faults.push(Fault::new(pointer, "bad_option", message));
-            }
-        }
     }
     let values = problem.samples() * problem.model.outputs.len();
     if values > MOST_VALUES {

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::flight::{Fault, Flown, Unit, escape};
 use crate::job::constant::ConstantValue;
-use crate::job::spec::{JobKind, JobSpec, ManeuverUse};
+use crate::job::spec::{JobSpec, ManeuverUse};
 use crate::model::{ModelDocument, Parameter, Per};
 
 /// The spec with a number for every constant. One that is the same in all recordings is one of the job; others are those of
@@ -36,13 +36,6 @@ pub(super) fn resolved<'s>(
         let found: Result<Vec<f64>, Fault> = asked.map(of).collect();
         match found {
             Err(fault) => faults.push(fault.under(&place)),
-            Ok(found) if spec.kind == JobKind::Diagnose && !are_one(&found) => {
-                let message = format!(
-                    "the recordings have different values, {} and others; a diagnosis takes one value for all maneuvers: give a number",
-                    found[0]
-                );
-                faults.push(Fault::new(place, "bad_option", message));
-            }
             Ok(found) => give(&mut numbers, name, &found),
         }
     }

@@ -197,14 +197,14 @@ impl<'s, 'm> Resolved<'s, 'm> {
             flights: Vec::new(),
         };
         for (index, stretches) in stretches.iter().enumerate() {
-            let role = spec.maneuvers[index].role;
+            let usage = &spec.maneuvers[index];
             for stretch in stretches {
                 let segment = resolve::segment(spec, model, stretch, index, faults);
                 if spec.kind == JobKind::Diagnose {
-                    let flight = diagnosis::flight(model, &segment, stretch, role);
+                    let flight = diagnosis::flight(model, &segment, stretch, usage);
                     resolved.flights.push(flight);
                 }
-                match role {
+                match usage.role {
                     Role::Estimation => resolved.fitted.push((segment, stretch)),
                     Role::Validation | Role::Final => resolved.predicted.push((segment, stretch)),
                 }

@@ -62,6 +62,7 @@ fn case(document: &ModelDocument, beside: &[(String, &str, PhysicalQuantity)]) -
             time: (0..200).map(|k| 0.02 * k as f64).collect(),
             steps: Steps::Even(0.02),
             channels,
+            own: IndexMap::new(),
         }],
         options: Options::default(),
         candidates: Vec::new(),
