@@ -84,6 +84,8 @@ codes! {
     NoTrajectory "no_trajectory" CONFLICT "There is no trajectory";
     /// The estimated model cannot be linearised: `detail` says why.
     NoLinearSystem "no_linear_system" CONFLICT "There is no linear system";
+    /// The estimated model has no aerodynamics for JSBSim: `detail` says why.
+    NoAerodynamics "no_aerodynamics" CONFLICT "There are no aerodynamics";
     /// The path is right, the method is not. The header `Allow` lists those that are.
     MethodNotAllowed "method_not_allowed" METHOD_NOT_ALLOWED "The method is not allowed here";
     /// None of the media types in `Accept` is offered here.

@@ -54,6 +54,7 @@ mod response;
 mod segments;
 mod sensitivities;
 mod source_code;
+mod simulator_models;
 mod starts;
 mod steps;
 mod structure;

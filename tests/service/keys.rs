@@ -88,6 +88,7 @@ const NEEDED: &[(&str, &[&str])] = &[
             "getCampaign",
             "getResidualAnalysis",
             "getProvenance",
+            "getSimulatorModel",
         ],
     ),
     (

@@ -40,7 +40,7 @@ pub use provenance::Maker;
 pub use result::JobResult;
 pub use run::{StructureProgress, StudyProgress, run, run_diagnosis, run_structure, run_study};
 pub use simulation::{NoSimulatedManeuver, SimulationSpec};
-pub use source_code::{NoSourceCode, source_code};
+pub use source_code::{NoSourceCode, SimulatorFormat, simulator_model, source_code};
 pub use spec::{
     Candidate, Gaps, HIGHEST_PRIORITY, JobKind, JobSpec, ManeuverUse, ModelSource,
     ParameterOverride,

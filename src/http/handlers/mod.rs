@@ -56,6 +56,7 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(jobs::dynamics::router())
         .merge(problems::router())
         .merge(keys::router())
+        .merge(jobs::simulator_model::router())
         .merge(webhooks::router())
         .merge(metrics::router())
         .merge(health::router())
