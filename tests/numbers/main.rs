@@ -60,3 +60,4 @@ mod steps;
 mod structure;
 mod trajectories;
 mod unstable;
+mod trim;

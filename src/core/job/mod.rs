@@ -24,6 +24,7 @@ mod term_search;
 mod tolerance;
 mod trajectories;
 
+mod trim;
 pub use crate::flight::{Fault, Faults};
 pub use campaign::{
     Campaign, CampaignCurve, CampaignPoint, CampaignQuestion, CampaignTerm, Flown, LeftOut,
@@ -50,3 +51,4 @@ pub use strict::Strict;
 pub use term_search::TermSearch;
 pub use tolerance::{Tolerance, ToleranceHeld};
 pub use trajectories::{NoTrajectory, check_parameters, plan_again, trajectories_of};
+pub use trim::ModelTrimSpec;
