@@ -85,7 +85,7 @@
 //! 4. Its line in the list of pages in `README.md`.
 
 pub use trimtab_core::{
-    diagnose, dynamics, estimate, flight, ingest, job, model, response, simulate, structure,
+    design, diagnose, dynamics, estimate, flight, ingest, job, model, response, simulate, structure,
 };
 
 pub mod cli;

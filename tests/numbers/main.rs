@@ -30,6 +30,7 @@ mod corrected;
 mod coverage;
 mod delays;
 mod derivative_techniques;
+mod design;
 mod dynamics;
 mod effects;
 mod estimation;

@@ -33,12 +33,13 @@ mod linear_system;
 mod linearisation;
 mod mat;
 mod no_linear_system;
+mod oscillation;
 mod polynomial;
 mod root;
 mod signal;
 mod transfer_function;
-
 mod trim;
+
 pub use bandwidth::Bandwidth;
 pub use equivalent_system::{EquivalentForm, EquivalentSystem};
 pub use flying_qualities::{FlyingQualities, FlyingQualityQuestion, flying_qualities};
@@ -51,6 +52,7 @@ pub use linear_system::{
 };
 pub use mat::linear_system_as_mat;
 pub use no_linear_system::NoLinearSystem;
+pub(crate) use oscillation::{Oscillation, oscillations};
 pub use transfer_function::{Root, TransferFunction};
 pub use trim::{
     Trim, TrimCondition, TrimKind, TrimOutcome, TrimQuantity, TrimSpec, TrimValue, trim,

@@ -18,7 +18,7 @@ const CRATES: [(&str, &str); 2] = [
 ];
 
 /// Each room and those it may use. An arrow that is not here is a change of design: make it on purpose.
-const ROOMS: [(&str, &[&str]); 17] = [
+const ROOMS: [(&str, &[&str]); 18] = [
     ("flight", &[]),
     ("spectral", &[]),
     ("structure", &["flight"]),
@@ -30,8 +30,13 @@ const ROOMS: [(&str, &[&str]); 17] = [
     ("diagnose", &["estimate", "simulate", "model", "flight"]),
     ("dynamics", &["estimate", "simulate", "model", "flight"]),
     (
+        "design",
+        &["dynamics", "estimate", "simulate", "model", "flight"],
+    ),
+    (
         "job",
         &[
+            "design",
             "diagnose",
             "dynamics",
             "structure",
@@ -57,6 +62,7 @@ const ROOMS: [(&str, &[&str]); 17] = [
             "store",
             "job",
             "ingest",
+            "design",
             "diagnose",
             "dynamics",
             "structure",
@@ -77,6 +83,7 @@ const ROOMS: [(&str, &[&str]); 17] = [
             "job",
             "ingest",
             "simulate",
+            "design",
             "diagnose",
             "dynamics",
             "structure",
