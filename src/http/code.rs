@@ -134,6 +134,10 @@ codes! {
     InvalidPrediction "invalid_prediction" UNPROCESSABLE_ENTITY "The prediction has faults";
     /// The scenario cannot be flown. `detail` says which part of it and why.
     InvalidScenario "invalid_scenario" UNPROCESSABLE_ENTITY "The scenario has a fault";
+    /// The trim cannot be looked for. `errors` lists all faults, each with its place.
+    InvalidTrim "invalid_trim" UNPROCESSABLE_ENTITY "The trim has faults";
+    /// The maneuvers cannot be designed. `errors` lists all faults, each with its place.
+    InvalidDesign "invalid_design" UNPROCESSABLE_ENTITY "The design has faults";
     /// The key cannot be made like this. `errors` lists all faults, each with its place.
     InvalidKey "invalid_key" UNPROCESSABLE_ENTITY "The key cannot be made like this";
     /// The webhook cannot be made like this: `errors` tells the place.
