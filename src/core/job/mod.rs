@@ -24,15 +24,15 @@ mod strict;
 mod term_search;
 mod tolerance;
 mod trajectories;
-
 mod trim;
+
 pub use crate::flight::{Fault, Faults};
 pub use campaign::{
     Campaign, CampaignCurve, CampaignPoint, CampaignQuestion, CampaignTerm, Flown, LeftOut,
     UsedRecording, campaign, conditions_of,
 };
 pub use constant::ConstantValue;
-pub use corrected::corrected;
+pub use corrected::{Corrected, corrected};
 pub use event::{Event, EventBody, Prepared};
 pub use one_call::{diagnose, fit};
 pub use plan::Plan;
