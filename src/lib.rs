@@ -85,7 +85,8 @@
 //! 4. Its line in the list of pages in `README.md`.
 
 pub use trimtab_core::{
-    diagnose, dynamics, estimate, flight, ingest, job, model, response, simulate, stop, structure,
+    design, diagnose, dynamics, estimate, flight, ingest, job, model, response, simulate, stop,
+    structure,
 };
 
 pub mod cli;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::progress::ProgressLine;
 use super::request::Request;
+use super::two_step::TwoStep;
 use super::{Failure, notes, table};
 use crate::estimate::Estimate;
 use crate::http::trajectories_as_csv;
@@ -15,6 +16,8 @@ use crate::job::{self, JobKind, Plan};
 pub(super) struct Fit {
     #[command(flatten)]
     request: Request,
+    #[command(flatten)]
+    two_step: TwoStep,
     /// Print the whole result as JSON instead.
     #[arg(long)]
     json: bool,
@@ -26,7 +29,10 @@ pub(super) struct Fit {
 impl Fit {
     pub(super) fn run(&self) -> Result<(), Failure> {
         self.check_trajectories()?;
-        let plan = self.request.plan(JobKind::Estimate)?;
+        let plan = match self.two_step.plan(&self.request, self.json)? {
+            Some(plan) => plan,
+            None => self.request.plan(JobKind::Estimate)?,
+        };
         let progress = ProgressLine::new(self.request.tolerance);
         let result = job::run(&plan, &mut |told| {
             progress.told(told);

@@ -16,7 +16,7 @@ use crate::dynamics::{
     linear_system, linear_system_as_mat,
 };
 use crate::http::responses_as_csv;
-use crate::job::{self, JobKind};
+use crate::job::{self, JobKind, SimulatorFormat};
 use crate::model::SourceLanguage;
 
 /// Fits a model and prints its linear system (A, B, C, D with standard errors, modes, transfer functions) and flying
@@ -58,9 +58,13 @@ pub(super) struct Linear {
     /// Write A, B, C, D with standard errors, lags and delays to this MAT file.
     #[arg(long, value_name = "FILE")]
     mat: Option<PathBuf>,
-    /// Write the estimated model as source code to this file: C (.c) or Python (.py).
+    /// Write the estimated model as source code to this file: C (.c), Python (.py) or MATLAB (.m).
     #[arg(long, value_name = "FILE", value_parser = source_file)]
     source_code: Option<(PathBuf, SourceLanguage)>,
+    /// Write the estimated model for a simulator to this file: a functional mock-up unit (.fmu), or the aerodynamics of a JSBSim
+    /// aircraft (.xml).
+    #[arg(long, value_name = "FILE", value_parser = simulator_file)]
+    simulator_model: Option<(PathBuf, SimulatorFormat)>,
     /// Category of the flight phase, A, B or C; levels want it and --class.
     #[arg(long, value_parser = word::<FlightPhaseCategory>, requires = "class")]
     category: Option<FlightPhaseCategory>,
@@ -123,6 +127,12 @@ impl Linear {
                 .map_err(|why| Failure::new(why.to_string()))?;
             written("--source-code", file, text.as_bytes())?;
         }
+        if let Some((file, format)) = &self.simulator_model {
+            let segment = self.segment.as_deref();
+            let content = job::simulator_model(&plan, estimate, segment, *format)
+                .map_err(|why| Failure::new(why.to_string()))?;
+            written("--simulator-model", file, &content)?;
+        }
         if let Some(file) = &self.mat {
             written("--mat", file, &linear_system_as_mat(&system))?;
         }
@@ -174,7 +184,18 @@ fn source_file(text: &str) -> Result<(PathBuf, SourceLanguage), String> {
     match file.extension().and_then(|extension| extension.to_str()) {
         Some("c") => Ok((file, SourceLanguage::C)),
         Some("py") => Ok((file, SourceLanguage::Python)),
-        _ => Err("its name ends in .c or .py".to_string()),
+        Some("m") => Ok((file, SourceLanguage::Matlab)),
+        _ => Err("its name ends in .c, .py or .m".to_string()),
+    }
+}
+
+/// A file whose ending says for which simulator.
+fn simulator_file(text: &str) -> Result<(PathBuf, SimulatorFormat), String> {
+    let file = PathBuf::from(text);
+    match file.extension().and_then(|extension| extension.to_str()) {
+        Some("fmu") => Ok((file, SimulatorFormat::Fmu)),
+        Some("xml") => Ok((file, SimulatorFormat::Jsbsim)),
+        _ => Err("its name ends in .fmu or .xml (JSBSim)".to_string()),
     }
 }
 

@@ -11,6 +11,7 @@ mod client;
 mod demo;
 mod derivatives;
 mod describe;
+mod design;
 mod diagnose;
 mod failure;
 mod figures;
@@ -46,6 +47,8 @@ mod study;
 mod study_tables;
 mod submit;
 mod table;
+mod trim;
+mod two_step;
 mod watch;
 mod work;
 
@@ -85,6 +88,9 @@ enum Command {
     Submit(submit::Submit),
     Watch(watch::Watch),
     Simulate(simulate::Simulate),
+    Design(design::Design),
+    #[command(name = "trim")]
+    Trim(Box<trim::TrimCommand>),
     Inspect(inspect::Inspect),
     Join(join::Join),
     Segments(segments::Segments),
@@ -121,6 +127,8 @@ pub fn main() -> ExitCode {
         Command::Submit(submit) => block_on(submit.run()),
         Command::Watch(watch) => block_on(watch.run()),
         Command::Simulate(simulate) => simulate.run(),
+        Command::Design(design) => design.run(),
+        Command::Trim(trim) => trim.run(),
         Command::Inspect(inspect) => inspect.run(),
         Command::Join(join) => join.run(),
         Command::Segments(segments) => segments.run(),

@@ -12,7 +12,8 @@
 //! | x, y, ∂y/∂θ | trajectories and sensitivities | [`simulate`] |
 //! | X(f), U(f), Z(f) | finite Fourier transforms of signals | [`spectral`] |
 //! | J, R, F, the estimate | cost, steps, error bounds | [`estimate`] |
-//! | A, B, C, D, H(jω) | linear system, flying qualities | [`dynamics`] |
+//! | A, B, C, D, H(jω) | linear system, flying qualities, trim | [`dynamics`] |
+//! | u(t), F⁻¹ before flight | inputs designed, bounds predicted | [`design`] |
 //! | H, γ², ε | frequency responses of recorded signals | [`response`] |
 //! | X, F, PSE, PRESS | which terms an equation needs | [`structure`] |
 //! | S⊥, ψ, the effect that is missing | screening, trials, verdict | [`diagnose`] |
@@ -20,7 +21,7 @@
 //! [`stop`] is how each of these is told to end, from within its loops.
 //!
 //! [`job`] is what may be asked of all this in one document, and the events by which its progress is told. Arrows go
-//! one way: `job → diagnose → estimate → simulate → model → flight`, `job → dynamics → estimate`,
+//! one way: `job → diagnose → estimate → simulate → model → flight`, `job → design → dynamics → estimate`,
 //! `estimate, response → spectral`, `job → structure`, `ingest, structure → flight`. Everything here is synchronous
 //! and deterministic: no server, no database, no clock, no environment, no hidden randomness. The service around it
 //! is the crate `trimtab`.
@@ -81,6 +82,7 @@
 
 #![warn(missing_docs)]
 
+pub mod design;
 pub mod diagnose;
 pub mod dynamics;
 pub mod estimate;

@@ -52,7 +52,8 @@ pub fn dynamics_page(view: &DynamicsView) -> String {
         h2 { "Downloads" }
         ul.links {
             li { a href=(link("linear-system", &[])) { "linear system (JSON)" } ", " a href=(link("linear-system", &[("format", "mat")])) { "as MAT file" } }
-            li { "the model as functions in " a href=(link("source-code", &[("language", "c")])) { "C" } ", " a href=(link("source-code", &[("language", "python")])) { "Python" } }
+            li { "the model as functions in " a href=(link("source-code", &[("language", "c")])) { "C" } ", " a href=(link("source-code", &[("language", "python")])) { "Python" } ", " a href=(link("source-code", &[("language", "matlab")])) { "MATLAB" } }
+            li { a href=(link("simulator-model", &[("format", "fmu")])) { "functional mock-up unit (FMI 2.0)" } ", " a href=(link("simulator-model", &[("format", "jsbsim")])) { "aerodynamics for JSBSim" } }
             li { a href=(link("frequency-response", &[("format", "csv")])) { "frequency responses (CSV)" } }
             li { a href=(link("flying-qualities", &[])) { "flying qualities (JSON)" } }
         }

@@ -58,9 +58,11 @@ pub(super) fn needed(method: &Method, path: &str) -> Option<Scope> {
     }
     // works out numbers from what is kept, and keeps nothing
     let only_asks = under("/v1/simulations")
+        || under("/v1/trims")
+        || under("/v1/designs")
         || under("/v1/maneuvers") && path.ends_with("/frequency-responses")
         || under("/v1/jobs")
-            && ["/coefficients", "/predictions"]
+            && ["/coefficients", "/predictions", "/trim"]
                 .iter()
                 .any(|end| path.ends_with(end));
     if method.is_safe() || only_asks {

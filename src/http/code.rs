@@ -84,6 +84,8 @@ codes! {
     NoTrajectory "no_trajectory" CONFLICT "There is no trajectory";
     /// The estimated model cannot be linearised: `detail` says why.
     NoLinearSystem "no_linear_system" CONFLICT "There is no linear system";
+    /// The estimated model has no aerodynamics for JSBSim: `detail` says why.
+    NoAerodynamics "no_aerodynamics" CONFLICT "There are no aerodynamics";
     /// The path is right, the method is not. The header `Allow` lists those that are.
     MethodNotAllowed "method_not_allowed" METHOD_NOT_ALLOWED "The method is not allowed here";
     /// None of the media types in `Accept` is offered here.
@@ -132,6 +134,10 @@ codes! {
     InvalidPrediction "invalid_prediction" UNPROCESSABLE_ENTITY "The prediction has faults";
     /// The scenario cannot be flown. `detail` says which part of it and why.
     InvalidScenario "invalid_scenario" UNPROCESSABLE_ENTITY "The scenario has a fault";
+    /// The trim cannot be looked for. `errors` lists all faults, each with its place.
+    InvalidTrim "invalid_trim" UNPROCESSABLE_ENTITY "The trim has faults";
+    /// The maneuvers cannot be designed. `errors` lists all faults, each with its place.
+    InvalidDesign "invalid_design" UNPROCESSABLE_ENTITY "The design has faults";
     /// The key cannot be made like this. `errors` lists all faults, each with its place.
     InvalidKey "invalid_key" UNPROCESSABLE_ENTITY "The key cannot be made like this";
     /// The webhook cannot be made like this: `errors` tells the place.

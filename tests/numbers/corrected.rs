@@ -25,10 +25,11 @@ fn a_corrected_recording_has_no_errors_left() {
     let plan = plan(model.clone(), json!({}), std::slice::from_ref(&recorded));
     let result = job::run(&plan, &mut |_| ControlFlow::Continue(())).unwrap();
     let corrected = job::corrected(&plan, &result.estimate, std::slice::from_ref(&recorded));
-    let [(label, corrected)] = &corrected.unwrap()[..] else {
+    let [made] = &corrected.unwrap()[..] else {
         panic!("one recording");
     };
-    assert_eq!(label, "1");
+    assert_eq!((made.segment.as_str(), made.of), ("1", 0));
+    let corrected = &made.maneuver;
     // what the model says nothing of is as it was
     assert_eq!(corrected.channels()["de"], elevator);
     let known = corrected.channels();

@@ -1,4 +1,4 @@
-//! Models as source code: compiled by a C compiler and run by Python, against Trimtab's own simulation.
+//! Models as source code: compiled by a C compiler, run by Python, read as MATLAB's, against Trimtab's own simulation.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -13,6 +13,7 @@ use trimtab_core::model::SourceLanguage;
 use crate::common::estimation::{fly, scenario};
 use crate::common::plans::plan;
 use crate::common::recordings::maneuver;
+use crate::common::repository;
 
 /// RK4 over the samples of a table of inputs (a header: rows, step), straight lines between them; prints outputs.
 const C_MAIN: &str = r#"
@@ -71,23 +72,27 @@ for row, u in enumerate(rows):
     print(*(repr(y) for y in output(x, u, row * h)))
 "#;
 
-fn fitted(model: &str, maneuver: &Arc<Maneuver>, changes: serde_json::Value) -> (Plan, JobResult) {
+pub(crate) fn fitted(
+    model: &str,
+    maneuver: &Arc<Maneuver>,
+    changes: serde_json::Value,
+) -> (Plan, JobResult) {
     let plan = plan(json!(model), changes, std::slice::from_ref(maneuver));
     let result = job::run(&plan, &mut |_| ControlFlow::Continue(()));
     (plan, result.unwrap_or_else(|faults| panic!("{faults:#?}")))
 }
 
 /// A folder of its own for a test, removed at the end.
-struct Folder(PathBuf);
+pub(crate) struct Folder(pub(crate) PathBuf);
 
 impl Folder {
-    fn new(name: &str) -> Self {
+    pub(crate) fn new(name: &str) -> Self {
         let folder = std::env::temp_dir().join(format!("trimtab-{name}-{}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a folder");
         Self(folder)
     }
 
-    fn write(&self, name: &str, text: &str) -> PathBuf {
+    pub(crate) fn write(&self, name: &str, text: &str) -> PathBuf {
         let file = self.0.join(name);
         std::fs::write(&file, text).expect("written");
         file
@@ -101,7 +106,7 @@ impl Drop for Folder {
 }
 
 /// The inputs of a plan's segment as the mains read them.
-fn table(plan: &Plan) -> String {
+pub(crate) fn table(plan: &Plan) -> String {
     let segment = &plan.problem.segments[0];
     let mut text = format!("{} {:?}\n", segment.len(), segment.steps.length(0));
     for k in 0..segment.len() {
@@ -115,7 +120,7 @@ fn table(plan: &Plan) -> String {
     text
 }
 
-fn run(command: &mut Command) -> String {
+pub(crate) fn run(command: &mut Command) -> String {
     let output = command.output().expect("it runs");
     let said = String::from_utf8_lossy(&output.stderr).to_string();
     assert!(output.status.success(), "{said}");
@@ -123,7 +128,7 @@ fn run(command: &mut Command) -> String {
 }
 
 /// What was printed, against the model's outputs in the result of the job.
-fn agrees(printed: &str, result: &JobResult, within: f64) {
+pub(crate) fn agrees(printed: &str, result: &JobResult, within: f64) {
     let history = &result.histories[0];
     let rows: Vec<Vec<f64>> = (printed.lines())
         .map(|line| {
@@ -171,8 +176,7 @@ fn in_c(plan: &Plan, result: &JobResult, name: &str, within: f64) {
 }
 
 fn in_python(plan: &Plan, result: &JobResult, name: &str, within: f64) {
-    if Command::new("python3").arg("--version").output().is_err() {
-        eprintln!("skipped: there is no python3");
+    if !has_python() {
         return;
     }
     let folder = Folder::new(&format!("{name}-py"));
@@ -186,22 +190,48 @@ fn in_python(plan: &Plan, result: &JobResult, name: &str, within: f64) {
     );
 }
 
+/// The MATLAB file, by its own rules read into Python: Octave reads it in `tests/python/simulators`.
+fn in_matlab(plan: &Plan, result: &JobResult, name: &str, within: f64) {
+    if !has_python() {
+        return;
+    }
+    let folder = Folder::new(&format!("{name}-m"));
+    let text = job::source_code(plan, &result.estimate, None, SourceLanguage::Matlab);
+    let source = folder.write("model.m", &text.expect("a file"));
+    let reader = repository::path("tests/numbers/simulators/matlab_to_python.py");
+    let module = run(Command::new("python3").arg(reader).arg(source));
+    let source = folder.write("model.py", &(module + PYTHON_MAIN));
+    let inputs = folder.write("inputs.txt", &table(plan));
+    let printed = run(Command::new("python3").arg(source).arg(inputs));
+    agrees(&printed, result, within);
+}
+
+pub(crate) fn has_python() -> bool {
+    let there = Command::new("python3").arg("--version").output().is_ok();
+    if !there {
+        eprintln!("skipped: there is no python3");
+    }
+    there
+}
+
 #[test]
-fn the_short_period_runs_in_c_and_in_python() {
+fn the_short_period_runs_in_c_in_python_and_in_matlab() {
     let elevator = maneuver(include_bytes!("../../data/elevator.csv"));
     let (plan, result) = fitted("short-period", &elevator, json!({}));
     in_c(&plan, &result, "short-period", 1e-9);
     in_python(&plan, &result, "short-period", 1e-9);
+    in_matlab(&plan, &result, "short-period", 1e-9);
 }
 
 /// Square roots, arcs, powers and the rest.
 #[test]
-fn six_degrees_of_freedom_run_in_c_and_in_python() {
+fn six_degrees_of_freedom_run_in_c_in_python_and_in_matlab() {
     let maneuver = fly(&scenario("six-degrees-of-freedom"));
     let changes = json!({"options": {"max_iterations": 2, "steps_per_sample": 1}});
     let (plan, result) = fitted("six-degrees-of-freedom", &maneuver, changes);
     in_c(&plan, &result, "six-dof", 1e-7);
     in_python(&plan, &result, "six-dof", 1e-7);
+    in_matlab(&plan, &result, "six-dof", 1e-7);
 }
 
 /// Paths are named where they change anything, and not where they do not.
@@ -257,8 +287,7 @@ fn what_leaves_the_range_is_infinite_in_c_and_in_python() {
 /// As C99 has it, annex F.9.3.1 and F.9.4.4.
 #[test]
 fn powers_in_python_are_those_of_c() {
-    if Command::new("python3").arg("--version").output().is_err() {
-        eprintln!("skipped: there is no python3");
+    if !has_python() {
         return;
     }
     let elevator = maneuver(include_bytes!("../../data/elevator.csv"));

@@ -117,7 +117,7 @@ async fn what_is_kept_is_read_whichever_number_is_out_of_range() {
 }
 
 /// All that shows a result or makes something of it.
-const SHOWN: [&str; 24] = [
+const SHOWN: [&str; 26] = [
     "/jobs/ID",
     "/jobs/ID/report",
     "/jobs/ID/dynamics",
@@ -138,6 +138,8 @@ const SHOWN: [&str; 24] = [
     "/v1/jobs/ID/frequency-response",
     "/v1/jobs/ID/flying-qualities",
     "/v1/jobs/ID/source-code?language=c",
+    "/v1/jobs/ID/source-code?language=matlab",
+    "/v1/jobs/ID/simulator-model?format=fmu",
     "/v1/jobs/ID/iterations",
     "/v1/jobs/ID/iterations?format=csv",
     "/v1/campaigns?tag=edge&parameters=Ma",

@@ -70,6 +70,28 @@ async fn a_linear_system_is_a_mat_file_and_a_model_is_source_code() {
         .await
         .text();
     assert!(python.contains("def derivative(x, u, t):"), "{python}");
+    let matlab = server
+        .get(&format!("/v1/jobs/{id}/source-code?language=matlab"))
+        .await
+        .text();
+    assert!(
+        matlab.starts_with("function [dx, y, x0] = short_period(x, u, t)"),
+        "{matlab}"
+    );
+    let unit = server
+        .get(&format!("/v1/jobs/{id}/simulator-model?format=fmu"))
+        .await;
+    assert_eq!(unit.header("content-type"), "application/zip");
+    assert!(unit.bytes.starts_with(b"PK\x03\x04"));
+    let none = server
+        .get(&format!("/v1/jobs/{id}/simulator-model?format=jsbsim"))
+        .await;
+    none.problem(409, "no_aerodynamics");
+    for wrong in ["?format=dll", "?format=fmu&segment=x"] {
+        let path = format!("/v1/jobs/{id}/simulator-model{wrong}");
+        let refused = server.get(&path).await;
+        assert_eq!(refused.status, 400, "{wrong}: {}", refused.text());
+    }
     for wrong in ["language=fortran", "language=c&segment=x"] {
         let refused = server
             .get(&format!("/v1/jobs/{id}/source-code?{wrong}"))

@@ -217,6 +217,13 @@ fn kinematics() -> Value {
 async fn a_corrected_recording_is_one_like_others() {
     let server = Server::start().await;
     let maneuver = server.upload(&elevator()).await;
+    let said =
+        json!({"flown": {"registration": "D-ADAM", "mass": {"value": 17600.0, "unit": "kg"}}});
+    let own = format!("/v1/maneuvers/{maneuver}");
+    let request = server.request(reqwest::Method::PATCH, &own);
+    let request = request.header("content-type", "application/json");
+    let patched = crate::common::server::send(request.body(said.to_string())).await;
+    assert_eq!(patched.status, 200, "{}", patched.text());
     let of = |model: Value, id: &str| json!({"model": model, "maneuvers": [{"id": id}]});
     let id = server.submit(&of(kinematics(), &maneuver)).await;
     server.wait(&id).await;
@@ -227,6 +234,10 @@ async fn a_corrected_recording_is_one_like_others() {
     let name = corrected["name"].as_str().unwrap();
     assert_eq!(name, format!("1, corrected by job {id}"));
     assert_ne!(corrected["id"], maneuver);
+    // it says what it was made of, and what was said of the flight
+    let from = json!({"job": id, "maneuver": maneuver, "segment": "1"});
+    assert_eq!(corrected["flown"]["derived_from"], from);
+    assert_eq!(corrected["flown"]["registration"], "D-ADAM");
     let channels = corrected["summary"]["channels"].as_array().unwrap();
     let names: Vec<&str> = (channels.iter())
         .map(|channel| channel["name"].as_str().unwrap())
@@ -236,6 +247,7 @@ async fn a_corrected_recording_is_one_like_others() {
     }
     let again = server.post_json(&path, &json!({})).await.json()[0].take();
     assert_eq!(again["id"], corrected["id"]);
+    assert_eq!(again["flown"], corrected["flown"]);
     // the bias is out of it
     let id = server
         .submit(&of(kinematics(), corrected["id"].as_str().unwrap()))

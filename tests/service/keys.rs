@@ -84,7 +84,11 @@ const NEEDED: &[(&str, &[&str])] = &[
             "getFlyingQualities",
             "predictManeuvers",
             "simulate",
+            "trimModel",
+            "trimJob",
+            "designManeuvers",
             "getSourceCode",
+            "getSimulatorModel",
             "getCampaign",
             "getResidualAnalysis",
             "getProvenance",
@@ -210,6 +214,7 @@ async fn every_operation_is_open_to_whom_it_should_be_and_to_nobody_else() {
                     "getCoefficients",
                     "predictManeuvers",
                     "getFrequencyResponses",
+                    "trimJob",
                 ];
                 let is_hidden = answer.status == 404 || reads.contains(&id) && answer.status == 422;
                 assert!(is_hidden, "{method} {path}: {}", answer.text());

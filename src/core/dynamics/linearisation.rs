@@ -258,7 +258,7 @@ fn results<T: Scalar>(program: &Program, state: &[T], parameters: &[T]) -> Vec<T
     results
 }
 
-fn with_inputs_as_parameters(document: &ModelDocument) -> ModelDocument {
+pub(super) fn with_inputs_as_parameters(document: &ModelDocument) -> ModelDocument {
     let mut document = document.clone();
     for (name, input) in std::mem::take(&mut document.inputs) {
         let parameter = Parameter {
@@ -281,7 +281,10 @@ fn with_inputs_as_parameters(document: &ModelDocument) -> ModelDocument {
     document
 }
 
-fn find_segment(problem: &Problem, label: Option<&str>) -> Result<usize, NoLinearSystem> {
+pub(super) fn find_segment(
+    problem: &Problem,
+    label: Option<&str>,
+) -> Result<usize, NoLinearSystem> {
     let labels = || {
         problem
             .segments

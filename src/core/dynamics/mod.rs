@@ -18,6 +18,7 @@
 //! bandwidth           attitude bandwidth and phase delay
 //! level               levels of flying qualities
 //! flying_qualities    all of these, for the controls and motions that a model has
+//! trim                states and inputs of a steady flight
 //! ```
 //!
 //! Invariant: nothing here estimates; an estimate goes in, and numbers with standard errors come out.
@@ -32,10 +33,12 @@ mod linear_system;
 mod linearisation;
 mod mat;
 mod no_linear_system;
+mod oscillation;
 mod polynomial;
 mod root;
 mod signal;
 mod transfer_function;
+mod trim;
 
 pub use bandwidth::Bandwidth;
 pub use equivalent_system::{EquivalentForm, EquivalentSystem};
@@ -49,4 +52,9 @@ pub use linear_system::{
 };
 pub use mat::linear_system_as_mat;
 pub use no_linear_system::NoLinearSystem;
+pub(crate) use oscillation::{Oscillation, oscillations};
 pub use transfer_function::{Root, TransferFunction};
+pub use trim::{
+    Trim, TrimCondition, TrimKind, TrimOutcome, TrimQuantity, TrimSpec, TrimValue, trim,
+    trim_of_estimate,
+};

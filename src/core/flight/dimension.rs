@@ -40,6 +40,17 @@ impl Dimension {
         (self.0[2] % SIXTHS == 0).then(|| i32::from(self.0[2] / SIXTHS))
     }
 
+    /// Base units with their exponents, none of them 0; `None` where one is not whole.
+    pub fn whole_exponents(self) -> Option<Vec<(&'static str, i32)>> {
+        let whole = self.0.iter().all(|sixths| sixths % SIXTHS == 0);
+        let exponents = (BASE.into_iter().zip(self.0)).filter(|(_, sixths)| *sixths != 0);
+        whole.then(|| {
+            exponents
+                .map(|(base, sixths)| (base, i32::from(sixths / SIXTHS)))
+                .collect()
+        })
+    }
+
     /// The dimension of a product.
     #[must_use]
     pub fn times(self, other: Self) -> Self {

@@ -36,7 +36,7 @@ pub use dimension::Dimension;
 pub use fault::{Fault, Faults, escape};
 pub use finding::{Finding, FindingTally};
 pub use finding_code::FindingCode;
-pub use flown::{CentreOfGravity, Flown, Inertia, Quantity};
+pub use flown::{CentreOfGravity, DerivedFrom, Flown, Inertia, Quantity};
 pub use maneuver::{Channel, Maneuver, ManeuverError};
 pub(crate) use null::null_as_nan;
 pub use physical::{Family, Motion, PhysicalQuantity};

@@ -14,7 +14,18 @@ use crate::estimate::{Estimate, ParameterEstimate, QuantityKind, Trajectory, Tra
 use crate::flight::{Channel, Maneuver, PhysicalQuantity, Unit};
 use crate::model::Quantities;
 
-/// One recording for each segment that was fitted, with its label. A quantity has the name that the model's input or output
+/// A recording that an estimate has corrected.
+#[derive(Clone, Debug)]
+pub struct Corrected {
+    /// The label of the segment.
+    pub segment: String,
+    /// The recording that it is a part of, by its place among the job's maneuvers.
+    pub of: usize,
+    /// As it is now.
+    pub maneuver: Maneuver,
+}
+
+/// One recording for each segment that was fitted. A quantity has the name that the model's input or output
 /// has of it, else its own.
 ///
 /// # Errors
@@ -23,7 +34,7 @@ pub fn corrected(
     plan: &Plan,
     estimate: &Estimate,
     maneuvers: &[Arc<Maneuver>],
-) -> Result<Vec<(String, Maneuver)>, NoTrajectory> {
+) -> Result<Vec<Corrected>, NoTrajectory> {
     let document = &plan.problem.model.document;
     let quantities = Quantities::of(document);
     let mut inputs = document.inputs.keys();
@@ -37,7 +48,8 @@ pub fn corrected(
     }
     let trajectories = trajectories_of(plan, estimate)?;
     let of_segment = |(index, trajectory): (usize, &Trajectory)| {
-        let recorded = &maneuvers[*plan.from.get(index)?];
+        let of = *plan.from.get(index)?;
+        let recorded = &maneuvers[of];
         let rows = Rows::of(recorded, trajectory);
         let mut channels = IndexMap::new();
         for (name, series) in motion(trajectory, &quantities) {
@@ -56,7 +68,11 @@ pub fn corrected(
             channels.entry(name.clone()).or_insert_with(as_recorded);
         }
         let maneuver = Maneuver::new(rows.of_samples(&trajectory.time), channels).ok()?;
-        Some((trajectory.segment.clone(), maneuver))
+        Some(Corrected {
+            segment: trajectory.segment.clone(),
+            of,
+            maneuver,
+        })
     };
     Ok(trajectories
         .iter()

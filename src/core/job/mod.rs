@@ -10,6 +10,7 @@ mod event;
 mod no_start;
 mod one_call;
 mod plan;
+mod planned;
 mod predicted;
 mod prepare;
 mod provenance;
@@ -23,6 +24,7 @@ mod strict;
 mod term_search;
 mod tolerance;
 mod trajectories;
+mod trim;
 
 pub use crate::flight::{Fault, Faults};
 pub use campaign::{
@@ -30,17 +32,18 @@ pub use campaign::{
     UsedRecording, campaign, conditions_of,
 };
 pub use constant::ConstantValue;
-pub use corrected::corrected;
+pub use corrected::{Corrected, corrected};
 pub use event::{Event, EventBody, Prepared};
 pub use one_call::{diagnose, fit};
 pub use plan::Plan;
+pub use planned::PlannedDesign;
 pub use predicted::{PredictedOutput, PredictedSegment, PredictionSpec, predicted};
 pub use prepare::{MOST_MANEUVERS, prepare};
 pub use provenance::Maker;
 pub use result::JobResult;
 pub use run::{StructureProgress, StudyProgress, run, run_diagnosis, run_structure, run_study};
 pub use simulation::{NoSimulatedManeuver, SimulationSpec};
-pub use source_code::{NoSourceCode, source_code};
+pub use source_code::{NoSourceCode, SimulatorFormat, simulator_model, source_code};
 pub use spec::{
     Candidate, Gaps, HIGHEST_PRIORITY, JobKind, JobSpec, ManeuverUse, ModelSource,
     ParameterOverride,
@@ -50,3 +53,4 @@ pub use strict::Strict;
 pub use term_search::TermSearch;
 pub use tolerance::{Tolerance, ToleranceHeld};
 pub use trajectories::{NoTrajectory, check_parameters, plan_again, trajectories_of};
+pub use trim::ModelTrimSpec;

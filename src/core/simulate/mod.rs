@@ -55,7 +55,7 @@ pub(crate) use pack::{PACK, Pack, multiply_add, packs};
 pub use rates::Rates;
 pub(crate) use rates::StateMatrixAt;
 pub use scenario::{
-    InputDesign, NoiseColour, Scenario, ScenarioChannel, ScenarioEffect, ScenarioError,
+    InputDesign, NoiseColour, Planned, Scenario, ScenarioChannel, ScenarioEffect, ScenarioError,
     ScenarioInput, ScenarioOutput,
 };
 pub use segment::{Segment, Steps, Substeps};

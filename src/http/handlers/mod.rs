@@ -9,6 +9,7 @@ pub(super) mod models;
 
 mod audit;
 mod campaigns;
+mod designs;
 mod flown;
 mod frequency_responses;
 mod maneuver_data;
@@ -18,6 +19,7 @@ mod retention;
 mod segments;
 mod several;
 mod simulations;
+mod trims;
 mod webhooks;
 
 use utoipa_axum::router::OpenApiRouter;
@@ -35,6 +37,8 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(mappings::router())
         .merge(models::router())
         .merge(simulations::router())
+        .merge(trims::router())
+        .merge(designs::router())
         .merge(jobs::submit::router())
         .merge(jobs::bulk::router())
         .merge(jobs::rerun::router())
@@ -52,6 +56,7 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(jobs::corrected::router())
         .merge(jobs::predictions::router())
         .merge(jobs::source_code::router())
+        .merge(jobs::simulator_model::router())
         .merge(campaigns::router())
         .merge(jobs::dynamics::router())
         .merge(problems::router())

@@ -18,7 +18,7 @@ const CRATES: [(&str, &str); 2] = [
 ];
 
 /// Each room and those it may use. An arrow that is not here is a change of design: make it on purpose.
-const ROOMS: [(&str, &[&str]); 18] = [
+const ROOMS: [(&str, &[&str]); 19] = [
     ("stop", &[]),
     ("flight", &["stop"]),
     ("spectral", &["stop"]),
@@ -37,8 +37,13 @@ const ROOMS: [(&str, &[&str]); 18] = [
     ),
     ("dynamics", &["estimate", "simulate", "model", "flight"]),
     (
+        "design",
+        &["dynamics", "estimate", "simulate", "model", "flight"],
+    ),
+    (
         "job",
         &[
+            "design",
             "diagnose",
             "dynamics",
             "structure",
@@ -68,6 +73,7 @@ const ROOMS: [(&str, &[&str]); 18] = [
             "store",
             "job",
             "ingest",
+            "design",
             "diagnose",
             "dynamics",
             "structure",
@@ -88,6 +94,7 @@ const ROOMS: [(&str, &[&str]); 18] = [
             "job",
             "ingest",
             "simulate",
+            "design",
             "diagnose",
             "dynamics",
             "structure",

@@ -1,5 +1,6 @@
 //! What was flown: by which aircraft, when, and how it was loaded.
 
+mod derived;
 mod quantity;
 
 use indexmap::IndexMap;
@@ -7,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::fault::{Fault, escape};
+pub use derived::DerivedFrom;
 pub use quantity::Quantity;
 use quantity::short;
 
@@ -69,6 +71,9 @@ pub struct Flown {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(example = json!(["campaign 3"]))]
     pub tags: Vec<String>,
+    /// Of a recording that a job made of another: which job, and of what. It is written with the recording.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub derived_from: Option<DerivedFrom>,
 }
 
 /// Where the centre of gravity is, in the axes of whoever says so.
@@ -201,6 +206,20 @@ impl Flown {
             if let Err(why) = quantity.check(&name) {
                 let path: Vec<String> = name.split('.').map(escape).collect();
                 refuse(format!("/{}", path.join("/")), why);
+            }
+        }
+        if let Some(DerivedFrom {
+            job,
+            maneuver,
+            segment,
+        }) = &self.derived_from
+        {
+            let parts = [("job", job), ("maneuver", maneuver), ("segment", segment)];
+            for (name, text) in parts {
+                if !(1..=LONGEST_TEXT).contains(&text.chars().count()) {
+                    let message = format!("a text of 1 to {LONGEST_TEXT} characters stands here");
+                    refuse(format!("/derived_from/{name}"), message);
+                }
             }
         }
         if self.tags.len() > MOST_TAGS {

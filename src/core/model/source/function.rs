@@ -14,9 +14,22 @@ pub(super) trait Dialect {
     fn call(&self, operation: Operation, a: &str) -> String;
     /// An operation that is not written as a function of one operand or with a sign.
     fn other(&self, operation: Operation, a: &str, b: &str, c: &str) -> String;
+    /// An element of an array, counted from 0.
+    fn element(&self, array: &str, index: usize) -> String {
+        format!("{array}[{index}]")
+    }
 }
 
-/// The name of a function of one operand, the same in C's `math.h` and in Python's `math`.
+/// How parameters stand in functions.
+#[derive(Clone, Copy)]
+pub(in crate::model) enum Parameters<'p> {
+    /// As these numbers, SI.
+    Numbers(&'p [f64]),
+    /// As so many elements of an array `p`.
+    Array(usize),
+}
+
+/// The name of a function of one operand, as C's `math.h` and Python's `math` have it.
 pub(super) fn function_name(operation: Operation) -> &'static str {
     match operation {
         Operation::Sin => "sin",
@@ -36,24 +49,31 @@ pub(super) fn function_name(operation: Operation) -> &'static str {
 /// The assignments of a program, and what its results are then called.
 pub(super) fn assignments(
     program: &Program,
-    (inputs, parameters): (usize, &[f64]),
+    (inputs, parameters): (usize, Parameters<'_>),
     dialect: &impl Dialect,
 ) -> (Vec<String>, Vec<String>) {
     let slots = program.slots();
     let mut names: Vec<String> = (0..program.registers()).map(|i| format!("r{i}")).collect();
     for state in 0..slots.states {
-        names[slots.state(state) as usize] = format!("x[{state}]");
+        names[slots.state(state) as usize] = dialect.element("x", state);
     }
     for input in 0..slots.inputs {
         // behind the inputs stand the slopes of their paths, which are not in the functions
         names[slots.input(input) as usize] = match input < inputs {
-            true => format!("u[{input}]"),
+            true => dialect.element("u", input),
             false => dialect.number(0.0),
         };
     }
     names[slots.time() as usize] = "t".to_string();
-    for (parameter, value) in parameters.iter().enumerate() {
-        names[slots.parameter(parameter) as usize] = dialect.number(*value);
+    let count = match parameters {
+        Parameters::Numbers(values) => values.len(),
+        Parameters::Array(count) => count,
+    };
+    for parameter in 0..count {
+        names[slots.parameter(parameter) as usize] = match parameters {
+            Parameters::Numbers(values) => dialect.number(values[parameter]),
+            Parameters::Array(_) => dialect.element("p", parameter),
+        };
     }
     for &(at, value) in program.constants() {
         names[at as usize] = dialect.number(value);

@@ -1,4 +1,4 @@
-//! A model with its estimates as source code: functions in C and in Python, written from the flat programs.
+//! A model with its estimates as source code: functions in C, in Python and in MATLAB, written from the flat programs.
 //!
 //! ```text
 //! initial state  x0        derivative  dx/dt = f(x, u, t)        output  y = g(x, u, t)
@@ -6,8 +6,9 @@
 //!
 //! All in SI, with the parameters as numbers in it. Signal paths are not in it: u is what the equations see, y what they give.
 
-mod c;
-mod function;
+pub(super) mod c;
+pub(super) mod function;
+mod matlab;
 mod python;
 mod written;
 
@@ -28,6 +29,8 @@ pub enum SourceLanguage {
     C,
     /// Python 3 with its standard library alone.
     Python,
+    /// MATLAB or Octave, also as a MATLAB Function block of Simulink.
+    Matlab,
 }
 
 impl Model {
@@ -41,11 +44,12 @@ impl Model {
         match language {
             SourceLanguage::C => c::file(&written),
             SourceLanguage::Python => python::file(&written),
+            SourceLanguage::Matlab => matlab::file(&written),
         }
     }
 
-    /// What stands at the head of the file.
-    fn notes(&self, parameters: &[f64], of: &str) -> Vec<String> {
+    /// What stands at the head of a file.
+    pub(super) fn notes(&self, parameters: &[f64], of: &str) -> Vec<String> {
         let plain = |text: &str| -> String {
             // what would end a comment, or a line of one
             text.replace("*/", "* /").replace(['\n', '\r'], " ")
@@ -70,7 +74,7 @@ impl Model {
     }
 
     /// Signal paths that are not in the functions, where they change anything.
-    fn left_out(&self, parameters: &[f64]) -> Vec<String> {
+    pub(super) fn left_out(&self, parameters: &[f64]) -> Vec<String> {
         let sizes = self.paths.at(parameters);
         let elements = self.paths.elements().iter().enumerate();
         let changes = |element: Element, size: f64| match element {

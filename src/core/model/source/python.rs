@@ -1,6 +1,6 @@
 //! A model in Python 3, with the standard library alone.
 
-use super::function::{Dialect, assignments, function_name};
+use super::function::{Dialect, Parameters, assignments, function_name};
 use super::written::Written;
 use crate::model::operation::Operation;
 use crate::model::program::Program;
@@ -95,8 +95,8 @@ pub(super) fn file(written: &Written<'_>) -> String {
         format!("[{}]", names.join(", "))
     };
     let function = |head: &str, what: &str, program: &Program| {
-        let (lines, results) =
-            assignments(program, (model.inputs.len(), written.parameters), &Python);
+        let parameters = Parameters::Numbers(written.parameters);
+        let (lines, results) = assignments(program, (model.inputs.len(), parameters), &Python);
         let lines: String = lines.iter().map(|line| format!("{line}\n")).collect();
         format!(
             "def {head}:\n    \"\"\"{what}\"\"\"\n{lines}    return [{}]\n",

@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::affected::Affected;
-use super::document::{Scenario, ScenarioError, unit_like};
+use super::document::{Scenario, ScenarioError, ScenarioOutput, unit_like};
 use super::noise::NoiseColour;
 use crate::flight::{Channel, Dimension, Maneuver, Unit};
 use crate::model::{ChannelFormula, Model, Recorded, Start};
@@ -37,8 +37,9 @@ impl Scenario {
         maneuver(time, channels)
     }
 
-    /// What is recorded. Of the parameters, `read_off` are read off the designed inputs where their start says so.
-    fn record(&self, model: &Model, read_off: &[String]) -> Result<TimeAndChannels, ScenarioError> {
+    /// Inputs and parameters as they are planned; of the parameters, `read_off` are read off the designed inputs where
+    /// their start says so.
+    fn plan(&self, model: &Model, read_off: &[String]) -> Result<Planned, ScenarioError> {
         let unfit = |what: &str, message: String| ScenarioError::Unfit {
             what: what.to_string(),
             message,
@@ -60,7 +61,7 @@ impl Scenario {
                 }
                 let unit = unit_like(&design.unit, input.unit, &format!("{what}.unit"))?;
                 let at = |&t: &f64| unit.to_si(design.trim + design.design.at(t));
-                return Ok((design.unit.as_str(), time.iter().map(at).collect()));
+                return Ok((design.unit.clone(), time.iter().map(at).collect()));
             }
             // what the model sees is the truth, what is recorded below has noise
             let Some(held) = self.channels.get(&input.name) else {
@@ -69,16 +70,71 @@ impl Scenario {
             };
             let what = format!("channels.{}.unit", input.name);
             let value = unit_like(&held.unit, input.unit, &what)?.to_si(held.value);
-            Ok((held.unit.as_str(), vec![value; count]))
+            Ok((held.unit.clone(), vec![value; count]))
         });
-        let inputs = inputs.collect::<Result<Vec<(&str, Vec<f64>)>, ScenarioError>>()?;
-        let (units, inputs): (Vec<&str>, Vec<Vec<f64>>) = inputs.into_iter().unzip();
+        let inputs = inputs.collect::<Result<Vec<(String, Vec<f64>)>, ScenarioError>>()?;
+        let (units, inputs): (Vec<String>, Vec<Vec<f64>>) = inputs.into_iter().unzip();
         let designed = Designed {
             model,
             time: time.clone(),
             inputs: &inputs,
         };
         let parameters = self.parameters(model, read_off, &designed)?;
+        Ok(Planned {
+            time,
+            units,
+            inputs,
+            parameters,
+        })
+    }
+
+    /// What the model sees of the maneuver before it is flown, and the parameters that are expected.
+    ///
+    /// # Errors
+    /// Names or units that the model does not have, parameters without a value.
+    pub fn planned(&self, model: &Model) -> Result<Planned, ScenarioError> {
+        self.plan(model, &[])
+    }
+
+    /// Standard deviations of the noise of the outputs, SI, in the model's order.
+    ///
+    /// # Errors
+    /// An output that the scenario does not have, or a unit of another dimension.
+    pub fn noise(&self, model: &Model) -> Result<Vec<f64>, ScenarioError> {
+        let of = |output: &crate::model::Quantity| {
+            let (recorded, unit) = self.recorded_as(output)?;
+            Ok(recorded.noise * unit.scale)
+        };
+        model.outputs.iter().map(of).collect()
+    }
+
+    /// How an output is recorded, and its unit.
+    fn recorded_as(
+        &self,
+        output: &crate::model::Quantity,
+    ) -> Result<(&ScenarioOutput, Unit), ScenarioError> {
+        let what = format!("outputs.{}", output.name);
+        let Some(recorded) = self.outputs.get(&output.name) else {
+            let message = "the scenario does not say how this output is recorded".to_string();
+            return Err(ScenarioError::Unfit { what, message });
+        };
+        let unit = unit_like(&recorded.unit, output.unit, &format!("{what}.unit"))?;
+        Ok((recorded, unit))
+    }
+
+    /// What is recorded. Of the parameters, `read_off` are read off the designed inputs where their start says so.
+    fn record(&self, model: &Model, read_off: &[String]) -> Result<TimeAndChannels, ScenarioError> {
+        let unfit = |what: &str, message: String| ScenarioError::Unfit {
+            what: what.to_string(),
+            message,
+        };
+        let Planned {
+            time,
+            units,
+            inputs,
+            parameters,
+        } = self.plan(model, read_off)?;
+        let count = time.len();
         let intensities = self.intensities(model)?;
         let outputs = self.simulate(model, &parameters, &intensities, &inputs, count);
         if outputs.iter().flatten().any(|y| !y.is_finite()) {
@@ -91,17 +147,11 @@ impl Scenario {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         let mut channels = IndexMap::new();
         for ((input, values), unit) in model.inputs.iter().zip(inputs).zip(units) {
-            channels.insert(input.name.clone(), channel(unit, values)?);
+            channels.insert(input.name.clone(), channel(&unit, values)?);
         }
         for (output, values) in model.outputs.iter().zip(outputs) {
             let what = format!("outputs.{}", output.name);
-            let Some(recorded) = self.outputs.get(&output.name) else {
-                return Err(unfit(
-                    &what,
-                    "the scenario does not say how this output is recorded".to_string(),
-                ));
-            };
-            let unit = unit_like(&recorded.unit, output.unit, &format!("{what}.unit"))?;
+            let (recorded, unit) = self.recorded_as(output)?;
             if let Some(message) = recorded.colour.fault(self.step, count) {
                 return Err(unfit(&format!("{what}.colour"), message));
             }
@@ -242,6 +292,19 @@ impl Scenario {
         );
         outputs
     }
+}
+
+/// A maneuver before it is flown, SI.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Planned {
+    /// Seconds from its start.
+    pub time: Vec<f64>,
+    /// By input of the model: the unit in which it is recorded.
+    pub units: Vec<String>,
+    /// By input, then sample.
+    pub inputs: Vec<Vec<f64>>,
+    /// All parameters of the model.
+    pub parameters: Vec<f64>,
 }
 
 /// Time and channels.

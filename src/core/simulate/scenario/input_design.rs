@@ -45,8 +45,8 @@ pub enum InputDesign {
         /// By increasing time: seconds from the start, and the deflection from trim, in the unit of the input.
         steps: Vec<[f64; 2]>,
     },
-    /// A sum of sines of equal size and Schroeder phases, so that the sum has a low peak: the amplitude is the sum's
-    /// root mean square times √2.
+    /// A sum of sines of equal size, of Schroeder's phases where none are said, so that the sum has a low peak: the amplitude
+    /// is the sum's root mean square times √2.
     #[serde(rename = "multisine")]
     Multisine {
         /// When it begins, s.
@@ -57,6 +57,9 @@ pub enum InputDesign {
         frequencies: Vec<f64>,
         /// In the unit of the input.
         amplitude: f64,
+        /// One for each frequency, rad, of a sine that begins at `start`.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        phases: Vec<f64>,
     },
     /// A sine whose frequency grows linearly, Hz.
     #[serde(rename = "sweep")]
@@ -126,14 +129,17 @@ impl InputDesign {
                 duration,
                 frequencies,
                 amplitude,
+                phases,
             } => {
                 let (t, count) = (t - start, frequencies.len() as f64);
                 if !(0.0..=*duration).contains(&t) {
                     return 0.0;
                 }
                 let sine = |(k, frequency): (usize, &f64)| {
-                    let k = k as f64;
-                    (2.0 * PI * frequency * t - PI * k * (k + 1.0) / count).sin()
+                    let place = k as f64;
+                    let schroeder = || -(PI * place * (place + 1.0) / count);
+                    let phase = phases.get(k).copied().unwrap_or_else(schroeder);
+                    (2.0 * PI * frequency * t + phase).sin()
                 };
                 let sum: f64 = frequencies.iter().enumerate().map(sine).sum();
                 amplitude * sum / count.sqrt()
@@ -168,6 +174,13 @@ impl InputDesign {
             }
             Self::Multisine { frequencies, .. } if frequencies.is_empty() => {
                 Some("a multisine needs its \"frequencies\"".into())
+            }
+            Self::Multisine {
+                frequencies,
+                phases,
+                ..
+            } if !phases.is_empty() && phases.len() != frequencies.len() => {
+                Some("\"phases\" must be as many as \"frequencies\", or none".into())
             }
             Self::Multisine { frequencies, .. } => too_many("frequencies", frequencies.len()),
             Self::Pulses { pulses, .. } => too_many("pulses", pulses.len()),
@@ -231,6 +244,7 @@ mod tests {
                     duration: 1.0,
                     frequencies: vec![1.0; count],
                     amplitude: 1.0,
+                    phases: Vec::new(),
                 },
                 InputDesign::Pulses {
                     start: 0.0,

@@ -10,5 +10,6 @@ mod recorded;
 
 pub use document::{Scenario, ScenarioChannel, ScenarioError, ScenarioInput, ScenarioOutput};
 pub use effect::ScenarioEffect;
+pub use fly::Planned;
 pub use input_design::InputDesign;
 pub use noise::NoiseColour;

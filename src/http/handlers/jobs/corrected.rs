@@ -6,13 +6,16 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::kept::{Kept, none};
-use crate::flight::Maneuver;
-use crate::http::handlers::maneuvers::{LONGEST_NAME, ManeuverResource, keep_maneuver};
+use crate::flight::{DerivedFrom, Flown};
+use crate::http::handlers::maneuvers::{
+    LONGEST_NAME, ManeuverResource, keep_maneuver, unknown_maneuver,
+};
 use crate::http::problem::{Problem, ProblemDocument};
 use crate::http::request::query::JobId;
 use crate::http::service::{Server, Service};
 use crate::ingest;
-use crate::job;
+use crate::job::{self, Corrected};
+use crate::store::ManeuverRecord;
 
 pub(crate) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(correct_maneuvers))
@@ -23,7 +26,8 @@ pub(crate) fn router() -> OpenApiRouter<Server> {
 /// were recorded. Of a flight path reconstruction it is the recording without the errors of its sensors, to estimate
 /// aerodynamics from.
 ///
-/// Done twice it is the same recording, with the same id.
+/// What was said of the flight (aircraft, mass, tags, ...) is said of the corrected recording, too, and `flown.derived_from` names job and
+/// recording. Done twice it is the same recording, with the same id.
 #[utoipa::path(post, path = "/v1/jobs/{id}/corrected-maneuvers", tag = "Results", operation_id = "correctManeuvers",
     params(("id" = Uuid, Path)),
     responses(
@@ -40,9 +44,10 @@ async fn correct_maneuvers(
     let make = move || {
         let corrected =
             job::corrected(&kept.plan()?, &kept.estimate, &kept.maneuvers).map_err(none)?;
-        let with_summary = |(label, maneuver): (String, Maneuver)| {
-            let summary = serde_json::to_string(&ingest::summary(&maneuver))?;
-            Ok((label, maneuver, summary))
+        let with_summary = |made: Corrected| {
+            let summary = serde_json::to_string(&ingest::summary(&made.maneuver))?;
+            let of = kept.maneuvers[made.of].digest();
+            Ok((made, of, summary))
         };
         corrected
             .into_iter()
@@ -50,10 +55,37 @@ async fn correct_maneuvers(
             .collect::<Result<Vec<_>, Problem>>()
     };
     let mut answer = Vec::new();
-    for (label, maneuver, summary) in service.compute.run(make).await?? {
-        let name = format!("{label}, corrected by job {id}");
+    for (made, of, summary) in service.compute.run(make).await?? {
+        let name = format!("{}, corrected by job {id}", made.segment);
         let name: String = name.chars().take(LONGEST_NAME).collect();
-        answer.push(keep_maneuver(&service, &name, maneuver, summary).await?.1);
+        let corrected = made.maneuver.digest();
+        let kept = keep_maneuver(&service, &name, made.maneuver, summary).await?;
+        let from = DerivedFrom {
+            job: id.to_string(),
+            maneuver: of,
+            segment: made.segment,
+        };
+        answer.push(match kept {
+            (StatusCode::CREATED, _) => as_derived(&service, &corrected, from).await?,
+            // it was there before, and may have been spoken of since
+            (_, resource) => resource,
+        });
     }
     Ok((StatusCode::CREATED, Json(answer)))
+}
+
+/// Says of a recording what was flown in the one that it was made of, and where it comes from.
+async fn as_derived(
+    service: &Service,
+    id: &str,
+    from: DerivedFrom,
+) -> Result<ManeuverResource, Problem> {
+    let said = service.store.flown(&[&from.maneuver]).await?;
+    let flown = Flown {
+        derived_from: Some(from),
+        ..said.into_iter().flatten().next().unwrap_or_default()
+    };
+    let change = |now: &ManeuverRecord| Ok::<_, Problem>((now.name.clone(), flown));
+    let changed = service.store.change_maneuver(id, change).await?;
+    ManeuverResource::of(changed.ok_or_else(|| unknown_maneuver(id))??)
 }

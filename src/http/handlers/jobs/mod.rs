@@ -14,6 +14,7 @@ pub(super) mod predictions;
 pub(super) mod rerun;
 pub(super) mod residual_analysis;
 pub(crate) mod results;
+pub(super) mod simulator_model;
 pub(super) mod source_code;
 pub(super) mod submit;
 pub(super) mod trajectories;

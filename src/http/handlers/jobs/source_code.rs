@@ -1,4 +1,4 @@
-//! `/v1/jobs/{id}/source-code`: the estimated model as functions in C or Python.
+//! `/v1/jobs/{id}/source-code`: the estimated model as functions in C, Python or MATLAB.
 
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
@@ -23,7 +23,8 @@ pub(crate) fn router() -> OpenApiRouter<Server> {
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 struct SourceCodeQuery {
-    /// `c` (C99) or `python` (Python 3, standard library alone); absent: `c`.
+    /// `c` (C99), `python` (Python 3, standard library alone) or `matlab` (also Octave, and a MATLAB Function block of Simulink);
+    /// absent: `c`.
     #[param(inline)]
     #[serde(default)]
     language: SourceLanguage,
@@ -51,14 +52,17 @@ async fn get_source_code(
     let write = move || {
         let plan = kept.plan()?;
         let segment = query.segment.as_deref();
-        job::source_code(&plan, &kept.estimate, segment, query.language).map_err(|why| {
-            let code = match &why {
-                NoSourceCode::Estimate(_) => Code::NoTrajectory,
-                NoSourceCode::Segment { .. } => Code::InvalidQuery,
-            };
-            Problem::new(code, why.to_string())
-        })
+        job::source_code(&plan, &kept.estimate, segment, query.language).map_err(none_of)
     };
     let text: String = service.compute.run(write).await??;
     Ok(([(header::CONTENT_TYPE, "text/plain; charset=utf-8")], text).into_response())
+}
+
+pub(super) fn none_of(why: NoSourceCode) -> Problem {
+    let code = match &why {
+        NoSourceCode::Estimate(_) => Code::NoTrajectory,
+        NoSourceCode::Segment { .. } => Code::InvalidQuery,
+        NoSourceCode::Aerodynamics(_) => Code::NoAerodynamics,
+    };
+    Problem::new(code, why.to_string())
 }
