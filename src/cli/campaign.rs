@@ -8,6 +8,7 @@ use sha2::{Digest, Sha256};
 use super::recording::read_text;
 use super::{Failure, table};
 use crate::estimate::{Role, TimeHistory, five_digits as number};
+use crate::flight::{p_value, with_error};
 use crate::http::campaign_as_csv;
 use crate::job::{
     Campaign, CampaignQuestion, Flown, JobResult, UsedRecording, campaign, conditions_of,
@@ -130,7 +131,7 @@ fn tables(campaign: &Campaign) -> String {
     let rows = campaign.curves.iter().map(|curve| {
         let terms: Vec<String> = (curve.terms.iter())
             .map(|term| {
-                let value = format!("{} ± {}", number(term.value), number(term.standard_error));
+                let value = with_error(term.value, term.standard_error);
                 if term.term == "1" {
                     value
                 } else {
@@ -156,10 +157,7 @@ fn tables(campaign: &Campaign) -> String {
                 number(curve.chi_squared),
                 curve.degrees_of_freedom
             ),
-            curve
-                .probability
-                .map(|p| format!("{p:.3}"))
-                .unwrap_or_default(),
+            curve.probability.map(p_value).unwrap_or_default(),
             outliers.join(", "),
         ]
     });

@@ -201,8 +201,8 @@ fn matrix(of: &NamedMatrix<'_>) -> Markup {
             thead { tr { th scope="col" { "of" } @for column in &of.columns { th.number scope="col" { "by " (column) } } } }
             tbody { @for (at, row) in of.rows.iter().enumerate() { tr {
                 th scope="row" { (row) @if matches!(of.name, "A" | "B") { "˙" } }
-                @for (value, error) in of.matrix.values[at].iter().zip(&of.matrix.standard_errors[at]) {
-                    td.number { (number(*value)) @if let Some(error) = error.filter(|error| *error > 0.0) { " ± " (number(error)) } }
+                @for cell in of.cells(at) {
+                    td.number { (cell) }
                 }
             } } }
         } }

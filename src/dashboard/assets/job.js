@@ -144,6 +144,9 @@ async function drawHistories() {
 }
 
 /** Autocorrelation with its band, and spectrum, of each output. */
+/** A probability as tables have it: what is too small to matter is only said to be small. */
+const pValue = p => (p < 1e-4 ? 'p < 0.0001' : `p = ${p.toFixed(p < 0.01 ? 4 : 2)}`);
+
 async function drawResiduals() {
   const place = byId('residuals');
   const { outputs } = await ask(`${base}/residual-analysis`);
@@ -157,7 +160,7 @@ async function drawResiduals() {
       : 'as white noise would be';
     place.append(
       element('h3', {}, output.output),
-      element('p', { class: 'soft' }, `rms ${(output.rms * scale).toPrecision(4)} ${unit}; ${whiteness} (Ljung and Box, p ${output.portmanteau.probability < 0.001 ? '< 0.001' : `= ${output.portmanteau.probability.toPrecision(2)}`})`),
+      element('p', { class: 'soft' }, `rms ${(output.rms * scale).toPrecision(4)} ${unit}; ${whiteness} (Ljung and Box, ${pValue(output.portmanteau.probability)})`),
       element('div', { class: 'columns' }, ...plots));
     const lags = output.autocorrelation.map((_, lag) => lag);
     await plot(plots[0], () => ({
