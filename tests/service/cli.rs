@@ -382,7 +382,7 @@ fn a_diagnosis_is_submitted_and_watched_to_its_conclusion() {
     let (id, table) = table.split_once('\n').expect("the id, then tables");
     let last = table.lines().last().expect("a line");
     assert!(
-        last.starts_with("verdict: named") && last.contains("de_backlash = "),
+        last.starts_with("verdict: named") && last.contains("(de_backlash)"),
         "{last}"
     );
     assert!(

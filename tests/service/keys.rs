@@ -86,6 +86,7 @@ const NEEDED: &[(&str, &[&str])] = &[
             "simulate",
             "getSourceCode",
             "getCampaign",
+            "compareJobs",
             "getResidualAnalysis",
             "getProvenance",
         ],

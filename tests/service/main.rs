@@ -29,6 +29,7 @@ mod bad_jobs;
 mod chaos;
 mod cli;
 mod coefficients;
+mod compare;
 mod derivatives;
 mod diagnosis;
 mod dynamics;

@@ -64,7 +64,8 @@ pub fn value_and_error(value: f64, error: f64) -> [String; 2] {
         let digits = place.unsigned_abs() as usize;
         return [format!("{value:.digits$}"), format!("{error:.digits$}")].map(without_minus);
     }
-    let digits = value.abs().log10().floor() as i32 - place;
+    // of zero there is no first digit
+    let digits = (value.abs().log10().floor() as i32).saturating_sub(place);
     let value = match usize::try_from(digits) {
         Ok(digits) => format!("{value:.digits$e}"),
         // less than the last digit
@@ -141,6 +142,7 @@ mod tests {
             (-1e-14, 0.003_12, "0.0000 ± 0.0031"),
             (1e-14, 3.3e-9, "0 ± 3.3e-9"),
             (0.0, 3.3e-9, "0 ± 3.3e-9"),
+            (0.0, 3.3e100, "0 ± 3.3e100"),
             (-5.1e-10, 3.3e-9, "-5e-10 ± 3.3e-9"),
             (f64::NAN, 0.1, "NaN ± 0.10000"),
         ] {

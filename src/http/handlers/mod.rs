@@ -1,5 +1,6 @@
 //! What answers a request: a file for each resource. Those of jobs, which are many, have a folder.
 
+pub(super) mod compare;
 pub(super) mod health;
 pub(super) mod jobs;
 pub(super) mod keys;
@@ -9,6 +10,7 @@ pub(super) mod models;
 
 mod audit;
 mod campaigns;
+mod fitted_jobs;
 mod flown;
 mod frequency_responses;
 mod maneuver_data;
@@ -53,6 +55,7 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(jobs::predictions::router())
         .merge(jobs::source_code::router())
         .merge(campaigns::router())
+        .merge(compare::router())
         .merge(jobs::dynamics::router())
         .merge(problems::router())
         .merge(keys::router())
