@@ -8,9 +8,11 @@ use sha2::{Digest, Sha256};
 use super::recording::read_text;
 use super::{Failure, table};
 use crate::estimate::{Role, TimeHistory, five_digits as number};
+use crate::flight::{p_value, with_error};
 use crate::http::campaign_as_csv;
 use crate::job::{
-    Campaign, CampaignQuestion, Flown, JobResult, UsedRecording, campaign, conditions_of,
+    Campaign, CampaignQuestion, Flown, JobResult, UsedRecording, campaign, channel_of,
+    conditions_of, mean_over,
 };
 
 /// Compares what many fits say of the same parameters: curves over conditions or weighted means, whether the fits agree, and
@@ -20,7 +22,7 @@ pub(super) struct ShowCampaign {
     /// What `trimtab fit --json` printed, with its conditions: fit7.json@alpha=5,mach=0.4
     #[arg(required = true, value_name = "FILE[@NAME=VALUE,...]")]
     fits: Vec<String>,
-    /// A condition with numbers, over which parameters are curves.
+    /// A condition with numbers, over which parameters are curves; mean(NAME) is the mean of an input or output, SI.
     #[arg(long, value_name = "NAME")]
     by: Vec<String>,
     /// A condition with words, each of whose values has curves of its own.
@@ -54,7 +56,7 @@ impl ShowCampaign {
         let flown = self
             .fits
             .iter()
-            .map(|fit| read(fit))
+            .map(|fit| read(fit, &self.by))
             .collect::<Result<Vec<_>, _>>()?;
         let campaign = campaign(&flown, &question);
         if self.csv {
@@ -74,7 +76,7 @@ impl ShowCampaign {
     }
 }
 
-fn read(fit: &str) -> Result<Flown, Failure> {
+fn read(fit: &str, by: &[String]) -> Result<Flown, Failure> {
     let (file, conditions) = fit.split_once('@').unwrap_or((fit, ""));
     let result: JobResult =
         serde_json::from_str(&read_text(&PathBuf::from(file))?).map_err(|error| {
@@ -83,13 +85,35 @@ fn read(fit: &str) -> Result<Flown, Failure> {
             ))
         })?;
     let tags: Vec<String> = conditions.split(',').map(ToString::to_string).collect();
+    let mut conditions = conditions_of(&tags);
+    for condition in by {
+        if let Some(mean) = channel_of(condition).and_then(|name| mean_of(&result.histories, name))
+        {
+            conditions.insert(condition.clone(), mean.to_string());
+        }
+    }
     Ok(Flown {
         job: file.to_string(),
         name: String::new(),
-        conditions: conditions_of(&tags),
+        conditions,
         recordings: measured(&result.histories),
         estimate: result.estimate,
     })
+}
+
+/// Of an input, or of an output as it was measured, over all that was fitted.
+fn mean_of(histories: &[TimeHistory], name: &str) -> Option<f64> {
+    let fitted = histories.iter().filter(|of| of.role == Role::Estimation);
+    let of = |history: &TimeHistory| -> Option<Vec<f64>> {
+        let input = history.inputs.iter().find(|input| input.name == name);
+        let output = || history.outputs.iter().find(|output| output.name == name);
+        let values = input.map(|input| &input.values);
+        values
+            .or_else(|| output().map(|output| &output.measured))
+            .cloned()
+    };
+    let all: Option<Vec<Vec<f64>>> = fitted.map(of).collect();
+    mean_over(all?.iter().map(Vec::as_slice))
 }
 
 /// What a fit was made to, by the samples that its result has of it: the name of its recording is not in it.
@@ -130,7 +154,7 @@ fn tables(campaign: &Campaign) -> String {
     let rows = campaign.curves.iter().map(|curve| {
         let terms: Vec<String> = (curve.terms.iter())
             .map(|term| {
-                let value = format!("{} ± {}", number(term.value), number(term.standard_error));
+                let value = with_error(term.value, term.standard_error);
                 if term.term == "1" {
                     value
                 } else {
@@ -156,10 +180,7 @@ fn tables(campaign: &Campaign) -> String {
                 number(curve.chi_squared),
                 curve.degrees_of_freedom
             ),
-            curve
-                .probability
-                .map(|p| format!("{p:.3}"))
-                .unwrap_or_default(),
+            curve.probability.map(p_value).unwrap_or_default(),
             outliers.join(", "),
         ]
     });

@@ -160,6 +160,13 @@ impl Client {
         Ok(histories.segments)
     }
 
+    /// Two or more finished jobs, side by side.
+    pub(super) async fn compare<T: DeserializeOwned>(&self, jobs: &[String]) -> Result<T, Failure> {
+        let mut url = self.url("/v1/compare")?;
+        url.query_pairs_mut().append_pair("jobs", &jobs.join(","));
+        json(self.send(self.http.get(url)).await?).await
+    }
+
     pub(super) async fn spec(&self, job: &str) -> Result<JobSpec, Failure> {
         let url = self.url(&format!("/v1/jobs/{job}/spec"))?;
         json(self.send(self.http.get(url)).await?).await

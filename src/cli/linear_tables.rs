@@ -24,14 +24,10 @@ pub(super) fn system(system: &LinearSystem) -> String {
 }
 
 fn matrix(of: &NamedMatrix<'_>) -> String {
-    let cell = |(value, error): (&f64, &Option<f64>)| match error {
-        Some(error) if *error > 0.0 => format!("{} ± {}", number(*value), number(*error)),
-        _ => number(*value),
-    };
-    let both = of.matrix.values.iter().zip(&of.matrix.standard_errors);
-    let lines = of.rows.iter().zip(both).map(|(row, (values, errors))| {
-        let cells = values.iter().zip(errors).map(cell);
-        std::iter::once((*row).to_string()).chain(cells).collect()
+    let lines = of.rows.iter().enumerate().map(|(at, row)| {
+        std::iter::once((*row).to_string())
+            .chain(of.cells(at))
+            .collect()
     });
     let titles = std::iter::once(of.name).chain(of.columns.iter().copied());
     bordered(titles, lines, 1..)

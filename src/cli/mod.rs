@@ -8,6 +8,7 @@ mod backup;
 mod campaign;
 mod changes;
 mod client;
+mod compare;
 mod demo;
 mod derivatives;
 mod describe;
@@ -85,6 +86,7 @@ enum Command {
     Predict(predict::Predict),
     #[command(name = "campaign")]
     Campaign(campaign::ShowCampaign),
+    Compare(compare::Compare),
     Submit(submit::Submit),
     Watch(watch::Watch),
     Simulate(simulate::Simulate),
@@ -124,6 +126,7 @@ pub fn main() -> ExitCode {
         Command::Linear(linear) => linear.run(),
         Command::Predict(predict) => predict.run(),
         Command::Campaign(campaign) => campaign.run(),
+        Command::Compare(compare) => block_on(compare.run()),
         Command::Submit(submit) => block_on(submit.run()),
         Command::Watch(watch) => block_on(watch.run()),
         Command::Simulate(simulate) => simulate.run(),

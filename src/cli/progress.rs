@@ -59,7 +59,7 @@ impl ProgressLine {
             Step::Fitted { cost, iterations, .. } => {
                 self.say(&format!("declared model fitted: -ln L {cost:.4}, {iterations} iterations"));
             }
-            Step::Screened { round, candidates, visible } => self.say(&format!(
+            Step::Screened { round, candidates, visible, .. } => self.say(&format!(
                 "round {round}: {candidates} candidates screened, {visible} of them can be seen in these data"
             )),
             Step::Tried { name, likelihood_ratio, .. } => {

@@ -11,6 +11,7 @@ use crate::estimate::{
     Coefficient, Estimate, FilterEstimate, Measure, Mode, OutputFit, ParameterEstimate,
     five_digits as number,
 };
+use crate::flight::{bounded, decimals, five_digits_beside, two_digits};
 
 /// All tables of an estimate, and what to know beside them.
 pub(super) fn result(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) -> String {
@@ -42,23 +43,12 @@ fn parameters(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) -> Str
     }
     header.push("");
     let rows = estimate.parameters.iter().map(|parameter| {
-        let mut row = vec![
-            label(parameter),
-            unit_of(parameter),
-            number(parameter.estimate),
-        ];
-        match parameter.standard_error {
-            Some(error) => {
-                row.push(number(error));
-                row.push(percent(error, parameter.estimate));
-            }
-            None => row.extend([String::new(), String::new()]),
-        }
-        row.push(
-            parameter
-                .conventional_standard_error
-                .map_or_else(String::new, number),
-        );
+        let error = parameter.standard_error;
+        let mut row = vec![label(parameter), unit_of(parameter)];
+        row.extend(bounded(parameter.estimate, error));
+        row.push(error.map_or_else(String::new, |error| percent(error, parameter.estimate)));
+        let white = parameter.conventional_standard_error;
+        row.push(white.map_or_else(String::new, two_digits));
         if let Some(truth) = truth {
             match truth.get(&parameter.name) {
                 Some(&truth) => row.extend([number(truth), off_by(parameter, truth)]),
@@ -80,14 +70,14 @@ fn outputs(outputs: &[OutputFit]) -> String {
             output.name.clone(),
             output.unit.clone(),
             number(output.rms),
-            number(output.bias),
+            five_digits_beside(output.bias, output.rms),
             format!("{:.4}", output.r_squared),
             format!("{:.4}", output.theil),
             format!(
                 "{:.2}/{:.2}/{:.2}",
                 shares.bias, shares.variance, shares.covariance
             ),
-            format!("{:.2}", output.autocorrelation),
+            decimals(output.autocorrelation, 2),
             format!("{:.0}", output.effective_samples),
         ]
     });
@@ -108,11 +98,12 @@ fn outputs(outputs: &[OutputFit]) -> String {
 /// The intensity of the process noise of each state.
 fn process_noise(filter: &FilterEstimate) -> String {
     let rows = filter.process_noise.iter().map(|noise| {
+        let [value, error] = bounded(noise.estimate, noise.standard_error);
         vec![
             noise.state.clone(),
             noise.unit.clone(),
-            number(noise.estimate),
-            noise.standard_error.map(number).unwrap_or_default(),
+            value,
+            error,
             noise.remark().to_string(),
         ]
     });
@@ -124,10 +115,11 @@ fn process_noise(filter: &FilterEstimate) -> String {
 pub(super) fn coefficients(coefficients: &[Coefficient]) -> String {
     let rows = coefficients.iter().map(|coefficient| {
         let error = coefficient.standard_error;
+        let [value, bound] = bounded(coefficient.value, error);
         vec![
             coefficient.name.clone(),
-            number(coefficient.value),
-            error.map(number).unwrap_or_default(),
+            value,
+            bound,
             error.map_or(String::new(), |error| percent(error, coefficient.value)),
             coefficient.from.join(", "),
         ]
@@ -147,7 +139,7 @@ pub(super) fn modes(modes: &[Mode]) -> String {
             mode.label(),
             mode.eigenvalue(),
             text(mode.natural_frequency),
-            text(mode.damping_ratio),
+            mode.damping(),
             text(mode.period.or(mode.time_constant)),
             text(mode.time_to_half),
             text(mode.time_to_double),

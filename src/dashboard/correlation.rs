@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 
 use crate::estimate::{Estimate, ParameterEstimate};
+use crate::flight::decimals;
 
 /// Of more estimates than these the map is no picture any more.
 const MOST: usize = 40;
@@ -35,7 +36,7 @@ pub(super) fn map(estimate: &Estimate) -> Markup {
                                 tr {
                                     th scope="row" { (label(parameter)) }
                                     @for value in &row[..=at] {
-                                        td style=(colour(*value)) { (format!("{value:.2}")) }
+                                        td style=(colour(*value)) { (decimals(*value, 2)) }
                                     }
                                 }
                             }

@@ -1,21 +1,25 @@
-//! A diagnosis as a story: what was left over, what it was traced to, what that changed, and what was refused.
+//! A diagnosis as a story: what was found, the errors before and after, what that changed, what is left, what was refused.
 
 use maud::{Markup, html};
 
 use super::{model_diff, unmodelled};
-use crate::diagnose::{Diagnosis, FitChange, NamedEffect, Refusal, RefusedEffect, Verdict};
+use crate::diagnose::{Diagnosis, FitChange, Member, NamedEffect, Refusal, RefusedEffect, Verdict};
 use crate::estimate::{Role, five_digits as number};
-use crate::flight::{Shown, shown_in};
+use crate::flight::{Shown, bounded, shown_in};
 
-/// The whole story.
-pub(super) fn story(diagnosis: &Diagnosis) -> Markup {
+/// A member of a group that is less likely is not told in the verdict.
+const UNLIKELY: f64 = 0.01;
+
+/// The whole story; `picture` shows what the effects explain.
+pub(super) fn story(diagnosis: &Diagnosis, picture: &Markup) -> Markup {
     html! {
         section aria-labelledby="diagnosis" {
             h2 id="diagnosis" { "What the model lacks" }
-            p.verdict { strong { (in_a_word(diagnosis.verdict)) } ": " (diagnosis.sentence) }
+            (verdict(diagnosis))
             @for remark in &diagnosis.remarks { p.note { (remark) } }
-            h3 { "Before and after" }
+            h3 { "Errors before and after" }
             (fits(&diagnosis.fits))
+            @if !diagnosis.effects.is_empty() { (picture) }
             @for (at, effect) in diagnosis.effects.iter().enumerate() { (named(at + 1, effect)) }
             @if !diagnosis.diff.is_empty() {
                 h3 { "What was added to the model" }
@@ -23,24 +27,78 @@ pub(super) fn story(diagnosis: &Diagnosis) -> Markup {
                 h3 { "What that did to the declared parameters" }
                 (parameters(diagnosis))
             }
+            @if let Some(left) = left_over(diagnosis) {
+                h3 { "What is not explained" }
+                p { (left) }
+            }
             @if let Some(found) = &diagnosis.unmodelled { (unmodelled::section(found)) }
             (refused(&diagnosis.refused))
         }
     }
 }
 
-fn in_a_word(verdict: Verdict) -> &'static str {
-    match verdict {
+/// What was found, each effect with its size.
+fn verdict(diagnosis: &Diagnosis) -> Markup {
+    html! {
+        div.verdict {
+            @match diagnosis.effects.as_slice() {
+                [] => p { strong { (in_a_word(diagnosis)) }
+                    @if diagnosis.verdict == Verdict::NotTestable { @if let Some(remedy) = diagnosis.left_over() { ": " (remedy) } } },
+                [effect] => p { strong { (in_a_word(diagnosis)) ": " } (effect.sentence) (alternatives(effect)) },
+                effects => {
+                    p { strong { (in_a_word(diagnosis)) ":" } }
+                    ol { @for effect in effects { li { (effect.sentence) (alternatives(effect)) } } }
+                }
+            }
+        }
+    }
+}
+
+fn in_a_word(diagnosis: &Diagnosis) -> &'static str {
+    match diagnosis.verdict {
         Verdict::NothingMissing => "Nothing is missing",
         Verdict::Named => "Found",
         Verdict::NamedGroup => "Found, as one of a group",
-        Verdict::Unexplained => "Something is missing that no candidate explains",
+        Verdict::Unexplained if diagnosis.effects.is_empty() => {
+            "Something is missing that no effect of the catalogue explains"
+        }
+        Verdict::Unexplained => "Found, and more is missing",
         Verdict::NotTestable => "The data cannot decide",
     }
 }
 
-/// Rms residual of each output with the declared model and with the effects in it, flights that took no part last.
+/// A remedy stands in the verdict.
+fn left_over(diagnosis: &Diagnosis) -> Option<&str> {
+    let left = diagnosis.left_over();
+    left.filter(|_| diagnosis.verdict != Verdict::NotTestable)
+}
+
+/// What the data cannot tell an effect from.
+fn alternatives(effect: &NamedEffect) -> Markup {
+    let name = effect.effect.name();
+    let others = effect
+        .group
+        .iter()
+        .filter(|member| member.effect.name() != name);
+    let others: Vec<&Member> = others.filter(|member| member.weight > UNLIKELY).collect();
+    html! {
+        @if !others.is_empty() {
+            "; or, which the data cannot tell from it, "
+            @for (at, member) in others.iter().enumerate() {
+                @if at > 0 { ", " } (member.effect.name()) " (" (format!("{:.0} %", 100.0 * member.weight)) ")"
+            }
+        }
+    }
+}
+
+/// Rms residual of each output with the declared model and with the effects in it, flights that took no part first.
 fn fits(fits: &[FitChange]) -> Markup {
+    let mut sorted: Vec<&FitChange> = fits.iter().collect();
+    sorted.sort_by_key(|fit| match fit.role {
+        Role::Final => 0,
+        Role::Validation => 1,
+        Role::Estimation => 2,
+    });
     html! {
         div.scroll tabindex="0" role="region" aria-label="Rms residual before and after" {
             table {
@@ -49,7 +107,7 @@ fn fits(fits: &[FitChange]) -> Markup {
                     th.number scope="col" { "rms residual before" } th.number scope="col" { "after" } th.number scope="col" { "change" }
                     th scope="col" { "before, after" }
                 } }
-                tbody { @for fit in fits { (fit_row(fit)) } }
+                tbody { @for fit in sorted { (fit_row(fit)) } }
             }
         }
     }
@@ -77,9 +135,9 @@ fn fit_row(fit: &FitChange) -> Markup {
 /// What part a flight takes, in a word.
 pub(super) fn part(role: Role) -> &'static str {
     match role {
-        Role::Estimation => "fitted",
-        Role::Validation => "checked on",
-        Role::Final => "kept for the end",
+        Role::Estimation => "estimation",
+        Role::Validation => "validation",
+        Role::Final => "final test",
     }
 }
 
@@ -98,8 +156,8 @@ fn named(at: usize, effect: &NamedEffect) -> Markup {
                         @let Shown { scale, unit } = shown_in(&parameter.unit);
                         tr {
                             th scope="row" { (parameter.name) @if let Some(segment) = &parameter.segment { " [" (segment) "]" } }
-                            td.soft { (unit) } td.number { (number(parameter.estimate * scale)) }
-                            td.number { @if let Some(error) = parameter.standard_error { (number(error * scale)) } }
+                            td.soft { (unit) }
+                            @for cell in bounded(parameter.estimate * scale, parameter.standard_error.map(|error| error * scale)) { td.number { (cell) } }
                         }
                     }
                 }
@@ -117,7 +175,7 @@ fn named(at: usize, effect: &NamedEffect) -> Markup {
             }
         }
         @if effect.group.len() > 1 {
-            p { "The data cannot tell it from these; weights by likelihood:" }
+            p { "The data cannot tell apart, with weights by likelihood:" }
             ul { @for member in &effect.group { li { (member.effect.name()) ", " (format!("{:.0} %", 100.0 * member.weight)) } } }
         }
     }
@@ -137,8 +195,8 @@ fn parameters(diagnosis: &Diagnosis) -> Markup {
                         tr {
                             th scope="row" { (parameter.name) @if let Some(segment) = &parameter.segment { " [" (segment) "]" } }
                             td.soft { (unit) }
-                            td.number { (number(parameter.before * scale)) } td.number { (number(parameter.after * scale)) }
-                            td.number.soft { @if let Some(error) = parameter.standard_error { (number(error * scale)) } }
+                            td.number { (number(parameter.before * scale)) }
+                            @for cell in bounded(parameter.after * scale, parameter.standard_error.map(|error| error * scale)) { td.number { (cell) } }
                             td.number { @if let Some(shift) = parameter.shift { (format!("{shift:+.1}")) } }
                         }
                     }
@@ -158,9 +216,11 @@ fn refused(effects: &[RefusedEffect]) -> Markup {
     };
     let (rivals, others): (Vec<_>, Vec<_>) = sorted.into_iter().partition(stood_out);
     html! {
-        h3 { "What was tried and refused" }
+        h3 { "Refused candidates" }
         @if rivals.is_empty() { p { "No other candidate stood out from the noise." } }
-        @else { (candidates(&rivals)) }
+        @else {
+            details { summary { "Candidates that stood out from the noise, and why they were refused (" (rivals.len()) ")" } (candidates(&rivals)) }
+        }
         @if !others.is_empty() {
             details {
                 summary { "Candidates that explain no more than noise, or that these data cannot show (" (others.len()) ")" }

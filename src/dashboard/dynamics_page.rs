@@ -61,7 +61,7 @@ pub fn dynamics_page(view: &DynamicsView) -> String {
     let frame = Frame {
         title: &format!("Dynamics: {}", view.title),
         under: "/",
-        scripts: &[],
+        scripts: &["figures.js"],
     };
     page(&frame, &content)
 }
@@ -151,7 +151,7 @@ fn responses(responses: &[FrequencyResponse], table: &str) -> Markup {
         }
         div.columns {
             @for response in responses.iter().take(MOST_FIGURES) {
-                figure.paper {
+                figure.paper data-csv=(only(table, response)) {
                     figcaption { (response.output) " over " (response.input) }
                     div role="img" aria-label={ "magnitude and phase of " (response.output) " over " (response.input) } {
                         @match bode_svg(response) {
@@ -166,6 +166,14 @@ fn responses(responses: &[FrequencyResponse], table: &str) -> Markup {
             p { "There are " (responses.len()) " responses: the others are in " a href=(table) { "the table" } "." }
         }
     }
+}
+
+/// The table of one response.
+fn only(table: &str, response: &FrequencyResponse) -> String {
+    let begin = table.find('?').map_or(table.len(), |at| at + 1);
+    let mut query = form_urlencoded::Serializer::for_suffix(table.to_string(), begin);
+    query.append_pair("input", &response.input);
+    query.append_pair("output", &response.output).finish()
 }
 
 fn functions(functions: &[TransferFunction]) -> Markup {
@@ -202,8 +210,8 @@ fn matrix(of: &NamedMatrix<'_>) -> Markup {
             thead { tr { th scope="col" { "of" } @for column in &of.columns { th.number scope="col" { "by " (column) } } } }
             tbody { @for (at, row) in of.rows.iter().enumerate() { tr {
                 th scope="row" { (row) @if matches!(of.name, "A" | "B") { "˙" } }
-                @for (value, error) in of.matrix.values[at].iter().zip(&of.matrix.standard_errors[at]) {
-                    td.number { (number(*value)) @if let Some(error) = error.filter(|error| *error > 0.0) { " ± " (number(error)) } }
+                @for cell in of.cells(at) {
+                    td.number { (cell) }
                 }
             } } }
         } }

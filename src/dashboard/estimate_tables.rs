@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use crate::estimate::{Estimate, FilterEstimate, Measure, Mode, OutputFit, five_digits as number};
-use crate::flight::{Shown, shown_in};
+use crate::flight::{Shown, bounded, decimals, five_digits_beside, shown_in, two_digits};
 
 /// Parameters, process noise and the fit of each output, under headings. Below the first and the last
 /// heading stands where the numbers come from, if that is said.
@@ -41,9 +41,8 @@ fn parameter_table(estimate: &Estimate) -> Markup {
                         th scope="row" { (parameter.name) @if let Some(segment) = &parameter.segment { " [" (segment) "]" } }
                         td.soft { (unit) }
                         td.number.soft { (number(parameter.start * scale)) }
-                        td.number { (number(parameter.estimate * scale)) }
-                        td.number { @if let Some(error) = parameter.standard_error { (number(error * scale)) } }
-                        td.number.soft { @if let Some(error) = parameter.conventional_standard_error { (number(error * scale)) } }
+                        @for cell in bounded(parameter.estimate * scale, parameter.standard_error.map(|error| error * scale)) { td.number { (cell) } }
+                        td.number.soft { @if let Some(error) = parameter.conventional_standard_error { (two_digits(error * scale)) } }
                         td.soft { (estimate.remark(parameter)) }
                     }
                 }
@@ -63,8 +62,8 @@ fn process_noise_table(filter: &FilterEstimate) -> Markup {
                 @for noise in &filter.process_noise {
                     tr {
                         th scope="row" { (noise.state) } td.soft { (noise.unit) }
-                        td.number.soft { (number(noise.start)) } td.number { (number(noise.estimate)) }
-                        td.number { @if let Some(error) = noise.standard_error { (number(error)) } }
+                        td.number.soft { (number(noise.start)) }
+                        @for cell in bounded(noise.estimate, noise.standard_error) { td.number { (cell) } }
                         td.soft { (noise.remark()) }
                     }
                 }
@@ -87,13 +86,13 @@ fn output_table(outputs: &[OutputFit]) -> Markup {
                     @let Shown { scale, unit } = shown_in(&output.unit);
                     tr {
                         th scope="row" { (output.name) } td.soft { (unit) }
-                        td.number { (number(output.rms * scale)) } td.number { (number(output.bias * scale)) }
+                        td.number { (number(output.rms * scale)) } td.number { (five_digits_beside(output.bias * scale, output.rms * scale)) }
                         td.number { (format!("{:.4}", output.r_squared)) } td.number { (format!("{:.4}", output.theil)) }
                         @let shares = output.theil_shares;
                         @for share in [shares.bias, shares.variance, shares.covariance] {
                             td.number.soft { (format!("{share:.2}")) }
                         }
-                        td.number { (format!("{:.2}", output.autocorrelation)) }
+                        td.number { (decimals(output.autocorrelation, 2)) }
                         td.number { (format!("{:.0}", output.effective_samples)) }
                     }
                 }
@@ -114,7 +113,7 @@ pub(super) fn mode_table(modes: &[Mode]) -> Markup {
                 @for mode in modes {
                     tr {
                         th scope="row" { (mode.label()) } td.number { (mode.eigenvalue()) }
-                        td.number { (text(mode.natural_frequency)) } td.number { (text(mode.damping_ratio)) }
+                        td.number { (text(mode.natural_frequency)) } td.number { (mode.damping()) }
                         td.number { (text(mode.period)) } td.number { (text(mode.time_constant)) }
                         td.number { (text(mode.time_to_half)) } td.number { (text(mode.time_to_double)) }
                         td.soft { (mode.remark) }

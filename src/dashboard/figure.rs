@@ -5,9 +5,9 @@ use plotters::prelude::*;
 
 use super::chart::{Area, Chart, Margins, axes, extent, faint, in_words, svg};
 use super::decimate::rows_to_plot;
-use super::style::{DECLARED, MEASURED, MODEL};
+use super::style::{DECLARED, MEASURED, MODEL, THIRD};
 use crate::estimate::{OutputSeries, Series, TimeHistory};
-use crate::flight::{Shown, shown_in};
+use crate::flight::{GAP_FACTOR, Shown, shown_in};
 
 const WIDTH: u32 = 900;
 /// Height of one output's panel, residual included.
@@ -65,6 +65,9 @@ fn key(history: &TimeHistory, area: &Area<'_>) -> Result<(), String> {
         "model"
     };
     entries.push((model, MODEL, 2));
+    if !history.inputs.is_empty() {
+        entries.push(("input", THIRD, 1));
+    }
     let middle = LEGEND as i32 / 2 + 2;
     for (at, (text, colour, width)) in entries.into_iter().enumerate() {
         let x = 80 + 150 * at as i32;
@@ -84,7 +87,7 @@ fn key(history: &TimeHistory, area: &Area<'_>) -> Result<(), String> {
 fn draw_input(time: &[f64], input: &Series, area: &Area<'_>) -> Result<(), String> {
     let Shown { scale, unit } = shown_in(&input.unit);
     let values = points(time, &input.values, scale);
-    let mut chart = over_time(area, time, range_of(values.iter()))?;
+    let mut chart = over_time(area, time, range_of(values.iter().flatten()))?;
     let mut mesh = chart.configure_mesh();
     faint(&mut mesh);
     mesh.y_labels(3)
@@ -93,8 +96,23 @@ fn draw_input(time: &[f64], input: &Series, area: &Area<'_>) -> Result<(), Strin
         .label_style(("sans-serif", 12))
         .draw()
         .map_err(in_words)?;
-    let line = LineSeries::new(values, BLACK.mix(0.7).stroke_width(1));
-    chart.draw_series(line).map_err(in_words)?;
+    lines(&mut chart, &values, THIRD.stroke_width(1))
+}
+
+/// A line through samples that follow each other: none across a gap.
+fn lines(
+    chart: &mut Chart<'_, '_>,
+    runs: &[Vec<(f64, f64)>],
+    style: ShapeStyle,
+) -> Result<(), String> {
+    for run in runs {
+        if let [alone] = run.as_slice() {
+            let dot = std::iter::once(Circle::new(*alone, 1, style.filled()));
+            chart.draw_series(dot).map_err(in_words)?;
+        }
+        let line = LineSeries::new(run.iter().copied(), style);
+        chart.draw_series(line).map_err(in_words)?;
+    }
     Ok(())
 }
 
@@ -111,7 +129,8 @@ fn draw(
     let residual = points(time, &output.residual, scale);
     let label = format!("{} [{unit}]", output.name);
 
-    let range = range_of(measured.iter().chain(&model).chain(&declared));
+    let all = measured.iter().chain(&model).chain(&declared);
+    let range = range_of(all.flatten());
     let mut chart = over_time(above, time, range)?;
     let mut mesh = chart.configure_mesh();
     faint(&mut mesh);
@@ -121,18 +140,17 @@ fn draw(
         .label_style(("sans-serif", 13))
         .draw()
         .map_err(in_words)?;
-    let dots = measured
-        .iter()
-        .map(|&at| Circle::new(at, 1, MEASURED.filled()));
-    chart.draw_series(dots).map_err(in_words)?;
-    for (points, colour) in [(declared, DECLARED), (model, MODEL)] {
-        let line = LineSeries::new(points, colour.stroke_width(2));
-        chart.draw_series(line).map_err(in_words)?;
+    for (runs, colour) in [(declared, DECLARED), (model, MODEL)] {
+        lines(&mut chart, &runs, colour.stroke_width(2))?;
     }
+    // above the lines: what was measured is never hidden
+    let dots = (measured.iter().flatten()).map(|&at| Circle::new(at, 1, MEASURED.filled()));
+    chart.draw_series(dots).map_err(in_words)?;
     let before = output.measured.iter().zip(&output.declared);
     let before: Vec<f64> = before.map(|(z, y)| z - y).collect();
     let before = points(time, &before, scale);
-    let mut chart = over_time(below, time, range_of(residual.iter().chain(&before)))?;
+    let all = residual.iter().chain(&before).flatten();
+    let mut chart = over_time(below, time, range_of(all))?;
     let mut mesh = chart.configure_mesh();
     faint(&mut mesh);
     mesh.y_labels(3)
@@ -141,17 +159,8 @@ fn draw(
         .label_style(("sans-serif", 12))
         .draw()
         .map_err(in_words)?;
-    // a line only where samples follow each other: not across what is missing
-    let gaps = output.residual.iter().any(|residual| residual.is_nan());
-    for (points, colour) in [(before, DECLARED), (residual, MEASURED)] {
-        if gaps {
-            let dots = points.iter().map(|&at| Circle::new(at, 1, colour.filled()));
-            chart.draw_series(dots).map(|_| ())
-        } else {
-            let line = LineSeries::new(points, colour.stroke_width(1));
-            chart.draw_series(line).map(|_| ())
-        }
-        .map_err(in_words)?;
+    for (runs, colour) in [(before, DECLARED), (residual, MEASURED)] {
+        lines(&mut chart, &runs, colour.stroke_width(1))?;
     }
     Ok(())
 }
@@ -167,15 +176,39 @@ fn over_time<'a, 'b>(
     axes(area, (first, last.max(first + 1e-9)), range, &MARGINS)
 }
 
-/// The samples that are numbers, and of very many those that a plot shows.
-fn points(time: &[f64], values: &[f64], scale: f64) -> Vec<(f64, f64)> {
-    let samples = time.iter().copied().zip(values.iter().copied());
-    let (time, values): (Vec<f64>, Vec<f64>) =
-        samples.filter(|(_, value)| value.is_finite()).unzip();
-    let shown = rows_to_plot(&[&values], values.len(), MOST_POINTS);
-    (shown.into_iter())
-        .map(|row| (time[row], values[row] * scale))
-        .collect()
+/// The samples that are numbers, and of very many those that a plot shows, in runs without a gap: where a value is missing, or the
+/// recording stopped, another begins.
+fn points(time: &[f64], values: &[f64], scale: f64) -> Vec<Vec<(f64, f64)>> {
+    let there: Vec<usize> = (0..values.len().min(time.len()))
+        .filter(|&row| values[row].is_finite())
+        .collect();
+    let finite: Vec<f64> = there.iter().map(|&row| values[row]).collect();
+    let step = usual_step(time);
+    let follows = |row: usize| row > 0 && time[row] - time[row - 1] <= GAP_FACTOR * step;
+    let mut runs: Vec<Vec<(f64, f64)>> = Vec::new();
+    let mut last: Option<usize> = None;
+    for place in rows_to_plot(&[&finite], finite.len(), MOST_POINTS) {
+        let row = there[place];
+        let goes_on = last.is_some_and(|last: usize| {
+            // all rows between are there, and none is behind a gap
+            place - last == row - there[last] && (there[last] + 1..=row).all(follows)
+        });
+        if !goes_on {
+            runs.push(Vec::new());
+        }
+        if let Some(run) = runs.last_mut() {
+            run.push((time[row], values[row] * scale));
+        }
+        last = Some(place);
+    }
+    runs
+}
+
+/// The median time between samples.
+fn usual_step(time: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied().unwrap_or(f64::INFINITY)
 }
 
 /// From the least to the greatest value, with some room, never empty.
@@ -198,8 +231,24 @@ mod tests {
         values[54_321] = 7.0;
         values[12_345] = -3.0;
         let drawn = points(&time, &values, 1.0);
+        assert_eq!(drawn.len(), 1);
+        let drawn = &drawn[0];
         assert!(drawn.len() <= MOST_POINTS);
         assert!(drawn.contains(&(54_321.0, 7.0)) && drawn.contains(&(12_345.0, -3.0)));
+    }
+
+    #[test]
+    fn no_line_crosses_what_is_missing_or_a_gap() {
+        let time = [0.0, 0.1, 0.2, 0.3, 0.4, 2.0, 2.1];
+        let values = [1.0, 2.0, f64::NAN, 4.0, 5.0, 6.0, 7.0];
+        let runs = points(&time, &values, 2.0);
+        let expected = [
+            vec![(0.0, 2.0), (0.1, 4.0)],
+            vec![(0.3, 8.0), (0.4, 10.0)],
+            vec![(2.0, 12.0), (2.1, 14.0)],
+        ];
+        assert_eq!(runs, expected);
+        assert!(points(&time, &[f64::NAN; 7], 1.0).is_empty());
     }
 
     #[test]

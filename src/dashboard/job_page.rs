@@ -26,6 +26,12 @@ pub struct JobView {
     pub status: Status,
     /// RFC 3339, UTC.
     pub created: String,
+    /// When a worker first took it.
+    pub started: Option<String>,
+    /// When the page was made.
+    pub now: String,
+    /// At which length of step, in standard errors, the solver stops.
+    pub tolerance: f64,
     pub attempt: u32,
     /// Why it failed.
     pub faults: Vec<Fault>,
@@ -68,13 +74,13 @@ pub struct UsedManeuver {
 pub fn job_page(view: &JobView) -> String {
     let content = html! {
         div id="job" data-job=(view.id) data-kind=(view.kind) data-over=(view.status.is_over())
-            data-result=(view.estimate.is_some()) {
+            data-result=(view.estimate.is_some()) data-now=(view.now) data-started=[view.started.as_deref()] data-tolerance=(view.tolerance) {
             h1 { (view.title) }
             (facts(view))
             (state(view))
             (actions(view))
             @if view.status.is_over() { (findings(view)) } @else { (progress(view)) }
-            @if let Some(diagnosis) = &view.diagnosis { (diagnosis::story(diagnosis)) }
+            @if let Some(diagnosis) = &view.diagnosis { (diagnosis::story(diagnosis, &explained())) }
             @if let Some(estimate) = &view.estimate { (result(view, estimate)) }
             @if let Some(study) = &view.study { (study_section(study)) }
             @if view.estimate.is_some() { (downloads(view)) }
@@ -164,7 +170,7 @@ pub(super) fn findings(view: &JobView) -> Markup {
         }
         @if of(Severity::Note).next().is_some() {
             details {
-                summary { "What else is to be known" }
+                summary { "Notes" }
                 ul {
                     @for finding in of(Severity::Note) {
                         li data-code=(finding.code) { (finding.sentence()) }
@@ -183,13 +189,23 @@ fn lead(severity: Severity) -> &'static str {
     }
 }
 
+/// Residuals over time, before and after, in a flight that took no part where there is one.
+fn explained() -> Markup {
+    html! {
+        h3 { "What the effects explain" }
+        div id="explained" data-loading="true" {}
+    }
+}
+
 fn progress(view: &JobView) -> Markup {
     html! {
         section aria-labelledby="now" {
-            h2 id="now" { "Now" }
+            h2 id="now" { "Progress" }
             p id="connection" role="status" {}
+            p.soft { span id="elapsed" {} }
+            div id="way" hidden { progress aria-label="progress" max="1" value="0" {} " " span {} }
+            ol id="steps" reversed hidden {}
             @if has_course(view) { (course()) }
-            ol id="steps" hidden {}
         }
     }
 }

@@ -31,10 +31,14 @@ pub struct JobRow {
     pub created: String,
     /// Seconds from the first claim to the end, or to now.
     pub seconds: Option<f64>,
+    /// Whether there is an estimate to compare.
+    pub has_result: bool,
     /// How well the output is reproduced that is reproduced worst.
     pub fit: Option<FitSummary>,
     /// Findings of the result that are warnings or worse.
     pub warnings: usize,
+    /// The reason in a line.
+    pub outcome: String,
     /// Why the solver stopped, or what failed.
     pub reason: String,
 }
@@ -73,6 +77,11 @@ pub fn jobs_page(view: &JobsView) -> String {
         } @else {
             (filters(&view.chosen))
             p.soft id="live" role="status" {}
+            div.row.center id="ticked" hidden {
+                span role="status" {}
+                a.button href="/" { "Compare" }
+                button.link type="button" { "Untick all" }
+            }
             div id="jobs" data-live=(!view.chosen.is_later_page) { (table(view)) }
         }
     };
@@ -135,13 +144,14 @@ fn table(view: &JobsView) -> Markup {
             div.scroll tabindex="0" role="region" aria-label="Jobs" {
                 table {
                     thead { tr {
-                        th scope="col" { "job" } th scope="col" { "kind" } th scope="col" { "state" }
+                        td { input type="checkbox" id="tick-all" aria-label="compare all jobs of this list"; } th scope="col" { "job" } th scope="col" { "kind" } th scope="col" { "state" }
                         th scope="col" { "submitted" } th.number scope="col" { "time, s" }
                         th.number scope="col" { "lowest R²" } th.number scope="col" { "warnings" } th scope="col" { "outcome" }
                     } }
                     tbody {
                         @for job in &view.jobs {
                             tr {
+                                td { @if job.has_result { input type="checkbox" data-tick=(job.id) aria-label={ "compare " (job.title) }; } }
                                 th.names scope="row" {
                                     a href={ "/jobs/" (job.id) } { (job.title) }
                                     @for tag in &job.tags { " " span.soft { "#" (tag) } }
@@ -153,7 +163,7 @@ fn table(view: &JobsView) -> Markup {
                                 td.number { @if let Some(seconds) = job.seconds { (duration(seconds)) } }
                                 td.number { @if let Some(fit) = &job.fit { (fit_text(fit)) } }
                                 td.number { @if job.warnings > 0 { (job.warnings) } }
-                                td.soft.words { (job.reason) }
+                                td.soft.words title=(job.reason) { (job.outcome) }
                             }
                         }
                     }

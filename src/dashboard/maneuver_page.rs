@@ -118,16 +118,23 @@ fn flown(flown: &Flown) -> Markup {
     html! {
         @if !flown.is_empty() {
             h2 { "What was flown" }
-            dl.facts {
-                @for (name, text) in flown.texts().filter(|(name, _)| *name != "notes") {
-                    dt { (name.replace('_', " ")) } dd { (text) }
-                }
-                @for (name, quantity) in flown.quantities() {
-                    dt { (called(&name)) } dd { (number(quantity.value)) " " (quantity.unit) }
-                }
-                @if !flown.tags.is_empty() { dt { "tags" } dd { (flown.tags.join(", ")) } }
-                @if let Some(notes) = &flown.notes { dt { "notes" } dd { (notes) } }
+            (what_was_flown(flown))
+        }
+    }
+}
+
+/// As a list of names and values.
+pub(super) fn what_was_flown(flown: &Flown) -> Markup {
+    html! {
+        dl.facts {
+            @for (name, text) in flown.texts().filter(|(name, _)| *name != "notes") {
+                dt { (name.replace('_', " ")) } dd { (text) }
             }
+            @for (name, quantity) in flown.quantities() {
+                dt { (called(&name)) } dd { (number(quantity.value)) " " (quantity.unit) }
+            }
+            @if !flown.tags.is_empty() { dt { "tags" } dd { (flown.tags.join(", ")) } }
+            @if let Some(notes) = &flown.notes { dt { "notes" } dd { (notes) } }
         }
     }
 }

@@ -39,6 +39,7 @@ pub fn model_page(view: &ModelView) -> String {
         (actions(&view.id))
         @if let Some(against) = &view.against { (comparison(document, against)) }
         @for paragraph in document.description.split("\n\n").filter(|text| !text.trim().is_empty()) { p { (paragraph) } }
+        p.soft { "Point at a symbol for the name that it has in the document." }
         (equations(document, &notation))
         (quantities(document, &notation))
         (choice(view))
@@ -63,7 +64,7 @@ fn actions(id: &str) -> Markup {
     }
 }
 
-fn equations(document: &ModelDocument, notation: &Notation) -> Markup {
+pub(super) fn equations(document: &ModelDocument, notation: &Notation) -> Markup {
     let inputs = document.inputs.iter().map(|(name, one)| (name, one.path()));
     let outputs = document
         .outputs
@@ -93,7 +94,6 @@ fn equations(document: &ModelDocument, notation: &Notation) -> Markup {
         (Left::Output(name), text, description)
     });
     html! {
-        p.soft { "Point at a symbol for the name that it has in the document." }
         (list("State equations", notation, dynamics))
         (list("Initial values", notation, initial))
         (list("Definitions", notation, definitions))
@@ -132,7 +132,7 @@ fn list<'a>(
     }
 }
 
-fn quantities(document: &ModelDocument, notation: &Notation) -> Markup {
+pub(super) fn quantities(document: &ModelDocument, notation: &Notation) -> Markup {
     let sections = [
         (
             "Parameters",
@@ -159,7 +159,7 @@ fn quantities(document: &ModelDocument, notation: &Notation) -> Markup {
         @for (heading, is_empty, table) in sections {
             @if !is_empty {
                 h2 { (heading) }
-                div.scroll tabindex="0" role="region" aria-label=(heading) { (table) }
+                div.scroll tabindex="0" role="region" aria-label={ (heading) " of the model" } { (table) }
             }
         }
     }

@@ -92,7 +92,7 @@ pub fn new_job_page() -> String {
         form id="form" novalidate {
             fieldset {
                 legend { "1. Maneuvers" }
-                p.soft { "Those that are fitted are fitted together. Of each a part may be used, from one second to another of its own time, or several parts. What is checked on decides whether an effect that was found is real; what is kept for the end takes part in no decision. "
+                p.soft { "Those of the estimation are fitted together. Of each a part may be used, from one second to another of its own time, or several parts. Validation flights decide whether an effect that was found is real; a final test takes part in no decision. "
                     a href="/maneuvers" { "Upload a maneuver" } }
                 div id="maneuvers" { p.soft { "Asking the service ..." } }
             }

@@ -7,17 +7,24 @@ use super::estimate_tables::{mode_table, tables};
 use super::figure::history_svg;
 use super::job_page::{JobView, facts, findings, state};
 use super::layout::head;
+use super::report_basis::{ReportRecording, channels, method, model, recordings};
 use super::residual_figures::residual_figures;
 use super::study::study_section;
 use super::tolerances::tolerances;
 use super::{correlation, diagnosis, eigenvalues};
 use crate::diagnose::ResidualAnalysis;
 use crate::estimate::{Estimate, Role, TimeHistory};
-use crate::job::Maker;
+use crate::job::{JobSpec, Maker};
+use crate::model::ModelDocument;
 
 /// What the report tells.
 pub struct ReportView {
     pub job: JobView,
+    pub spec: JobSpec,
+    /// As it was estimated; absent without a result.
+    pub document: Option<ModelDocument>,
+    /// In the order of the spec.
+    pub recordings: Vec<ReportRecording>,
     pub histories: Vec<TimeHistory>,
     /// Of the flights that were fitted.
     pub residuals: Vec<ResidualAnalysis>,
@@ -38,9 +45,9 @@ pub fn report(view: &ReportView) -> String {
             head {
                 (head(&format!("Report: {}", job.title)))
                 base href=(view.origin);
-                style { (PreEscaped(STYLE)) }
+                style { (PreEscaped(STYLE)) (PreEscaped(running_title(job))) }
             }
-            body {
+            body.report {
                 main {
                     p.soft { "Parameter estimation report, Trimtab" }
                     h1 { (job.title) }
@@ -51,9 +58,15 @@ pub fn report(view: &ReportView) -> String {
                         a href={ "/jobs/" (job.id) "/report" } download={ "trimtab-" (job.id) ".html" } { "Save as a file" }
                     }
                     (findings(job))
-                    @if let Some(found) = &job.diagnosis { (diagnosis::story(found)) }
+                    @if let Some(found) = &job.diagnosis { (diagnosis::story(found, &html! {})) }
                     @if let Some(estimate) = &job.estimate { (result(view, estimate)) }
                     @if let Some(study) = &job.study { (study_section(study)) }
+                    @if let Some(document) = &view.document {
+                        (model(document))
+                        (channels(&view.spec, document, &view.recordings))
+                    }
+                    (recordings(&view.recordings))
+                    (method(&view.spec.options, job.estimate.as_ref()))
                     (provenance(view))
                     (signatures())
                 }
@@ -63,6 +76,25 @@ pub fn report(view: &ReportView) -> String {
     page.into_string()
 }
 
+/// What stands at the top of each printed page.
+fn running_title(job: &JobView) -> String {
+    // as a string of CSS: all but plain characters by their numbers
+    let plain = |c: char| c.is_alphanumeric() || " .,:+-/()".contains(c);
+    let title: String = (job.title.chars().take(90))
+        .map(|c| {
+            if plain(c) {
+                c.to_string()
+            } else {
+                format!("\\{:x} ", c as u32)
+            }
+        })
+        .collect();
+    format!(
+        "@page {{ @top-left {{ content: \"{title}\"; }} @top-right {{ content: \"job {}\"; }} }}",
+        job.id
+    )
+}
+
 fn result(view: &ReportView, estimate: &Estimate) -> Markup {
     html! {
         (tables(estimate, [&source(view, "parameters"), &source(view, "estimate")]))
@@ -70,7 +102,7 @@ fn result(view: &ReportView, estimate: &Estimate) -> Markup {
         @if !estimate.modes.is_empty() { (tolerances(&view.histories)) }
         @for history in &view.histories {
             section.whole {
-                h2 { "Measured and model: " (history.segment) @if history.role != Role::Estimation { " (took no part in the fit)" } }
+                h2 { "Measured and model: " (history.segment) @if history.role != Role::Estimation { " (" (diagnosis::part(history.role)) ")" } }
                 (source(view, "time-histories"))
                 figure.paper role="img" aria-label={ "measured and model outputs of " (history.segment) } {
                     @match history_svg(history) {
@@ -88,8 +120,10 @@ fn result(view: &ReportView, estimate: &Estimate) -> Markup {
             (eigenvalues::plane(&estimate.modes))
             div.scroll tabindex="0" role="region" aria-labelledby="modes" { (mode_table(&estimate.modes)) }
         }
-        h2 { "Correlation of the estimates" }
-        (correlation::map(estimate))
+        section.whole {
+            h2 { "Correlation of the estimates" }
+            (correlation::map(estimate))
+        }
     }
 }
 
@@ -116,12 +150,15 @@ fn provenance(view: &ReportView) -> Markup {
     }
 }
 
+/// Who answers for it.
 fn signatures() -> Markup {
     html! {
-        div.columns style="margin-top: 4rem" {
-            @for who in ["Prepared by", "Checked by"] {
-                p style="border-top: 1px solid currentColor; padding-top: .25rem" { (who) ", date" }
-            }
+        section.whole.signatures {
+            h2 id="signatures" { "Signatures" }
+            div.scroll tabindex="0" role="region" aria-labelledby="signatures" { table {
+                thead { tr { td {} th scope="col" { "name" } th scope="col" { "date" } th scope="col" { "signature" } } }
+                tbody { @for who in ["Prepared by", "Checked by", "Approved by"] { tr { th scope="row" { (who) } td {} td {} td {} } } }
+            } }
         }
     }
 }

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use crate::diagnose::{ResidualAnalysis, SpectralLine};
 use crate::estimate::five_digits as number;
-use crate::flight::{Shown, shown_in};
+use crate::flight::{Shown, p_value, shown_in};
 
 const WIDTH: f64 = 420.0;
 const HEIGHT: f64 = 150.0;
@@ -25,7 +25,7 @@ pub(super) fn residual_figures(outputs: &[ResidualAnalysis]) -> Markup {
                     "rms " (number(output.rms * scale)) " " (unit) "; "
                     @if output.portmanteau.probability < RARE { "not white: noise alone would hardly be like this" }
                     @else { "as white noise would be" }
-                    " (Ljung and Box, p = " (format!("{:.2e}", output.portmanteau.probability)) ")"
+                    " (Ljung and Box, " (p_value(output.portmanteau.probability)) ")"
                 }
                 div.columns {
                     figure.paper { (autocorrelation(output)) }

@@ -29,6 +29,7 @@ mod serve;
 mod service;
 
 pub use answer::campaign_table::campaign_as_csv;
+pub use answer::comparison_table::comparison_as_csv;
 pub use answer::prediction_table::predictions_as_csv;
 pub use answer::response_table::responses_as_csv;
 pub use answer::trajectory_table::trajectories_as_csv;

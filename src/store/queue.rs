@@ -5,6 +5,7 @@
 //! (start-time fair queueing with jobs of equal length).
 
 use sqlx::{AnyConnection, Row};
+use uuid::Uuid;
 
 use super::{Project, StoreError};
 
@@ -35,6 +36,24 @@ impl Project {
             all: of("everybody")?,
             own: of("own")?,
         })
+    }
+
+    /// How many jobs, of everybody, are taken before one that waits; nothing of one that does not.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn ahead(&self, job: Uuid) -> Result<Option<usize>, StoreError> {
+        let sql = "SELECT (SELECT COUNT(*) FROM jobs AS other WHERE other.status = 'queued' AND (other.priority > own.priority \
+                   OR other.priority = own.priority AND (other.turn < own.turn OR other.turn = own.turn AND other.id < own.id))) AS ahead \
+                   FROM jobs AS own WHERE own.id = $1 AND own.project = $2 AND own.status = 'queued'";
+        let row = sqlx::query(sql)
+            .bind(job.to_string())
+            .bind(&*self.name)
+            .fetch_optional(&self.store.readers)
+            .await?;
+        let Some(row) = row else { return Ok(None) };
+        let ahead: i64 = row.try_get("ahead")?;
+        Ok(usize::try_from(ahead).ok())
     }
 }
 

@@ -119,7 +119,7 @@ fn answer(
     let findings = FindingTally::of(&result.estimate.findings);
     // what a diagnosis comes to is more than that its last fit ended well
     let reason = match result.diagnosis {
-        Some(diagnosis) => diagnosis.sentence,
+        Some(diagnosis) => diagnosis.headline(),
         None => result.estimate.reason,
     };
     Ok(Answer {

@@ -121,6 +121,12 @@ impl Browser {
         self.devtools("Emulation.setEmulatedMedia", features).await;
     }
 
+    /// Shows the page as it is printed, or as on a screen again.
+    pub(crate) async fn print(&self, print: bool) {
+        let media = json!({"media": if print { "print" } else { "" }});
+        self.devtools("Emulation.setEmulatedMedia", media).await;
+    }
+
     pub(crate) async fn go(&self, address: &str) {
         self.client
             .goto(address)

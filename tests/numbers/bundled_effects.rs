@@ -225,11 +225,18 @@ fn a_late_vane_shows_where_the_model_cannot_imitate_it() {
     );
     let held = diagnosis("alpha-delay", json!({"Zq": {"start": 0.97, "fixed": true}}));
     names_the_truth("alpha-delay", &held);
+    // its size in milliseconds, as the parameter has it
+    let delay = &held.effects[0].parameters[0];
+    let said = held.headline();
+    let size = said
+        .strip_prefix("alpha is recorded ")
+        .and_then(|rest| rest.split_once(" ± "));
+    let (size, rest) = size.expect("a size with its bound");
+    let size: f64 = size.parse().expect("a number");
+    assert!((size - 1e3 * delay.estimate).abs() < 0.1, "{said}");
     assert!(
-        held.sentence
-            .starts_with("alpha is recorded late (alpha_delay = 0.0"),
-        "{}",
-        held.sentence
+        rest.ends_with(" ms late (alpha_delay)") && held.sentence.starts_with(&said),
+        "{said}"
     );
 }
 

@@ -118,6 +118,28 @@ fn fit_works_without_a_server() {
         table.contains("Mde") && table.contains("alpha_0 [elevator]") && table.contains("R²"),
         "{table}"
     );
+    let json = succeeds(&["fit", "data/elevator.csv", "-m", "short-period", "--json"]);
+    let result: Value = serde_json::from_str(&json).expect("JSON");
+    let rows = result["estimate"]["parameters"].as_array();
+    for row in rows.expect("a list") {
+        let (Some(value), Some(error)) = (row["estimate"].as_f64(), row["standard_error"].as_f64())
+        else {
+            continue;
+        };
+        // to the place of the error's second digit, found by scientific notation
+        let text = format!("{error:.1e}");
+        let (_, exponent) = text.split_once('e').expect("an exponent");
+        let digits = usize::try_from(1 - exponent.parse::<i32>().expect("a number"));
+        let digits = digits.expect("an error below 10");
+        let name = row["name"].as_str().expect("a name");
+        let cells = [
+            name.to_string(),
+            format!(" {value:.digits$} "),
+            format!(" {error:.digits$} "),
+        ];
+        let has = |line: &str| cells.iter().all(|cell| line.contains(cell.as_str()));
+        assert!(table.lines().any(has), "{cells:?}: {table}");
+    }
     let file = std::env::temp_dir().join(format!("trimtab-{}.csv", std::process::id()));
     let path = file.to_string_lossy();
     succeeds(&[
@@ -360,7 +382,7 @@ fn a_diagnosis_is_submitted_and_watched_to_its_conclusion() {
     let (id, table) = table.split_once('\n').expect("the id, then tables");
     let last = table.lines().last().expect("a line");
     assert!(
-        last.starts_with("verdict: named") && last.contains("de_backlash = "),
+        last.starts_with("verdict: named") && last.contains("(de_backlash)"),
         "{last}"
     );
     assert!(

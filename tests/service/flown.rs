@@ -8,7 +8,7 @@ use reqwest::Method;
 use serde_json::{Value, json};
 use trimtab::http::Config;
 
-async fn patch(server: &Server, id: &str, change: &Value) -> Answer {
+pub(crate) async fn patch(server: &Server, id: &str, change: &Value) -> Answer {
     let request = server.request(Method::PATCH, &format!("/v1/maneuvers/{id}"));
     send(
         request

@@ -90,6 +90,7 @@ const NEEDED: &[(&str, &[&str])] = &[
             "getSourceCode",
             "getSimulatorModel",
             "getCampaign",
+            "compareJobs",
             "getResidualAnalysis",
             "getProvenance",
         ],

@@ -32,6 +32,7 @@ mod before_flight;
 mod chaos;
 mod cli;
 mod coefficients;
+mod compare;
 mod derivatives;
 mod diagnosis;
 mod dynamics;

@@ -39,6 +39,14 @@ impl Verdict {
     }
 }
 
+/// How sentences of verdicts begin, or go on.
+pub(super) const NOTHING: &str =
+    "no effect of the catalogue is missing, and what is left follows no input";
+pub(super) const UNEXPLAINED: &str =
+    "something is missing that no effect of the catalogue explains";
+pub(super) const UNDECIDED: &str = "the data cannot decide";
+pub(super) const MORE: &str = ". That is not all: ";
+
 /// The answer of a diagnosis.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct Diagnosis {
@@ -46,7 +54,7 @@ pub struct Diagnosis {
     pub verdict: Verdict,
     /// The verdict in a sentence.
     #[schema(
-        example = "alpha is recorded 0.062 s late (sensor_delay); with the delay in the model the error of the validation flights falls from 0.31 to 0.11 deg"
+        example = "alpha is recorded 62.1 ± 1.5 ms late (alpha_delay). RMS error of the prediction: alpha 0.31 to 0.11 deg"
     )]
     pub sentence: String,
     /// What the model lacked, in the order in which it was found.
@@ -75,6 +83,32 @@ pub struct Diagnosis {
     pub remarks: Vec<String>,
 }
 
+impl Diagnosis {
+    /// The verdict in a line: the effects with their sizes, or that there are none.
+    pub fn headline(&self) -> String {
+        let named: Vec<&str> = self.effects.iter().map(|e| e.sentence.as_str()).collect();
+        let named = named.join("; ");
+        match self.verdict {
+            Verdict::Named | Verdict::NamedGroup => named,
+            Verdict::NothingMissing => NOTHING.to_string(),
+            Verdict::Unexplained if named.is_empty() => UNEXPLAINED.to_string(),
+            Verdict::Unexplained => format!("{named}; more is missing"),
+            Verdict::NotTestable => UNDECIDED.to_string(),
+        }
+    }
+
+    /// What is left unexplained, or to be done, in the words of the sentence.
+    pub fn left_over(&self) -> Option<&str> {
+        let rest = |begin: &str| self.sentence.strip_prefix(begin)?.strip_prefix(": ");
+        match self.verdict {
+            Verdict::Unexplained if self.effects.is_empty() => rest(UNEXPLAINED),
+            Verdict::Unexplained => self.sentence.split_once(MORE).map(|(_, rest)| rest),
+            Verdict::NotTestable => rest(UNDECIDED),
+            Verdict::Named | Verdict::NamedGroup | Verdict::NothingMissing => None,
+        }
+    }
+}
+
 /// An effect that was accepted.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct NamedEffect {
@@ -88,7 +122,7 @@ pub struct NamedEffect {
     /// Why it was accepted.
     pub evidence: Evidence,
     /// The effect with its size, in words.
-    #[schema(example = "alpha is recorded 0.062 s late")]
+    #[schema(example = "alpha is recorded 62.1 ± 1.5 ms late (alpha_delay)")]
     pub sentence: String,
 }
 
@@ -281,6 +315,12 @@ pub enum Step {
         candidates: usize,
         /// Those that the declared parameters cannot imitate wholly.
         visible: usize,
+        /// About how many of these are fitted: fewer where one explains much.
+        #[serde(default)]
+        promising: usize,
+        /// How many rounds there are at most.
+        #[serde(default)]
+        rounds: usize,
     },
     /// A candidate was fitted.
     Tried {

@@ -92,6 +92,8 @@ pub(super) fn round(
         round: number,
         candidates: count,
         visible: visible.len(),
+        promising: visible.iter().filter(|seen| in_play(seen, &[])).count(),
+        rounds: MOST_ROUNDS,
     };
     tell(watcher, &step)?;
     result.refused.extend(hidden.iter().map(|seen| {

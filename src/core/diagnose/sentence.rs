@@ -7,6 +7,12 @@ use crate::model::{AddedRole, EditKind};
 
 /// An effect in words, with its size.
 pub(super) fn of(effect: &Effect, sizes: &[Size]) -> String {
+    if let [size] = sizes
+        && let Some(sized) = sized(effect, size)
+    {
+        let segment = (size.segment.as_ref()).map_or(String::new(), |label| format!(" in {label}"));
+        return format!("{sized}{segment} ({})", size.name);
+    }
     let written: Vec<String> = sizes.iter().map(written).collect();
     let words = words(effect, sizes.first());
     match written.is_empty() {
@@ -15,20 +21,63 @@ pub(super) fn of(effect: &Effect, sizes: &[Size]) -> String {
     }
 }
 
+/// An effect that has one size and is told by it.
+fn sized(effect: &Effect, size: &Size) -> Option<String> {
+    let target = effect.target.as_str();
+    let EffectKind::Edit(kind) = effect.kind else {
+        return None;
+    };
+    let plain = measured(size.value.signum(), size);
+    let signed = measured(1.0, size);
+    let is_negative = size.value < 0.0;
+    let text = match kind {
+        EditKind::SensorBias | EditKind::InputBias => {
+            format!("{target} is recorded with a bias of {signed}")
+        }
+        EditKind::SensorDrift => format!("{target} drifts by {signed}"),
+        EditKind::SensorDelay if is_negative => format!("{target} is recorded {plain} early"),
+        EditKind::SensorDelay => format!("{target} is recorded {plain} late"),
+        EditKind::InputDelay if is_negative => {
+            format!("{target} is recorded {plain} late: the aircraft follows earlier")
+        }
+        EditKind::InputDelay => {
+            format!("{target} is recorded {plain} early: the aircraft follows later")
+        }
+        EditKind::SensorLag => format!("{target} is recorded with a lag of {plain}"),
+        EditKind::ActuatorLag => {
+            format!("the aircraft follows the recorded {target} with a lag of {plain}")
+        }
+        EditKind::Backlash => {
+            format!("there is play (backlash) behind {target}: half its dead band is {plain}")
+        }
+        _ => return None,
+    };
+    Some(text)
+}
+
+/// A size by itself, times a sign: short times in milliseconds.
+fn measured(sign: f64, size: &Size) -> String {
+    let (value, error, unit) = shown(size);
+    let is_short = unit == "s" && value.abs() < 1.0;
+    let (scale, unit) = if is_short {
+        (1e3, "ms")
+    } else {
+        (1.0, unit.as_str())
+    };
+    let text = match error {
+        Some(error) => with_error(sign * scale * value, scale * error),
+        None => five_digits(sign * scale * value),
+    };
+    if unit == "-" {
+        text
+    } else {
+        format!("{text} {unit}")
+    }
+}
+
 /// A size with its bound: angles in degrees, frequencies in Hz.
 fn written(size: &Size) -> String {
-    let (value, error, unit) = match size.role {
-        AddedRole::Frequency => {
-            let turns = |rate: f64| rate / std::f64::consts::TAU;
-            let error = size.standard_error_si().map(turns);
-            (turns(size.value), error, "Hz".to_string())
-        }
-        _ => {
-            let Shown { scale, unit } = shown_in(&size.unit);
-            let error = size.standard_error.map(|error| error * scale);
-            (size.own_units() * scale, error, unit)
-        }
-    };
+    let (value, error, unit) = shown(size);
     let value = match error {
         Some(error) => with_error(value, error),
         None => five_digits(value),
@@ -40,6 +89,22 @@ fn written(size: &Size) -> String {
     };
     let segment = (size.segment.as_ref()).map_or(String::new(), |label| format!(" in {label}"));
     format!("{} = {value}{unit}{segment}", size.name)
+}
+
+/// Value, standard error and unit as people read them.
+fn shown(size: &Size) -> (f64, Option<f64>, String) {
+    match size.role {
+        AddedRole::Frequency => {
+            let turns = |rate: f64| rate / std::f64::consts::TAU;
+            let error = size.standard_error_si().map(turns);
+            (turns(size.value), error, "Hz".to_string())
+        }
+        _ => {
+            let Shown { scale, unit } = shown_in(&size.unit);
+            let error = size.standard_error.map(|error| error * scale);
+            (size.own_units() * scale, error, unit)
+        }
+    }
 }
 
 /// An effect in words; `first` is the size that it is called after.

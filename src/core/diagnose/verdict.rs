@@ -5,7 +5,9 @@ use super::case::Case;
 use super::effect::EffectKind;
 use super::fitted::Fitted;
 use super::found::Found;
-use super::report::{FitChange, NamedEffect, Refusal, RefusedEffect, Verdict};
+use super::report::{
+    FitChange, MORE, NOTHING, NamedEffect, Refusal, RefusedEffect, UNDECIDED, UNEXPLAINED, Verdict,
+};
 use super::unmodelled::Unmodelled;
 use crate::estimate::{Role, five_digits};
 use crate::flight::{Shown, shown_in};
@@ -103,21 +105,18 @@ pub(super) fn sentence(
 ) -> String {
     match verdict {
         Verdict::Named | Verdict::NamedGroup => with_errors(effects, fits),
-        Verdict::NothingMissing => {
-            "no effect of the catalogue is missing, and what is left follows no input".into()
-        }
+        Verdict::NothingMissing => NOTHING.into(),
         Verdict::Unexplained if effects.is_empty() => {
-            format!(
-                "something is missing that no effect of the catalogue explains: {}",
-                what_is_left(left)
-            )
+            format!("{UNEXPLAINED}: {}", what_is_left(left))
         }
         Verdict::Unexplained => {
             let found = with_errors(effects, fits);
-            format!("{found}. That is not all: {}", what_is_left(left))
+            format!("{found}{MORE}{}", what_is_left(left))
         }
         Verdict::NotTestable => {
-            "the data cannot decide: fly another maneuver that moves every input, at least some seconds long".into()
+            format!(
+                "{UNDECIDED}: fly another maneuver that moves every input, at least some seconds long"
+            )
         }
     }
 }

@@ -111,6 +111,23 @@ pub struct NamedMatrix<'s> {
     pub columns: Vec<&'s str>,
 }
 
+impl NamedMatrix<'_> {
+    /// A row for a table: entries by their errors. Without one, what is nothing to rounding beside the largest of the row
+    /// is 0.
+    pub fn cells(&self, row: usize) -> Vec<String> {
+        let values = &self.matrix.values[row];
+        let largest = values
+            .iter()
+            .fold(0.0, |size: f64, value| size.max(value.abs()));
+        let both = values.iter().zip(&self.matrix.standard_errors[row]);
+        let measures = both.map(|(&value, &standard_error)| Measure {
+            value,
+            standard_error,
+        });
+        measures.map(|measure| measure.beside(largest)).collect()
+    }
+}
+
 impl LinearSystem {
     /// A, B, C, D, in this order.
     pub fn matrices(&self) -> [NamedMatrix<'_>; 4] {

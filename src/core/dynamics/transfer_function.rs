@@ -8,7 +8,7 @@ use super::channel::Channel;
 use super::linearisation::Linearisation;
 use super::polynomial::from_roots;
 use super::root::{FoundRoot, nearest};
-use crate::estimate::Measure;
+use crate::estimate::{Measure, root};
 
 /// Largest standard error of a root, relative to its distance from the next one, at which the delta method holds.
 const NEAR: f64 = 0.1;
@@ -56,12 +56,7 @@ pub struct Root {
 impl std::fmt::Display for Root {
     /// For a table: `-0.83 ± 1.82i`.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let digits = crate::flight::five_digits;
-        write!(f, "{}", digits(self.real.value))?;
-        match self.imaginary.value == 0.0 {
-            true => Ok(()),
-            false => write!(f, " ± {}i", digits(self.imaginary.value)),
-        }
+        f.write_str(&root(self.real.value, self.imaginary.value))
     }
 }
 

@@ -98,6 +98,7 @@ pub use report::identifiability::{
 };
 pub use report::integration::{HalvedSteps, Integration};
 pub use report::iteration::{Iteration, Outcome};
+pub(crate) use report::mode::root;
 pub use report::mode::{Measure, Mode, ModeName};
 pub use report::parameter::{Bound, ParameterEstimate};
 pub use report::prediction::Prediction;

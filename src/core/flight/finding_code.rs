@@ -131,7 +131,7 @@ codes! {
     RedundantParameters "redundant_parameters" Warning;
     /// The data cannot see some parameters.
     UnseenParameters "unseen_parameters" Warning;
-    /// The data hardly tell some parameters apart.
+    /// Some parameters are nearly collinear.
     NearlyCollinear "nearly_collinear" Note;
     /// An output is reproduced to rounding: error bounds would mean nothing and are left out.
     NoErrorBounds "no_error_bounds" Note;

@@ -44,5 +44,8 @@ pub use quality::{Record, Series, quality, quality_of};
 pub use sampling::{GAP_FACTOR, Gap, Sampling};
 pub use segments::{Moved, Proposal, ProposedSegment, SegmentKind, Wanted, segments};
 pub use severity::Severity;
-pub use shown::{Shown, five_digits, shown_in, with_error};
+pub use shown::{
+    Shown, bounded, decimals, five_digits, five_digits_beside, p_value, shown_in, two_digits,
+    value_and_error, with_error,
+};
 pub use unit::{Unit, UnitError};

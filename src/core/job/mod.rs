@@ -4,6 +4,7 @@
 //! Invariant: spec and data alone decide the result; all that bad input could break is found by [`prepare()`].
 
 mod campaign;
+mod compare;
 mod constant;
 mod corrected;
 mod event;
@@ -29,8 +30,9 @@ mod trim;
 pub use crate::flight::{Fault, Faults};
 pub use campaign::{
     Campaign, CampaignCurve, CampaignPoint, CampaignQuestion, CampaignTerm, Flown, LeftOut,
-    UsedRecording, campaign, conditions_of,
+    UsedRecording, campaign, channel_of, conditions_of, mean_over, part_in_use,
 };
+pub use compare::{ComparedJob, ComparedParameter, ComparedValue, Comparison, compare};
 pub use constant::ConstantValue;
 pub use corrected::{Corrected, corrected};
 pub use event::{Event, EventBody, Prepared};

@@ -311,6 +311,11 @@ pub struct ManeuverUse {
 }
 
 impl ManeuverUse {
+    /// Whether the model is fitted to it, not held against it.
+    pub fn is_fitted(&self) -> bool {
+        self.role == Role::Estimation
+    }
+
     /// All of a recording, gaps splitting it.
     pub fn new(id: impl Into<String>, role: Role) -> Self {
         Self {

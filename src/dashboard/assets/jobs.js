@@ -1,6 +1,7 @@
 // The page of all jobs: kept up to date, and a first job to try.
 import { localTimes } from './service.js';
 import { uploadExamples } from './examples.js';
+import { show as showTicked } from './ticked.js';
 
 const EVERY_MS = 2000;
 const LOST = 'The service does not answer; trying again.';
@@ -19,10 +20,13 @@ async function refresh() {
     else if (fresh && fresh.innerHTML !== refresh.last) {
       refresh.last = fresh.innerHTML;
       // who is at a link by keyboard stays there
-      const focused = list.contains(document.activeElement) ? document.activeElement.getAttribute('href') : null;
+      const focused = list.contains(document.activeElement) ? document.activeElement : null;
+      const { href, tick } = { href: focused?.getAttribute('href'), tick: focused?.dataset.tick };
       list.replaceChildren(...fresh.childNodes);
       localTimes(list);
-      if (focused) list.querySelector(`a[href="${CSS.escape(focused)}"]`)?.focus();
+      showTicked();
+      if (href) list.querySelector(`a[href="${CSS.escape(href)}"]`)?.focus();
+      if (tick) list.querySelector(`[data-tick="${CSS.escape(tick)}"]`)?.focus();
     }
     if (live.textContent === LOST) live.textContent = '';
   } catch {
@@ -31,6 +35,7 @@ async function refresh() {
 }
 
 localTimes();
+showTicked();
 if (!list || list.dataset.live === 'true') setInterval(refresh, EVERY_MS);
 
 const examples = document.getElementById('examples');

@@ -10,21 +10,36 @@ const samples = Number(page.dataset.samples);
 const step = Number(page.dataset.step);
 const byId = id => document.getElementById(id);
 
+/** A time between samples that is so many steps is a gap; of fewer samples than there are it also exceeds what is left out. */
+const GAP = 5;
+
+/** The places behind which a recording stopped and started again. */
+function gaps(time) {
+  const steps = time.slice(1).map((t, k) => t - time[k]);
+  const usual = [...steps].sort((a, b) => a - b)[Math.floor(0.95 * steps.length)] ?? step;
+  const isGap = taken => taken > GAP * step && (time.length === samples || taken > 2.5 * usual);
+  return steps.flatMap((taken, k) => (isGap(taken) ? [k] : []));
+}
+
+/** With nothing in each gap, so that no line crosses it. */
+const broken = (values, at) => values.flatMap((value, k) => (at.has(k) ? [value, null] : [value]));
+
 /** Channels by name over a stretch of time, as the plots have them. */
-async function load(names, from, to) {
-  const query = new URLSearchParams({ channels: names.join(','), max_points: POINTS });
+async function load(names, from, to, all) {
+  const query = new URLSearchParams({ channels: names.join(','), ...(all ? {} : { max_points: POINTS }) });
   if (from !== undefined) {
     // a sample beyond each end: lines reach the edges
     query.set('from', from - 2 * step);
     query.set('to', to + 2 * step);
   }
   const { time, channels } = await ask(`${base}/data?${query}`);
+  const stopped = new Set(gaps(time.values));
   const rows = names.map((name, k) => {
     const { scale, unit } = shown(channels[name].unit);
     const style = () => ({ mode: 'lines', line: { ...line(k), dash: 'solid', width: 1.5 }, showlegend: false });
-    return { title: unit === '-' ? name : `${name}, ${unit}`, series: [{ name, values: scaled(channels[name].values, scale), style }] };
+    return { title: unit === '-' ? name : `${name}, ${unit}`, series: [{ name, values: broken(scaled(channels[name].values, scale), stopped), style }] };
   });
-  return { time: time.values, rows, isThinned: time.values.length < samples };
+  return { time: broken(time.values, stopped), rows, isThinned: time.values.length < samples };
 }
 
 let drawing = 0;
@@ -43,7 +58,7 @@ async function draw() {
     byId('plotted').textContent = data ? extent(data) : 'No channel is chosen.';
     if (!data) return;
     byId('plot').append(plotted);
-    await timePlot(plotted, async (from, to) => (from === undefined ? data : load(names, from, to)));
+    await timePlot(plotted, async (from, to, all) => (from === undefined ? data : load(names, from, to, all)));
     if (stretch) zoom(...stretch);
   } catch (error) {
     byId('plotted').textContent = error.message;

@@ -49,7 +49,7 @@ const escaped = name => name.replaceAll('~', '~0').replaceAll('/', '~1');
 /** Begin and end of parts as they are being written, by use. */
 const ends = new WeakMap();
 
-const ROLES = [['', 'not used'], ['estimation', 'fitted'], ['validation', 'checked on'], ['final', 'kept for the end']];
+const ROLES = [['', 'not used'], ['estimation', 'estimation'], ['validation', 'validation'], ['final', 'final test']];
 
 /** Where a use of a maneuver is in the job. */
 const useAt = use => `/maneuvers/${spec.maneuvers.indexOf(use)}`;

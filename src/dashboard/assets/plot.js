@@ -1,4 +1,5 @@
 // Plots in the look of the pages: the chart library, loaded when it is first needed, and what all plots share.
+import { asPng, bar, csvOf, inLight, save } from './export.js';
 
 let library;
 
@@ -49,64 +50,83 @@ export function axis(title, more = {}) {
   };
 }
 
+/** What every plot has, in the colours of the moment. */
+const look = () => ({
+  paper_bgcolor: 'rgba(0,0,0,0)', plot_bgcolor: 'rgba(0,0,0,0)',
+  font: { family: 'system-ui, sans-serif', size: 12, color: colour('ink') },
+  margin: { l: 60, r: 15, t: 10, b: 40 }, legend: { orientation: 'h', y: 1.02, yanchor: 'bottom', traceorder: 'normal' },
+  hoverlabel: { bgcolor: colour('raised'), bordercolor: colour('line'), font: { color: colour('ink') } },
+  dragmode: 'zoom',
+});
+
 const drawn = new Map();
+
+/** Width of a picture that is saved, in pixels; PNG has twice as many. */
+const SAVED_WIDTH = 1000;
+
+/**
+ * The buttons below a plot: it as SVG, as PNG and as CSV. Pictures are for paper: light, with what is zoomed to. `table` gives the
+ * traces of the CSV, where the plot has not all samples.
+ */
+function addExports(element, table) {
+  if (element.parentElement.querySelector(':scope > .save')) return;
+  const name = element.getAttribute('aria-label');
+  const picture = async () => {
+    const plotly = await loaded();
+    const { traces, layout } = inLight(() => {
+      const made = drawn.get(element)();
+      return { ...made, layout: { ...look(), ...made.layout } };
+    });
+    for (const [key, axis] of Object.entries(element.layout)) {
+      if (/^[xy]axis/.test(key) && axis.range) layout[key] = { ...layout[key], range: [...axis.range], autorange: false };
+    }
+    layout.paper_bgcolor = '#ffffff';
+    const size = { width: SAVED_WIDTH, height: layout.height };
+    const address = await plotly.toImage({ data: traces, layout }, { format: 'svg', ...size });
+    return { text: decodeURIComponent(address.replace(/^[^,]*,/, '')), ...size };
+  };
+  element.after(bar(name, {
+    SVG: async () => save(name, 'svg', (await picture()).text),
+    PNG: async () => save(name, 'png', await asPng(await picture())),
+    CSV: async () => save(name, 'csv', csvOf(await (table ? table() : drawn.get(element)()))),
+  }));
+}
 
 /**
  * Draws, or draws anew what has changed. `make` gives traces and layout, in the colours of the moment: it is asked again when
- * light turns to dark.
+ * light turns to dark. `table` is as in `addExports`.
  */
-export async function plot(element, make) {
+export async function plot(element, make, table) {
   const plotly = await loaded();
   drawn.set(element, make);
   const { traces, layout } = make();
   // the library fills what is there, and leaves no room of itself
   element.style.height = `${layout.height + 2}px`;
-  await plotly.react(element, traces, {
-    paper_bgcolor: 'rgba(0,0,0,0)', plot_bgcolor: 'rgba(0,0,0,0)',
-    font: { family: 'system-ui, sans-serif', size: 12, color: colour('ink') },
-    margin: { l: 60, r: 15, t: 10, b: 40 }, legend: { orientation: 'h', y: 1.02, yanchor: 'bottom' },
-    hoverlabel: { bgcolor: colour('raised'), bordercolor: colour('line'), font: { color: colour('ink') } },
-    dragmode: 'zoom', ...layout,
-  }, {
-    responsive: true, displayModeBar: false, doubleClick: 'reset',
+  await plotly.react(element, traces, { ...look(), ...layout }, {
+    responsive: true, displayModeBar: false, doubleClick: 'reset', scrollZoom: false,
   });
+  addExports(element, table);
   return plotly;
 }
 
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
-  for (const [element, make] of drawn) plot(element, make);
+  for (const [element, make] of drawn) if (element.isConnected) plot(element, make);
 });
 
 /**
  * Rows of plots over one time, that are zoomed together; `load(from, to)` brings the rows of a stretch of time, each with
- * `title` and `series` (`name`, `values`, `style`), so that what is zoomed into has all its samples.
+ * `title` and `series` (`name`, `values`, `style`, and `time` where it has one of its own), so that what is zoomed into has all its
+ * samples.
  */
 export async function timePlot(element, load) {
   let data = await load();
-  const height = 150;
-  const make = () => {
-    const { time, rows } = data;
-    const traces = [];
-    const layout = {
-      height: 60 + height * rows.length, hovermode: 'x unified', hoversubplots: 'axis', showlegend: true,
-      xaxis: axis('time, s', { anchor: `y${rows.length}`, showspikes: true, spikemode: 'across', spikethickness: 1, spikedash: 'solid', spikecolor: colour('soft'), range: data.range ?? [time[0], time.at(-1)] }),
-      uirevision: 'kept',
-    };
-    rows.forEach((row, at) => {
-      const number = at === 0 ? '' : at + 1;
-      const top = 1 - at / rows.length;
-      layout[`yaxis${number}`] = axis(row.title, { domain: [top - 0.88 / rows.length, top] });
-      for (const series of row.series) {
-        traces.push({
-          x: time, y: series.values, name: series.name, yaxis: `y${number}`, xaxis: 'x', legendgroup: series.name,
-          showlegend: !traces.some(trace => trace.legendgroup === series.name),
-          hovertemplate: `${row.title}: %{y:.5g}${row.series.length > 1 ? ` (${series.name})` : ''}<extra></extra>`, ...series.style(),
-        });
-      }
-    });
-    return { traces, layout };
+  const make = () => drawnOver(data);
+  // a table has all samples of what is shown
+  const table = async () => {
+    const [from, to] = element.layout.xaxis.range;
+    return drawnOver(data.isThinned ? { ...data, ...(await load(from, to, true)) } : data, [from, to]);
   };
-  await plot(element, make);
+  await plot(element, make, table);
   if (!data.isThinned) return;
   const whole = data;
   let asked = 0;
@@ -118,7 +138,39 @@ export async function timePlot(element, load) {
     const part = isWhole ? whole : { ...(await load(from, change['xaxis.range[1]'])), range: [from, change['xaxis.range[1]']] };
     if (mine === asked) {
       data = part;
-      plot(element, make);
+      plot(element, make, table);
     }
   });
+}
+
+/** Height of a row whose share is 1, in pixels. */
+const ROW = 150;
+
+/** Traces and layout of rows over one time. A row has a `share` of the height of others; measured dots lie above lines. */
+function drawnOver({ time, rows, range }) {
+  const traces = [];
+  const shares = rows.map(row => row.share ?? 1);
+  const all = shares.reduce((sum, share) => sum + share, 0);
+  const whole = range ?? [time[0], time.at(-1)];
+  const layout = {
+    height: 60 + ROW * all, hovermode: 'x unified', hoversubplots: 'axis', showlegend: true,
+    xaxis: axis('time, s', { anchor: `y${rows.length === 1 ? '' : rows.length}`, showspikes: true, spikemode: 'across', spikethickness: 1, spikedash: 'solid', spikecolor: colour('soft'), range: whole }),
+    uirevision: 'kept',
+  };
+  let top = 1;
+  rows.forEach((row, at) => {
+    const number = at === 0 ? '' : at + 1;
+    const part = shares[at] / all;
+    layout[`yaxis${number}`] = axis(row.label ?? row.title, { domain: [Math.max(0, top - part + 0.12 / all), top], nticks: shares[at] < 1 ? 4 : undefined });
+    top -= part;
+    for (const series of row.series) {
+      traces.push({
+        x: series.time ?? time, y: series.values, name: series.name, yaxis: `y${number}`, xaxis: 'x', legendgroup: series.name,
+        legendrank: series.rank ?? 1000, title: row.title, connectgaps: false,
+        showlegend: !traces.some(trace => trace.legendgroup === series.name),
+        hovertemplate: `${row.title}: %{y:.5g}${row.series.length > 1 ? ` (${series.name})` : ''}<extra></extra>`, ...series.style(),
+      });
+    }
+  });
+  return { traces, layout };
 }

@@ -1,6 +1,7 @@
 //! Writing an answer: its form, its caching, and no more rows than are wanted.
 
 pub(super) mod campaign_table;
+pub(super) mod comparison_table;
 pub(super) mod decimate;
 pub(super) mod format;
 pub(super) mod prediction_table;

@@ -7,33 +7,34 @@ use utoipa::IntoParams;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
+use super::fitted_jobs::{ids_of, of_ids, of_tag};
 use crate::http::answer::campaign_table::campaign_as_csv;
 use crate::http::answer::format::{Format, choose, plain};
 use crate::http::code::Code;
 use crate::http::problem::{Problem, ProblemDocument};
-use crate::http::request::query::{LONGEST_PAGE, Parameters, bad_cursor};
+use crate::http::request::query::Parameters;
 use crate::http::service::{Server, Service};
-use crate::job::{
-    Campaign, CampaignQuestion, Flown, JobSpec, Status, UsedRecording, campaign, conditions_of,
-};
-use crate::store::{JobFilter, JobRecord, Part};
+use crate::job::{Campaign, CampaignQuestion, campaign};
 
 pub(crate) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(get_campaign))
 }
 
-/// Jobs of one campaign, at most.
-const MOST_JOBS: usize = 1000;
+/// Jobs that are named one by one, at most.
+const MOST_NAMED: usize = 200;
 
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 struct CampaignQuery {
-    /// The tag that all jobs of the campaign have.
+    /// The tag that all jobs of the campaign have; this or `jobs`.
     #[param(example = "campaign 7")]
-    tag: String,
+    tag: Option<String>,
+    /// Ids of finished jobs, at most 200, with commas between; this or `tag`.
+    #[param(example = "0193518e-6b6f-7d3c-9c53-b1cbb2b7a1f4,0193518e-7a10-7c44-8b1d-0a3f5e2c9d71")]
+    jobs: Option<String>,
     /// Conditions with numbers over which parameters are curves, at most 4, with commas between: `alpha,mach` where jobs have tags such as
-    /// `alpha=5` and `mach=0.4`. Absent: weighted means.
+    /// `alpha=5` and `mach=0.4`; `mean(alpha)` is the mean of a channel, in SI, over what a job was fitted to. Absent: weighted means.
     #[param(example = "alpha,mach")]
     by: Option<String>,
     /// Conditions with words, at most 8, with commas between; each combination has curves of its own.
@@ -50,14 +51,16 @@ struct CampaignQuery {
     format: Option<Format>,
 }
 
-/// What the finished jobs of a tag say of the same parameters: a curve over the conditions in their tags (or a weighted mean), with
-/// its bounds, whether the jobs agree (χ²), and which of them are outliers. Of jobs that were fitted to the same samples, such as
+/// What the finished jobs of a tag, or those that are named, say of the same parameters: a curve over conditions, which are tags or means of
+/// channels (or a weighted mean), with its bounds, whether the jobs agree (χ²), and which of them are outliers. Of jobs that were fitted to the same samples, such as
 /// reruns, the newest counts, and `left_out` has the others.
 #[utoipa::path(get, path = "/v1/campaigns", tag = "Results", operation_id = "getCampaign",
     params(CampaignQuery),
     responses(
         (status = 200, description = "The campaign.", content((Campaign = "application/json"), (String = "text/csv"))),
         (status = 400, description = "`invalid_query`: no job has the tag, too many have it, or conditions or degree cannot be.", body = ProblemDocument, content_type = "application/problem+json"),
+        (status = 404, description = "`unknown_job`, `no_result`: of `jobs`", body = ProblemDocument, content_type = "application/problem+json"),
+        (status = 409, description = "`not_finished`: of `jobs`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn get_campaign(
     service: Service,
@@ -81,13 +84,19 @@ async fn get_campaign(
     if let Some((field, message)) = question.fault() {
         return refuse(format!("{field}: {message}"));
     }
-    let flown = flown(&service, &query.tag).await?;
-    if flown.is_empty() {
-        return refuse(format!(
-            "tag: no finished job with a result has the tag '{}'",
-            query.tag
-        ));
-    }
+    let flown = match (&query.tag, &query.jobs) {
+        (Some(tag), None) => {
+            let flown = of_tag(&service, tag, &question.by).await?;
+            if flown.is_empty() {
+                return refuse(format!(
+                    "tag: no finished job with a result has the tag '{tag}'"
+                ));
+            }
+            flown
+        }
+        (None, Some(jobs)) => of_ids(&service, &ids_of(jobs, MOST_NAMED)?, &question.by).await?,
+        _ => return refuse("tag: give a tag, or jobs with commas between, and not both".into()),
+    };
     let answer = move || {
         let campaign: Campaign = campaign(&flown, &question);
         let body = match format {
@@ -97,63 +106,4 @@ async fn get_campaign(
         Ok(plain(format, body))
     };
     service.compute.run(answer).await?
-}
-
-/// The finished jobs of a tag, oldest first.
-async fn flown(service: &Service, tag: &str) -> Result<Vec<Flown>, Problem> {
-    let filter = JobFilter {
-        status: Some(Status::Succeeded),
-        tag: Some(tag.to_string()),
-        ..JobFilter::default()
-    };
-    let (mut records, mut cursor): (Vec<JobRecord>, Option<String>) = (Vec::new(), None);
-    loop {
-        let page = service
-            .store
-            .jobs(&filter, cursor.as_deref(), LONGEST_PAGE)
-            .await?;
-        let page = page.map_err(bad_cursor)?;
-        records.extend(page.entries);
-        if records.len() > MOST_JOBS {
-            let detail = format!(
-                "tag: more than {MOST_JOBS} jobs have the tag '{tag}'; give a smaller campaign a tag of its own"
-            );
-            return Err(Problem::new(Code::InvalidQuery, detail));
-        }
-        cursor = page.next_cursor;
-        if cursor.is_none() {
-            break;
-        }
-    }
-    // in the order in which they were submitted
-    records.sort_by_key(|record| record.id);
-    let mut flown = Vec::new();
-    for record in records {
-        let Some(text) = service.store.result_part(record.id, Part::Estimate).await? else {
-            continue;
-        };
-        let Some(spec) = service.store.job_spec(record.id).await? else {
-            continue;
-        };
-        let read = || {
-            let spec: JobSpec = serde_json::from_str(&spec)?;
-            Ok::<_, serde_json::Error>((spec, serde_json::from_str(&text)?))
-        };
-        let (spec, estimate) = match read() {
-            Ok(read) => read,
-            // one of many: the others are shown
-            Err(error) => {
-                tracing::error!(%error, job = %record.id, "its estimate cannot be read");
-                continue;
-            }
-        };
-        flown.push(Flown {
-            job: record.id.to_string(),
-            name: record.title(),
-            conditions: conditions_of(&record.tags),
-            recordings: UsedRecording::of(&spec.maneuvers),
-            estimate,
-        });
-    }
-    Ok(flown)
 }

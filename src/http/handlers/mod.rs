@@ -1,5 +1,6 @@
 //! What answers a request: a file for each resource. Those of jobs, which are many, have a folder.
 
+pub(super) mod compare;
 pub(super) mod health;
 pub(super) mod jobs;
 pub(super) mod keys;
@@ -10,6 +11,7 @@ pub(super) mod models;
 mod audit;
 mod campaigns;
 mod designs;
+mod fitted_jobs;
 mod flown;
 mod frequency_responses;
 mod maneuver_data;
@@ -58,6 +60,7 @@ pub(super) fn api() -> OpenApiRouter<Server> {
         .merge(jobs::source_code::router())
         .merge(jobs::simulator_model::router())
         .merge(campaigns::router())
+        .merge(compare::router())
         .merge(jobs::dynamics::router())
         .merge(problems::router())
         .merge(keys::router())

@@ -64,6 +64,9 @@ pub(super) async fn view(service: &Service, id: Uuid) -> Result<JobView, Problem
         tags: job.tags,
         status: job.status,
         created: job.created,
+        started: job.started,
+        now: service.store.clock().now_text(),
+        tolerance: spec.options.tolerance,
         attempt: job.attempt,
         faults: match job.ending {
             Some(EventBody::Failed { faults }) => faults,

@@ -101,6 +101,14 @@ fn row(job: JobRecord, now: &str) -> JobRow {
         }
         _ => 0,
     };
+    let (outcome, reason) = match &job.ending {
+        Some(EventBody::Succeeded { reason, .. }) => (outcome(&job.kind, reason), reason.clone()),
+        Some(EventBody::Failed { faults }) => {
+            let first = faults.first().map(|fault| fault.message.clone());
+            (first.clone().unwrap_or_default(), first.unwrap_or_default())
+        }
+        _ => Default::default(),
+    };
     JobRow {
         id: job.id.to_string(),
         seconds: started.and_then(|started| Clock::seconds_between(started, until)),
@@ -110,19 +118,21 @@ fn row(job: JobRecord, now: &str) -> JobRow {
         } else {
             job.about.title()
         },
+        has_result: job.fit.is_some() || job.status == Status::Succeeded,
         fit: job.fit,
         warnings,
+        outcome,
+        reason,
         kind: job.kind,
         tags: job.tags,
         status: job.status,
         created: job.created,
-        reason: match job.ending {
-            Some(EventBody::Succeeded { reason, .. }) => reason,
-            Some(EventBody::Failed { faults }) => faults
-                .first()
-                .map(|fault| fault.message.clone())
-                .unwrap_or_default(),
-            _ => String::new(),
-        },
     }
+}
+
+/// The reason in a line: what a diagnosis found, how else a solver ended.
+fn outcome(kind: &str, reason: &str) -> String {
+    let is_diagnosis = kind == JobKind::Diagnose.name();
+    let first = reason.split_once(": ").filter(|_| !is_diagnosis);
+    first.map_or(reason, |(first, _)| first).to_string()
 }

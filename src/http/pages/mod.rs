@@ -2,6 +2,7 @@
 //!
 //! A page is put together here from what the store has, and rendered in the room `dashboard`.
 
+mod compare;
 mod dynamics;
 mod job;
 mod jobs;
@@ -27,6 +28,7 @@ pub(super) fn router() -> Router<Server> {
     Router::new()
         .merge(jobs::router())
         .merge(job::router())
+        .merge(compare::router())
         .merge(report::router())
         .merge(dynamics::router())
         .merge(new_job::router())

@@ -6,12 +6,13 @@ use axum::response::Html;
 use axum::routing::get;
 
 use super::job;
-use crate::dashboard::{ReportView, report};
+use crate::dashboard::{JobView, ReportRecording, ReportView, report};
 use crate::diagnose::analyse;
 use crate::estimate::Role;
 use crate::http::problem::Problem;
-use crate::http::request::query::JobId;
+use crate::http::request::query::{JobId, unknown_job};
 use crate::http::service::{Server, Service};
+use crate::job::JobSpec;
 use crate::store::Part;
 
 pub(super) fn router() -> Router<Server> {
@@ -28,6 +29,13 @@ async fn get_report(
     let made_by = made_by
         .map(|text| serde_json::from_str(&text))
         .transpose()?;
+    let spec = service.store.job_spec(id).await?;
+    let spec: JobSpec = serde_json::from_str(&spec.ok_or_else(|| unknown_job(id))?)?;
+    let document = service.store.result_part(id, Part::Model).await?;
+    let document = document
+        .map(|text| serde_json::from_str(&text))
+        .transpose()?;
+    let recordings = recordings(&service, &spec, &job).await?;
     let histories = service.store.histories(id).await?.unwrap_or_default();
     let written = service.store.clock().now_text();
     let origin = origin(&headers, service.config.trusts_proxy);
@@ -43,6 +51,9 @@ async fn get_report(
                 analyse(&fitted)
             },
             job,
+            spec,
+            document,
+            recordings,
             histories,
             made_by,
             origin,
@@ -50,6 +61,33 @@ async fn get_report(
         })
     };
     Ok(Html(service.compute.run(write).await?))
+}
+
+/// The maneuvers of a job with what there is to say of their recordings.
+async fn recordings(
+    service: &Service,
+    spec: &JobSpec,
+    job: &JobView,
+) -> Result<Vec<ReportRecording>, Problem> {
+    let mut recordings = Vec::with_capacity(spec.maneuvers.len());
+    for (used, shown) in spec.maneuvers.iter().zip(&job.maneuvers) {
+        let record = service.store.maneuver(&used.id).await?;
+        let (name, summary, flown) = match record {
+            Some(record) => {
+                let summary = serde_json::from_str(&record.summary)?;
+                (record.name, Some(summary), record.flown)
+            }
+            None => Default::default(),
+        };
+        recordings.push(ReportRecording {
+            label: shown.label.clone(),
+            flown: used.flown.clone().unwrap_or(flown),
+            used: used.clone(),
+            name,
+            summary,
+        });
+    }
+    Ok(recordings)
 }
 
 /// The service as the reader's browser knows it; what is said of a proxy is believed where there is one.

@@ -14,12 +14,12 @@ use tokio_util::sync::CancellationToken;
 use trimtab::http::Config;
 
 /// A server without work to do, whose jobs wait until a test lets them go on.
-async fn idle() -> Server {
+pub(super) async fn idle() -> Server {
     Server::start_with(Config::default(), 0).await
 }
 
 /// Lets the jobs of a server go on, until what is returned is dropped.
-fn work(server: &Server) -> impl Drop + use<> {
+pub(super) fn work(server: &Server) -> impl Drop + use<> {
     let shutdown = CancellationToken::new();
     let store = server.store.clone();
     tokio::spawn(trimtab::work::run(store, 1, shutdown.clone()));
@@ -34,7 +34,7 @@ async fn submit_long(server: &Server, iterations: u32) -> String {
 }
 
 /// A job that is over; its id.
-async fn finished(server: &Server, name: &str, tags: &[&str], csv: &str) -> String {
+pub(super) async fn finished(server: &Server, name: &str, tags: &[&str], csv: &str) -> String {
     let mut spec = job(&server.upload(csv).await);
     (spec["name"], spec["tags"]) = (json!(name), json!(tags));
     let id = server.submit(&spec).await;
@@ -43,7 +43,7 @@ async fn finished(server: &Server, name: &str, tags: &[&str], csv: &str) -> Stri
 }
 
 /// The flights of an elevator with play, as a job of that kind uses them.
-async fn flights(server: &Server) -> Value {
+pub(super) async fn flights(server: &Server) -> Value {
     let mut uses = Vec::new();
     for (csv, role) in [
         (
@@ -64,12 +64,12 @@ async fn flights(server: &Server) -> Value {
     Value::Array(uses)
 }
 
-async fn go(browser: &Browser, server: &Server, path: &str) {
+pub(super) async fn go(browser: &Browser, server: &Server, path: &str) {
     browser.go(&format!("{}{path}", server.url)).await;
 }
 
 /// Waits until a page has drawn all that it has, and nothing of it is cut off.
-async fn is_drawn(browser: &Browser) {
+pub(super) async fn is_drawn(browser: &Browser) {
     let drawn = "document.readyState === 'complete' && !document.querySelector('[data-loading]') \
         && [...document.querySelectorAll('.plot')].every(plot => plot.querySelector('.main-svg .trace') \
             && plot.scrollWidth <= plot.clientWidth + 2 && plot.scrollHeight <= plot.clientHeight + 2)";
@@ -77,7 +77,7 @@ async fn is_drawn(browser: &Browser) {
 }
 
 /// Waits until a job is over, and its page, which is open, has turned into its result.
-async fn over(browser: &Browser, server: &Server, id: &str) {
+pub(super) async fn over(browser: &Browser, server: &Server, id: &str) {
     server.wait(id).await;
     browser.find("#job[data-over=true]").await;
     is_drawn(browser).await;
@@ -374,7 +374,11 @@ async fn a_finished_job_is_told_in_tables_and_plots_that_zoom_together() {
         let axes = format!("new Set({plot}.data.map(series => series.xaxis)).size");
         assert_eq!(browser.until(&axes).await, 1, "all rows have one time");
         let rows = format!("{plot}._fullLayout._subplots.cartesian.length");
-        assert_eq!(browser.until(&rows).await, 3, "two outputs and an input");
+        assert_eq!(
+            browser.until(&rows).await,
+            5,
+            "two outputs, each with its residual, and an input"
+        );
         let whole = shown().await;
         assert!(whole > 199.0, "{whole}");
         browser
@@ -470,9 +474,9 @@ async fn a_diagnosis_is_told_as_a_story() {
         assert!(verdict.to_lowercase().contains("backlash"), "{verdict}");
         let story = browser.text("[aria-labelledby=diagnosis]").await;
         for part in [
-            "Before and after",
+            "Errors before and after",
             "de_backlash",
-            "kept for the end",
+            "final test",
             "refused",
         ] {
             assert!(story.contains(part), "{part}: {story}");

@@ -55,6 +55,55 @@ async fn a_report_has_everything_in_it() {
     page(&server, &format!("/jobs/{id}/report")).await;
 }
 
+/// A value and its standard error to the place of the error's second digit: by scientific notation, apart from the program.
+fn rounded(value: f64, error: f64) -> [String; 2] {
+    let text = format!("{error:.1e}");
+    let (_, exponent) = text.split_once('e').unwrap();
+    let digits = usize::try_from(1 - exponent.parse::<i32>().unwrap()).unwrap();
+    [format!("{value:.digits$}"), format!("{error:.digits$}")]
+}
+
+#[tokio::test]
+async fn estimates_have_the_digits_that_their_errors_leave() {
+    let server = Server::start().await;
+    let maneuver = server
+        .upload(include_str!("../../../data/elevator.csv"))
+        .await;
+    let job = json!({"model": "short-period", "maneuvers": [{"id": maneuver}]});
+    let id = server.submit(&job).await;
+    server.wait(&id).await;
+    let table = server.get(&format!("/v1/jobs/{id}/parameters")).await;
+    let table = table.json();
+    let rows = table["parameters"].as_array().unwrap();
+    let bounded: Vec<_> = (rows.iter())
+        .filter(|row| row["standard_error"].is_number())
+        .collect();
+    assert!(bounded.len() > 4);
+    for path in [format!("/jobs/{id}"), format!("/jobs/{id}/report")] {
+        let page = page(&server, &path).await;
+        for row in &bounded {
+            let unit = row["unit"].as_str().unwrap();
+            let scale = if unit.starts_with("rad") {
+                180.0 / std::f64::consts::PI
+            } else {
+                1.0
+            };
+            let of = |field: &str| scale * row[field].as_f64().unwrap();
+            let [value, error] = rounded(of("estimate"), of("standard_error"));
+            let cells =
+                format!("<td class=\"number\">{value}</td><td class=\"number\">{error}</td>");
+            assert!(page.contains(&cells), "{row}: {cells}");
+        }
+    }
+    let report = page(&server, &format!("/jobs/{id}/report")).await;
+    let (_, said) = report.split_once("Ljung and Box, p ").expect("a p-value");
+    let said = &said[..said.find(')').unwrap()];
+    assert!(
+        said == "&lt; 0.0001" || said.starts_with("= 0.") || said == "= 1.00",
+        "{said}"
+    );
+}
+
 #[tokio::test]
 async fn the_list_shows_what_is_asked_for() {
     let server = Server::start_with(trimtab::http::Config::default(), 0).await;

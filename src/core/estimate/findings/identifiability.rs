@@ -28,7 +28,7 @@ pub(super) fn findings(estimate: &Estimate) -> Vec<Finding> {
     }
     for set in &seen.nearly_collinear {
         let message = format!(
-            "the data hardly tell apart: {} (condition index {:.0})",
+            "nearly collinear: {} (condition index {:.0})",
             set.parameters.join(" + "),
             set.condition_index
         );

@@ -7,7 +7,7 @@ use crate::estimate::problem::Problem;
 use crate::estimate::report::estimate::Estimate;
 use crate::estimate::report::iteration::Outcome;
 use crate::estimate::report::progress::unobserved;
-use crate::flight::{Finding, FindingCode, five_digits};
+use crate::flight::{Finding, FindingCode, five_digits, with_error};
 use crate::simulate::{Rates, StateMatrixAt, Steps};
 
 /// Growth, as the exponent of e, that no simulation survives: an error of rounding is as large as what is simulated.
@@ -74,11 +74,11 @@ fn offer(problem: &Problem) -> Option<String> {
     }
     let rows = found.parameters.iter().filter(|row| !row.fixed);
     let told = rows.map(|row| {
-        let value = format!("{} = {}", row.name, five_digits(row.estimate));
-        match row.standard_error {
-            Some(error) => format!("{value} ± {}", five_digits(error)),
-            None => value,
-        }
+        let value = match row.standard_error {
+            Some(error) => with_error(row.estimate, error),
+            None => five_digits(row.estimate),
+        };
+        format!("{} = {value}", row.name)
     });
     let told: Vec<String> = told.collect();
     Some(format!("; filter error finds {}", told.join(", ")))

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::flight::five_digits;
+use crate::flight::{five_digits, five_digits_beside, with_error};
 
 /// A number with the standard error that it has from the estimate.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
@@ -18,13 +18,31 @@ pub struct Measure {
 }
 
 impl std::fmt::Display for Measure {
-    /// For a table: `2.3851 ± 0.0127`.
+    /// For a table, by its error: `2.385 ± 0.013`.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}", five_digits(self.value))?;
+        f.write_str(&self.beside(0.0))
+    }
+}
+
+impl Measure {
+    /// For a table, beside a number of the given size: by its error; without one, what is nothing to rounding there is 0.
+    pub fn beside(&self, size: f64) -> String {
         match self.standard_error {
-            Some(error) => write!(f, " ± {}", five_digits(error)),
-            None => Ok(()),
+            Some(error) if error > 0.0 => with_error(self.value, error),
+            _ => five_digits_beside(self.value, size),
         }
+    }
+}
+
+/// A root of a polynomial or matrix for a table: `-0.83000 ± 1.8200i`; a part that is nothing to rounding beside the other
+/// is 0.
+pub(crate) fn root(real: f64, imaginary: f64) -> String {
+    let size = real.hypot(imaginary);
+    let real = five_digits_beside(real, size);
+    if imaginary == 0.0 {
+        real
+    } else {
+        format!("{real} ± {}i", five_digits(imaginary))
     }
 }
 
@@ -120,13 +138,14 @@ impl Mode {
         }
     }
 
+    /// The damping ratio for a table; empty of an aperiodic mode.
+    pub fn damping(&self) -> String {
+        let ratio = self.damping_ratio;
+        ratio.map_or_else(String::new, |ratio| ratio.beside(1.0))
+    }
+
     /// λ for a table.
     pub fn eigenvalue(&self) -> String {
-        let real = five_digits(self.real.value);
-        if self.imaginary.value == 0.0 {
-            real
-        } else {
-            format!("{real} ± {}i", five_digits(self.imaginary.value))
-        }
+        root(self.real.value, self.imaginary.value)
     }
 }

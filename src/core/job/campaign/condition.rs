@@ -2,6 +2,7 @@
 
 use indexmap::IndexMap;
 
+use super::mean::channel_of;
 use super::report::{CampaignQuestion, Flown};
 
 /// What tags say: `alpha=5`, `flaps=14`. Others say nothing of conditions.
@@ -26,7 +27,12 @@ pub(super) fn place(
     }
     let value = |name: &String| {
         let value = flown.conditions.get(name);
-        value.ok_or_else(|| format!("it has no tag {name}=..."))
+        value.ok_or_else(|| match channel_of(name) {
+            Some(channel) => format!(
+                "a recording that it was fitted to has no channel {channel}, or was deleted"
+            ),
+            None => format!("it has no tag {name}=..."),
+        })
     };
     let number = |name: &String| {
         let text = value(name)?;

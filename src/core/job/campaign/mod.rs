@@ -10,9 +10,12 @@
 //! curve are widened by the scatter (R. T. Birge, Phys. Rev. 40, 1932). A flight whose distance from the curve that the others
 //! make is improbable is an outlier, is named, and does not count. The law of χ² is that of independent flights: of jobs that
 //! were fitted to the same samples, reruns above all, the newest counts.
+//!
+//! A condition is a tag of the form `name=value`, or the mean of a channel over what a job was fitted to: `mean(alpha)`.
 
 mod condition;
 mod curve;
+mod mean;
 mod monomials;
 mod recording;
 mod report;
@@ -22,8 +25,9 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 pub use condition::conditions_of;
 use curve::{Curve, Observation};
+pub use mean::{channel_of, mean_over, part_in_use};
 pub use recording::UsedRecording;
-use recording::share_data;
+pub(super) use recording::share_data;
 pub use report::{
     Campaign, CampaignCurve, CampaignPoint, CampaignQuestion, CampaignTerm, Flown, LeftOut,
 };

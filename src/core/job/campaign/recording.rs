@@ -1,6 +1,5 @@
 //! Parts of recordings that jobs were fitted to, and whether two jobs have data in common.
 
-use crate::estimate::Role;
 use crate::job::spec::ManeuverUse;
 
 /// A part of a recording.
@@ -17,9 +16,7 @@ pub struct UsedRecording {
 impl UsedRecording {
     /// What a job with these maneuvers is fitted to.
     pub fn of(maneuvers: &[ManeuverUse]) -> Vec<Self> {
-        let fitted = maneuvers
-            .iter()
-            .filter(|usage| usage.role == Role::Estimation);
+        let fitted = maneuvers.iter().filter(|usage| usage.is_fitted());
         fitted
             .map(|used| Self {
                 id: used.id.clone(),
@@ -44,7 +41,7 @@ impl UsedRecording {
 }
 
 /// Whether two jobs were fitted to samples of the same recording.
-pub(super) fn share_data(some: &[UsedRecording], others: &[UsedRecording]) -> bool {
+pub(in crate::job) fn share_data(some: &[UsedRecording], others: &[UsedRecording]) -> bool {
     some.iter()
         .any(|part| others.iter().any(|other| part.overlaps(other)))
 }

@@ -13,7 +13,7 @@ pub struct Flown {
     pub job: String,
     /// For people.
     pub name: String,
-    /// By name: what tags of the form `alpha=5` say.
+    /// By name: what tags of the form `alpha=5` say, and means of channels, as `mean(alpha)`.
     pub conditions: IndexMap<String, String>,
     /// What it was fitted to, as far as that is known: jobs that have data in common do not count twice.
     pub recordings: Vec<UsedRecording>,

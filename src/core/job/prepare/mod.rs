@@ -25,6 +25,7 @@ mod twice;
 mod unknown_name;
 
 pub use checks::MOST_MANEUVERS;
+pub(super) use stretch::rows_in_use;
 pub(super) use to_predict::prepare_prediction;
 
 use std::sync::Arc;

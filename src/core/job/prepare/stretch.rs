@@ -16,7 +16,7 @@ type WrongPart = (&'static str, String);
 ///
 /// # Errors
 /// They are not in the recording, or fewer than two.
-pub(super) fn rows_in_use(
+pub(in crate::job) fn rows_in_use(
     usage: &ManeuverUse,
     maneuver: &Maneuver,
 ) -> Result<Range<usize>, WrongPart> {

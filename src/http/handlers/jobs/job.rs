@@ -50,6 +50,10 @@ pub(crate) struct JobResource {
     #[schema(example = 0)]
     priority: i32,
     status: Status,
+    /// How many jobs, of everybody, are taken before this one; said where one job is asked for, and it waits.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(example = 3)]
+    ahead: Option<usize>,
     #[schema(example = "2026-11-21T12:00:00.123Z")]
     created: String,
     /// When a worker first took it.
@@ -190,6 +194,7 @@ impl JobResource {
             tags: job.tags,
             priority: job.priority,
             status: job.status,
+            ahead: None,
             created: job.created,
             started: job.started,
             finished: job.finished,
@@ -282,7 +287,9 @@ async fn list_jobs(
         (status = 404, description = "`unknown_job`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn get_job(service: Service, JobId(id): JobId) -> Result<Json<JobResource>, Problem> {
-    Ok(Json(JobResource::of(find(&service, id).await?)))
+    let job = JobResource::of(find(&service, id).await?);
+    let ahead = service.store.ahead(id).await?;
+    Ok(Json(JobResource { ahead, ..job }))
 }
 
 pub(crate) async fn find(service: &Service, id: Uuid) -> Result<JobRecord, Problem> {

@@ -1,0 +1,4 @@
+// A page whose figures the server has drawn: they can be saved.
+import { drawnFigures } from './export.js';
+
+drawnFigures();

@@ -1,0 +1,222 @@
+//! A number of several jobs as points with error bars: side by side, or over a condition with a curve.
+
+use maud::{Markup, html};
+
+use super::palette::colour;
+use crate::estimate::five_digits as number;
+use crate::ingest::CsvWriter;
+
+/// A point of the figure.
+pub(super) struct Point {
+    /// Along the axis: its place from 0, or a condition.
+    pub x: f64,
+    pub value: f64,
+    /// None of a fixed parameter.
+    pub error: Option<f64>,
+    /// Whose it is: the place of a job from 0.
+    pub job: usize,
+    pub is_outlier: bool,
+}
+
+/// What is drawn.
+pub(super) struct ErrorBars {
+    /// For those who do not see it.
+    pub label: String,
+    /// Where `x` are places, a number for each: that of the job from 1. Else the condition with its unit.
+    pub along: Option<String>,
+    pub points: Vec<Point>,
+    /// By `x`: the curve, and its band of 2 standard errors.
+    pub curve: Vec<[f64; 3]>,
+}
+
+const HEIGHT: f64 = 190.0;
+const LEFT: f64 = 64.0;
+const RIGHT: f64 = 14.0;
+const TOP: f64 = 10.0;
+const BOTTOM: f64 = 38.0;
+
+/// Error bars are two standard errors to each side.
+const TIMES: f64 = 2.0;
+
+impl ErrorBars {
+    /// As SVG, in the colours of the page.
+    pub(super) fn drawn(&self) -> Markup {
+        let width = match self.along {
+            Some(_) => 400.0,
+            None => (LEFT + RIGHT + 34.0 * self.points.len() as f64).max(200.0),
+        };
+        let (low, high) = self.range();
+        let (first, last) = self.domain();
+        let x = |at: f64| LEFT + (at - first) / (last - first) * (width - LEFT - RIGHT);
+        let y = |value: f64| TOP + (high - value) / (high - low) * (HEIGHT - TOP - BOTTOM);
+        let base = HEIGHT - BOTTOM;
+        html! {
+            svg viewBox={ "0 0 " (width) " " (HEIGHT) } width=(width) style="max-width: 100%; height: auto" role="img"
+                aria-label=(self.label) fill="currentColor" font-size="11" {
+                line x1=(LEFT) x2=(width - RIGHT) y1=(base) y2=(base) stroke="currentColor" opacity=".5" {}
+                @for tick in steps(low, high) {
+                    line x1=(LEFT) x2=(width - RIGHT) y1=(round(y(tick))) y2=(round(y(tick))) stroke="var(--line)" {}
+                    text x=(LEFT - 6.0) y=(round(y(tick) + 4.0)) text-anchor="end" { (tidy(tick)) }
+                }
+                (self.band(x, y))
+                @for point in self.points.iter().filter(|point| point.value.is_finite()) {
+                    @let (cx, cy) = (round(x(point.x)), round(y(point.value)));
+                    g stroke=(colour(point.job)) stroke-width="2" fill=(colour(point.job)) {
+                        @if let Some(error) = point.error.filter(|error| error.is_finite()) {
+                            line x1=(cx) x2=(cx) y1=(round(y(point.value - TIMES * error))) y2=(round(y(point.value + TIMES * error))) {}
+                        }
+                        circle cx=(cx) cy=(cy) r="3.5" fill=[point.is_outlier.then_some("var(--paper)")] {}
+                    }
+                }
+                @match self.along {
+                    None => @for point in &self.points {
+                        text x=(round(x(point.x))) y=(base + 15.0) text-anchor="middle" { (point.job + 1) }
+                    },
+                    Some(_) => @for tick in steps(first, last) {
+                        line x1=(round(x(tick))) x2=(round(x(tick))) y1=(base) y2=(base + 4.0) stroke="currentColor" {}
+                        text x=(round(x(tick))) y=(base + 15.0) text-anchor="middle" { (tidy(tick)) }
+                    },
+                }
+                text x=(round(0.5 * (LEFT + width - RIGHT))) y=(HEIGHT - 6.0) text-anchor="middle" { (self.along.as_deref().unwrap_or("job")) }
+            }
+        }
+    }
+
+    /// What is drawn, as CSV.
+    pub(super) fn table(&self) -> String {
+        let mut csv = CsvWriter::with_header([
+            self.along.as_deref().unwrap_or("place"),
+            "value",
+            "standard_error",
+            "job",
+        ]);
+        for point in &self.points {
+            csv.number(point.x);
+            csv.number(point.value);
+            csv.number(point.error);
+            csv.text(&(point.job + 1).to_string());
+            csv.end_row();
+        }
+        csv.finish()
+    }
+
+    fn band(&self, x: impl Fn(f64) -> f64, y: impl Fn(f64) -> f64) -> Markup {
+        let at = |place: f64, value: f64| format!("{:.1},{:.1}", x(place), y(value));
+        let upper = self
+            .curve
+            .iter()
+            .map(|[place, value, error]| at(*place, value + TIMES * error));
+        let lower = (self.curve.iter().rev())
+            .map(|[place, value, error]| at(*place, value - TIMES * error));
+        let outline: Vec<String> = upper.chain(lower).collect();
+        let line: Vec<String> = (self.curve.iter())
+            .map(|[place, value, _]| at(*place, *value))
+            .collect();
+        html! {
+            @if line.len() > 1 {
+                polygon points=(outline.join(" ")) fill="var(--soft)" opacity=".18" {}
+                polyline points=(line.join(" ")) fill="none" stroke="var(--soft)" stroke-width="1.5" {}
+            }
+        }
+    }
+
+    /// Of all points with their bars, and of the curve; its band may be wider.
+    fn range(&self) -> (f64, f64) {
+        let bars = self.points.iter().flat_map(|point| {
+            let error = TIMES * point.error.unwrap_or_default();
+            [point.value - error, point.value + error]
+        });
+        let (low, high) = extremes(bars.chain(self.curve.iter().map(|[_, value, _]| *value)));
+        let room = 0.06 * (high - low);
+        (low - room, high + room)
+    }
+
+    fn domain(&self) -> (f64, f64) {
+        let (first, last) = extremes(self.points.iter().map(|point| point.x));
+        let room = match self.along {
+            Some(_) => 0.05 * (last - first),
+            None => 0.5,
+        };
+        (first - room, last + room)
+    }
+}
+
+/// The smallest and the largest of finite values, never equal.
+fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let finite = values.filter(|value| value.is_finite());
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
+    if low > high {
+        return (-1.0, 1.0);
+    }
+    let room = 1e-6 * low.abs().max(high.abs()).max(1e-9);
+    if high - low < room {
+        (low - room, high + room)
+    } else {
+        (low, high)
+    }
+}
+
+/// Three to six round numbers between two.
+pub(super) fn steps(low: f64, high: f64) -> Vec<f64> {
+    let rough = (high - low) / 4.0;
+    let power = 10f64.powf(rough.log10().floor());
+    let of = [1.0, 2.0, 5.0, 10.0].map(|digit| digit * power);
+    let step = of.into_iter().find(|step| *step >= rough).unwrap_or(rough);
+    let first = (low / step).ceil() as i64;
+    let last = (high / step).floor() as i64;
+    (first..=last).take(12).map(|k| k as f64 * step).collect()
+}
+
+/// What binary fractions leave behind is rounded off.
+fn tidy(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 || (1e-3..1e5).contains(&size) {
+        let rounded = (value * 1e9).round() / 1e9;
+        format!("{rounded}").replace('-', "\u{2212}")
+    } else {
+        number(value).replace('-', "\u{2212}")
+    }
+}
+
+fn round(value: f64) -> f64 {
+    (value * 10.0).round() / 10.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_have_a_few_round_numbers() {
+        assert_eq!(steps(-0.9, 1.1), [-0.5, 0.0, 0.5, 1.0]);
+        assert_eq!(steps(3.0, 11.0), [4.0, 6.0, 8.0, 10.0]);
+        assert!(steps(0.0, f64::MIN_POSITIVE).len() <= 12);
+        assert!(extremes([2.0, f64::NAN].into_iter()).0 < 2.0);
+        assert_eq!(extremes([].into_iter()), (-1.0, 1.0));
+    }
+
+    #[test]
+    fn a_point_stands_between_the_ends_of_its_bar() {
+        let figure = ErrorBars {
+            label: "Ma".into(),
+            along: None,
+            points: vec![Point {
+                x: 0.0,
+                value: 1.0,
+                error: Some(0.5),
+                job: 2,
+                is_outlier: false,
+            }],
+            curve: Vec::new(),
+        };
+        let svg = figure.drawn().into_string();
+        // from 0 to 2 with 6 % of room on a plot of 142: the bar from 17.6 to 144.4, the point between
+        assert!(
+            svg.contains("y1=\"144.4\" y2=\"17.6\"") && svg.contains("cy=\"81\""),
+            "{svg}"
+        );
+        assert!(svg.contains(">3</text>"), "{svg}");
+    }
+}
