@@ -94,6 +94,7 @@ const NEEDED: &[(&str, &[&str])] = &[
         "submit",
         &[
             "uploadManeuver",
+            "uploadFile",
             "updateManeuver",
             "addMapping",
             "addModel",

@@ -34,6 +34,7 @@ mod diagnosis;
 mod dynamics;
 mod edge_numbers;
 mod events;
+mod examples;
 mod exports;
 mod filter_error;
 mod findings;

@@ -4,7 +4,7 @@ import socket
 import threading
 
 import pytest
-from conftest import DATA
+from conftest import DATA, command
 from proxy import Line
 
 import trimtab
@@ -93,17 +93,11 @@ def test_no_server_and_no_program_are_told():
 
 
 def test_a_key_is_sent(tmp_path):
-    import subprocess
-
-    from conftest import PROGRAM
-
     database = tmp_path / "locked.db"
-    made = subprocess.run(
-        [PROGRAM, "key", "new", "--scope", "read", "--database", database], capture_output=True, text=True, check=True
-    )
+    key = command("key", "new", "--scope", "read", "--database", str(database)).strip()
     with trimtab.LocalServer(database=database) as server:
         with pytest.raises(trimtab.Problem) as refused:
             list(server.client.jobs())
         assert refused.value.status == 401
-        with trimtab.Client(server.url, key=made.stdout.strip()) as client:
+        with trimtab.Client(server.url, key=key) as client:
             assert list(client.jobs()) == []
