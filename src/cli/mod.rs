@@ -6,8 +6,10 @@
 mod audit;
 mod backup;
 mod campaign;
+mod cancel;
 mod changes;
 mod client;
+mod delete;
 mod demo;
 mod derivatives;
 mod describe;
@@ -16,8 +18,10 @@ mod failure;
 mod figures;
 mod file_rows;
 mod fit;
+mod form;
 mod health;
 mod inspect;
+mod jobs;
 mod join;
 mod key;
 mod linear;
@@ -26,6 +30,7 @@ mod local;
 mod maneuver;
 mod mapping;
 mod model;
+mod models;
 mod notes;
 mod pairs;
 mod plots;
@@ -35,6 +40,7 @@ mod progress;
 mod recording;
 mod request;
 mod response;
+mod results;
 mod retain;
 mod segments;
 mod serve;
@@ -46,6 +52,7 @@ mod study;
 mod study_tables;
 mod submit;
 mod table;
+mod upload;
 mod watch;
 mod work;
 
@@ -82,8 +89,13 @@ enum Command {
     Predict(predict::Predict),
     #[command(name = "campaign")]
     Campaign(campaign::ShowCampaign),
+    Upload(upload::Upload),
     Submit(submit::Submit),
     Watch(watch::Watch),
+    Jobs(jobs::Jobs),
+    Results(results::Results),
+    Cancel(cancel::Cancel),
+    Delete(delete::Delete),
     Simulate(simulate::Simulate),
     Inspect(inspect::Inspect),
     Join(join::Join),
@@ -92,6 +104,7 @@ enum Command {
     Maneuvers(maneuver::Maneuvers),
     Response(response::Response),
     Model(model::ShowModel),
+    Models(models::Models),
     Derivatives(derivatives::Derivatives),
     Health(health::Health),
     #[command(name = "key")]
@@ -107,6 +120,7 @@ enum Command {
 
 /// Runs what the command line says.
 pub fn main() -> ExitCode {
+    end_when_nobody_reads();
     let done = match Cli::parse().command {
         Command::Serve(serve) => serve.run(),
         Command::Work(work) => work.run(),
@@ -118,8 +132,13 @@ pub fn main() -> ExitCode {
         Command::Linear(linear) => linear.run(),
         Command::Predict(predict) => predict.run(),
         Command::Campaign(campaign) => campaign.run(),
+        Command::Upload(upload) => block_on(upload.run()),
         Command::Submit(submit) => block_on(submit.run()),
         Command::Watch(watch) => block_on(watch.run()),
+        Command::Jobs(jobs) => block_on(jobs.run()),
+        Command::Results(results) => block_on(results.run()),
+        Command::Cancel(cancel) => block_on(cancel.run()),
+        Command::Delete(delete) => block_on(delete.run()),
         Command::Simulate(simulate) => simulate.run(),
         Command::Inspect(inspect) => inspect.run(),
         Command::Join(join) => join.run(),
@@ -127,6 +146,7 @@ pub fn main() -> ExitCode {
         Command::Maneuvers(maneuvers) => block_on(maneuvers.run()),
         Command::Response(response) => response.run(),
         Command::Model(model) => model.run(),
+        Command::Models(models) => block_on(models.run()),
         Command::Derivatives(derivatives) => derivatives.run(),
         Command::Health(health) => block_on(health.run()),
         Command::Keys(keys) => block_on(keys.run()),
@@ -144,6 +164,18 @@ pub fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// A reader that has seen enough (`| head`) is no fault: the command ends without a word.
+fn end_when_nobody_reads() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        let message = panic.payload_as_str().unwrap_or_default();
+        if message.starts_with("failed printing to stdout") && message.contains("Broken pipe") {
+            std::process::exit(0);
+        }
+        usual(panic);
+    }));
 }
 
 fn block_on(command: impl Future<Output = Result<(), Failure>>) -> Result<(), Failure> {

@@ -28,6 +28,7 @@ mod backup;
 mod bad_jobs;
 mod chaos;
 mod cli;
+mod cli_client;
 mod coefficients;
 mod derivatives;
 mod diagnosis;
