@@ -29,8 +29,8 @@
 //!    `effects_go_the_right_way` that they change the way they should.
 //!    `cargo test --test numbers -- effects:: absence::` (the latter tries each kind on six models by itself; what its `term`
 //!    may be goes into `edits` in `absence.rs`), `cargo test --lib -- edit:: candidates::`.
-//! 5. `tests/bench/confusion/strength.rs`: a first guess of its size; its word in `tests/fuzz/dictionaries/job.dict`. The list
-//!    of kinds in `README.md`, and the API document: `cargo run -- openapi > openapi/trimtab.json`.
+//! 5. `tests/bench/confusion/strength.rs`: a first guess of its size; its word in `tests/fuzz/dictionaries/job.dict`. The page
+//!    of effects in the guide (below), and the API document: `cargo run -- openapi > openapi/trimtab.json`.
 //!
 //! **Add a model to the catalog.**
 //! 1. `src/core/model/catalog/<name>.toml`: the document; `source` names paper and equation (eq.).
@@ -83,6 +83,13 @@
 //! 3. `tests/service/pages`: what it shows, in the file of its subject; its address in the list of `browser.rs`, which looks at
 //!    every page for accessibility and overflow. `tests/browser cargo test --test service pages::`.
 //! 4. Its line in the list of pages in `README.md`.
+//!
+//! **Add a page of the guide.**
+//! 1. `src/guide/<name>.md`: Markdown that a forge shows, too; links go to files (`findings.md#gap`). Blocks of `sh`, `python`, `json`,
+//!    `toml` and `toml model` are run or read by tests, those of `text` and `sh server` are only shown.
+//! 2. `src/dashboard/guide.rs`: its line in `TEXTS`.
+//! 3. Pages that are made from the code (`effects`, `problems`, `commands`, `confusion`) are written anew by
+//!    `TRIMTAB_WRITE_GUIDE=1 cargo test --test service guide::`, and what shows them is built after that.
 
 pub use trimtab_core::{
     diagnose, dynamics, estimate, flight, ingest, job, model, response, simulate, structure,

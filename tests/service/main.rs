@@ -40,6 +40,7 @@ mod exports;
 mod filter_error;
 mod findings;
 mod flown;
+mod guide;
 mod jobs;
 mod keys;
 mod lifecycle;

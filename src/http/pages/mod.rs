@@ -3,6 +3,7 @@
 //! A page is put together here from what the store has, and rendered in the room `dashboard`.
 
 mod dynamics;
+mod guide;
 mod job;
 mod jobs;
 mod maneuver;
@@ -30,6 +31,7 @@ pub(super) fn router() -> Router<Server> {
         .merge(report::router())
         .merge(dynamics::router())
         .merge(new_job::router())
+        .merge(guide::router())
         .merge(maneuvers::router())
         .merge(maneuver::router())
         .merge(models::router())
