@@ -37,7 +37,7 @@
 //! 2. `src/core/model/catalog/mod.rs`: a row of `DOCUMENTS`.
 //! 3. `tests/numbers/catalog/<name>.toml`: a scenario with the truth in it; `tests/numbers/catalog.rs` simulates it and
 //!    must find that truth. `cargo test --test numbers catalog::`, and `--lib catalog::`.
-//! 4. The table of models in `README.md`.
+//! 4. The table of models in `src/guide/models.md`.
 //!
 //! **Add a reader of a file format.**
 //! 1. `src/core/ingest/<format>.rs`: `read(bytes, limits)`, for a format that says names and units itself, after
@@ -59,12 +59,12 @@
 //!    `cargo test --test ingest`, `cargo test --lib -- ingest::`.
 //! 4. `src/http/handlers/maneuvers.rs`: media types, and what the upload and `AnyFile` say; then
 //!    `cargo run -- openapi > openapi/trimtab.json`. Its ending in `accept` in `src/dashboard/maneuvers_page.rs`, its name in
-//!    the help of `src/cli/request.rs`; the table of formats in `README.md`.
+//!    the help of `src/cli/request.rs`; the table of formats in `src/guide/recordings.md`.
 //!
 //! **Add the layout of a logger.**
 //! 1. `tests/ingest/layouts.rs`: a small file of your own making in it. Most go in as they are.
 //! 2. Where names or units are missing: `src/core/ingest/mapping/<name>.toml`, and a row of `BUNDLED` beside it; `recognise` has the
-//!    titles by which it is used without being named. The list in `README.md`.
+//!    titles by which it is used without being named. The list in `src/guide/recordings.md`.
 //!
 //! **Add an endpoint.**
 //! 1. `src/http/handlers/<resource>.rs`: the handler under `#[utoipa::path]`, and `router()`; `coefficients.rs` is a small
@@ -82,7 +82,7 @@
 //!    `new_job.rs` is the smallest, `models.rs` one with a view. What is only read needs no line in `caller.rs`.
 //! 3. `tests/service/pages`: what it shows, in the file of its subject; its address in the list of `browser.rs`, which looks at
 //!    every page for accessibility and overflow. `tests/browser cargo test --test service pages::`.
-//! 4. Its line in the list of pages in `README.md`.
+//! 4. Its line in the list of pages in `src/guide/pages.md`.
 //!
 //! **Add a page of the guide.**
 //! 1. `src/guide/<name>.md`: Markdown that a forge shows, too; links go to files (`findings.md#gap`). Blocks of `sh`, `python`, `json`,

@@ -46,7 +46,20 @@ const TEXTS: &[(Part, &str, &str)] = pages! {
     Begin "index";
     Begin "tutorial";
     HowTo "clients";
+    HowTo "pages";
     HowTo "python";
+    HowTo "recordings";
+    HowTo "channels";
+    HowTo "models";
+    HowTo "jobs";
+    HowTo "estimators";
+    HowTo "results";
+    HowTo "diagnosis";
+    HowTo "turbulence";
+    HowTo "frequency";
+    HowTo "structure";
+    HowTo "campaigns";
+    HowTo "operating";
     Reference "effects";
     Reference "findings";
     Reference "problems";
@@ -55,6 +68,7 @@ const TEXTS: &[(Part, &str, &str)] = pages! {
     Method "confusion";
     Method "glossary";
     Method "peers";
+    Method "development";
 };
 
 /// All pages, rendered once.
