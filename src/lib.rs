@@ -29,15 +29,15 @@
 //!    `effects_go_the_right_way` that they change the way they should.
 //!    `cargo test --test numbers -- effects:: absence::` (the latter tries each kind on six models by itself; what its `term`
 //!    may be goes into `edits` in `absence.rs`), `cargo test --lib -- edit:: candidates::`.
-//! 5. `tests/bench/confusion/strength.rs`: a first guess of its size; its word in `tests/fuzz/dictionaries/job.dict`. The list
-//!    of kinds in `README.md`, and the API document: `cargo run -- openapi > openapi/trimtab.json`.
+//! 5. `tests/bench/confusion/strength.rs`: a first guess of its size; its word in `tests/fuzz/dictionaries/job.dict`. The page
+//!    of effects in the guide (below), and the API document: `cargo run -- openapi > openapi/trimtab.json`.
 //!
 //! **Add a model to the catalog.**
 //! 1. `src/core/model/catalog/<name>.toml`: the document; `source` names paper and equation (eq.).
 //! 2. `src/core/model/catalog/mod.rs`: a row of `DOCUMENTS`.
 //! 3. `tests/numbers/catalog/<name>.toml`: a scenario with the truth in it; `tests/numbers/catalog.rs` simulates it and
 //!    must find that truth. `cargo test --test numbers catalog::`, and `--lib catalog::`.
-//! 4. The table of models in `README.md`.
+//! 4. The table of models in `src/guide/models.md`.
 //!
 //! **Add a reader of a file format.**
 //! 1. `src/core/ingest/<format>.rs`: `read(bytes, limits)`, for a format that says names and units itself, after
@@ -59,12 +59,12 @@
 //!    `cargo test --test ingest`, `cargo test --lib -- ingest::`.
 //! 4. `src/http/handlers/maneuvers.rs`: media types, and what the upload and `AnyFile` say; then
 //!    `cargo run -- openapi > openapi/trimtab.json`. Its ending in `accept` in `src/dashboard/maneuvers_page.rs`, its name in
-//!    the help of `src/cli/request.rs`; the table of formats in `README.md`.
+//!    the help of `src/cli/request.rs`; the table of formats in `src/guide/recordings.md`.
 //!
 //! **Add the layout of a logger.**
 //! 1. `tests/ingest/layouts.rs`: a small file of your own making in it. Most go in as they are.
 //! 2. Where names or units are missing: `src/core/ingest/mapping/<name>.toml`, and a row of `BUNDLED` beside it; `recognise` has the
-//!    titles by which it is used without being named. The list in `README.md`.
+//!    titles by which it is used without being named. The list in `src/guide/recordings.md`.
 //!
 //! **Add an endpoint.**
 //! 1. `src/http/handlers/<resource>.rs`: the handler under `#[utoipa::path]`, and `router()`; `coefficients.rs` is a small
@@ -82,7 +82,14 @@
 //!    `new_job.rs` is the smallest, `models.rs` one with a view. What is only read needs no line in `caller.rs`.
 //! 3. `tests/service/pages`: what it shows, in the file of its subject; its address in the list of `browser.rs`, which looks at
 //!    every page for accessibility and overflow. `tests/browser cargo test --test service pages::`.
-//! 4. Its line in the list of pages in `README.md`.
+//! 4. Its line in the list of pages in `src/guide/pages.md`.
+//!
+//! **Add a page of the guide.**
+//! 1. `src/guide/<name>.md`: Markdown that a forge shows, too; links go to files (`findings.md#gap`). Blocks of `sh`, `python`, `json`,
+//!    `toml` and `toml model` are run or read by tests, those of `text` and `sh server` are only shown.
+//! 2. `src/dashboard/guide.rs`: its line in `TEXTS`.
+//! 3. Pages that are made from the code (`effects`, `problems`, `commands`, `confusion`) are written anew by
+//!    `TRIMTAB_WRITE_GUIDE=1 cargo test --test service guide::`, and what shows them is built after that.
 
 pub use trimtab_core::{
     design, diagnose, dynamics, estimate, flight, ingest, job, model, response, simulate, stop,

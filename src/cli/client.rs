@@ -34,6 +34,9 @@ pub(super) struct Stored {
 const MOST_RECONNECTS: usize = 30;
 const RECONNECT_AFTER: Duration = Duration::from_secs(1);
 
+/// Entries that a page of a list may have.
+const LONGEST_PAGE: usize = 200;
+
 /// A server that takes longer to say that it is ready is not.
 const READY_WITHIN: Duration = Duration::from_secs(4);
 
@@ -81,13 +84,13 @@ impl Client {
     }
 
     /// Uploads a recording, with the mapping that it may need; the same one again is no harm.
-    pub(super) async fn upload(
+    pub(super) async fn upload<T: DeserializeOwned>(
         &self,
         name: &str,
         file: &Path,
         mapping: Option<&str>,
         bytes: Vec<u8>,
-    ) -> Result<Stored, Failure> {
+    ) -> Result<T, Failure> {
         let mut url = self.url("/v1/maneuvers")?;
         url.query_pairs_mut().append_pair("name", name);
         if let Some(mapping) = mapping {
@@ -132,6 +135,74 @@ impl Client {
                 .await?,
         )
         .await
+    }
+
+    /// Entries of a list under `/v1`, page by page, at most so many.
+    pub(super) async fn list(
+        &self,
+        name: &str,
+        wanted: &[(&str, Option<&str>)],
+        most: usize,
+    ) -> Result<Vec<Value>, Failure> {
+        let mut entries = Vec::new();
+        let mut cursor: Option<String> = None;
+        while entries.len() < most {
+            let mut url = self.url(&format!("/v1/{name}"))?;
+            let limit = (most - entries.len()).min(LONGEST_PAGE).to_string();
+            let paging = [
+                ("limit", Some(limit.as_str())),
+                ("cursor", cursor.as_deref()),
+            ];
+            let given = wanted.iter().copied().chain(paging);
+            url.query_pairs_mut()
+                .extend_pairs(given.filter_map(|(name, value)| Some((name, value?))));
+            let mut page: Value = json(self.send(self.http.get(url)).await?).await?;
+            if let Some(Value::Array(more)) = page.get_mut(name).map(Value::take) {
+                entries.extend(more);
+            }
+            cursor = page["next_cursor"].as_str().map(str::to_string);
+            if cursor.is_none() {
+                break;
+            }
+        }
+        Ok(entries)
+    }
+
+    /// What is at a path under `/v1`, as it is sent.
+    pub(super) async fn text(
+        &self,
+        path: &str,
+        wanted: &[(&str, &str)],
+    ) -> Result<String, Failure> {
+        let mut url = self.url(&format!("/v1/{path}"))?;
+        if !wanted.is_empty() {
+            url.query_pairs_mut().extend_pairs(wanted);
+        }
+        let text = self.send(self.http.get(url)).await?.text().await;
+        text.map_err(|error| Failure::new(format!("the server's answer cannot be read: {error}")))
+    }
+
+    /// Asks for something to be done at a path under `/v1`.
+    pub(super) async fn post(&self, path: &str) -> Result<Value, Failure> {
+        let url = self.url(&format!("/v1/{path}"))?;
+        json(self.send(self.http.post(url)).await?).await
+    }
+
+    pub(super) async fn delete(&self, path: &str) -> Result<(), Failure> {
+        let url = self.url(&format!("/v1/{path}"))?;
+        self.send(self.http.delete(url)).await?;
+        Ok(())
+    }
+
+    /// Stores a model document.
+    pub(super) async fn add_model(
+        &self,
+        media_type: &'static str,
+        document: String,
+    ) -> Result<Stored, Failure> {
+        let url = self.url("/v1/models")?;
+        let request = self.http.post(url).header("content-type", media_type);
+        json(self.send(request.body(document)).await?).await
     }
 
     pub(super) async fn estimate(&self, job: &str) -> Result<Estimate, Failure> {
@@ -227,6 +298,12 @@ impl Client {
     }
 }
 
+/// An id as it stands in a path, whatever letters somebody gave it.
+pub(super) fn in_path(id: &str) -> String {
+    let encoded: String = form_urlencoded::byte_serialize(id.as_bytes()).collect();
+    encoded.replace('+', "%20")
+}
+
 fn unreachable(error: &reqwest::Error) -> String {
     use std::error::Error;
     let mut cause: &dyn Error = error;
@@ -251,17 +328,21 @@ async fn accepted(response: Response) -> Result<Response, Failure> {
         .flatten()
         .map(|fault| {
             let text = |key: &str| fault[key].as_str().unwrap_or("").to_string();
-            format!("{}: {}", text("pointer"), text("message"))
+            match text("pointer").as_str() {
+                "" => text("message"),
+                pointer => format!("{pointer}: {}", text("message")),
+            }
         })
         .collect();
     let title = problem["detail"]
         .as_str()
         .or(problem["title"].as_str())
         .unwrap_or("no explanation");
-    Err(Failure::faults(
-        &format!("the server answers {status}: {title}"),
-        &faults,
-    ))
+    let what = format!("the server answers {status}: {title}");
+    Err(match faults.is_empty() {
+        true => Failure::new(what),
+        false => Failure::faults(&what, &faults),
+    })
 }
 
 async fn json<T: DeserializeOwned>(response: Response) -> Result<T, Failure> {

@@ -6,7 +6,7 @@ use std::path::Path;
 use indexmap::IndexMap;
 use serde_json::json;
 
-use super::client::Client;
+use super::client::{Client, Stored};
 use super::local::Local;
 use super::watch::{conclude, follow};
 use super::{Failure, plots, table};
@@ -46,8 +46,10 @@ fn scenario_of(maneuver: &Bundled) -> Result<Scenario, Failure> {
 /// Uploads it; its id.
 async fn upload(client: &Client, maneuver: &Bundled) -> Result<String, Failure> {
     let file = format!("{}.csv", maneuver.name);
-    let stored = client.upload(maneuver.name, Path::new(&file), None, maneuver.csv.into());
-    Ok(stored.await?.id)
+    let stored: Stored = client
+        .upload(maneuver.name, Path::new(&file), None, maneuver.csv.into())
+        .await?;
+    Ok(stored.id)
 }
 
 impl Demo {

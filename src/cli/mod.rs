@@ -6,9 +6,11 @@
 mod audit;
 mod backup;
 mod campaign;
+mod cancel;
 mod changes;
 mod client;
 mod compare;
+mod delete;
 mod demo;
 mod derivatives;
 mod describe;
@@ -18,8 +20,10 @@ mod failure;
 mod figures;
 mod file_rows;
 mod fit;
+mod form;
 mod health;
 mod inspect;
+mod jobs;
 mod join;
 mod key;
 mod linear;
@@ -28,6 +32,7 @@ mod local;
 mod maneuver;
 mod mapping;
 mod model;
+mod models;
 mod notes;
 mod pairs;
 mod plots;
@@ -37,6 +42,7 @@ mod progress;
 mod recording;
 mod request;
 mod response;
+mod results;
 mod retain;
 mod segments;
 mod serve;
@@ -50,6 +56,7 @@ mod submit;
 mod table;
 mod trim;
 mod two_step;
+mod upload;
 mod watch;
 mod work;
 
@@ -87,8 +94,13 @@ enum Command {
     #[command(name = "campaign")]
     Campaign(campaign::ShowCampaign),
     Compare(compare::Compare),
+    Upload(upload::Upload),
     Submit(submit::Submit),
     Watch(watch::Watch),
+    Jobs(jobs::Jobs),
+    Results(results::Results),
+    Cancel(cancel::Cancel),
+    Delete(delete::Delete),
     Simulate(simulate::Simulate),
     Design(design::Design),
     #[command(name = "trim")]
@@ -100,6 +112,7 @@ enum Command {
     Maneuvers(maneuver::Maneuvers),
     Response(response::Response),
     Model(model::ShowModel),
+    Models(models::Models),
     Derivatives(derivatives::Derivatives),
     Health(health::Health),
     #[command(name = "key")]
@@ -115,6 +128,7 @@ enum Command {
 
 /// Runs what the command line says.
 pub fn main() -> ExitCode {
+    end_when_nobody_reads();
     let done = match Cli::parse().command {
         Command::Serve(serve) => serve.run(),
         Command::Work(work) => work.run(),
@@ -127,8 +141,13 @@ pub fn main() -> ExitCode {
         Command::Predict(predict) => predict.run(),
         Command::Campaign(campaign) => campaign.run(),
         Command::Compare(compare) => block_on(compare.run()),
+        Command::Upload(upload) => block_on(upload.run()),
         Command::Submit(submit) => block_on(submit.run()),
         Command::Watch(watch) => block_on(watch.run()),
+        Command::Jobs(jobs) => block_on(jobs.run()),
+        Command::Results(results) => block_on(results.run()),
+        Command::Cancel(cancel) => block_on(cancel.run()),
+        Command::Delete(delete) => block_on(delete.run()),
         Command::Simulate(simulate) => simulate.run(),
         Command::Design(design) => design.run(),
         Command::Trim(trim) => trim.run(),
@@ -138,6 +157,7 @@ pub fn main() -> ExitCode {
         Command::Maneuvers(maneuvers) => block_on(maneuvers.run()),
         Command::Response(response) => response.run(),
         Command::Model(model) => model.run(),
+        Command::Models(models) => block_on(models.run()),
         Command::Derivatives(derivatives) => derivatives.run(),
         Command::Health(health) => block_on(health.run()),
         Command::Keys(keys) => block_on(keys.run()),
@@ -155,6 +175,18 @@ pub fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// A reader that has seen enough (`| head`) is no fault: the command ends without a word.
+fn end_when_nobody_reads() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        let message = panic.payload_as_str().unwrap_or_default();
+        if message.starts_with("failed printing to stdout") && message.contains("Broken pipe") {
+            std::process::exit(0);
+        }
+        usual(panic);
+    }));
 }
 
 fn block_on(command: impl Future<Output = Result<(), Failure>>) -> Result<(), Failure> {

@@ -2,7 +2,7 @@
 
 use indexmap::IndexMap;
 
-use super::client::Client;
+use super::client::{Client, Stored};
 use super::recording::read_bytes;
 use super::request::Request;
 use super::server::ServerOption;
@@ -34,8 +34,10 @@ impl Submit {
                 .file_stem()
                 .map_or("recording".into(), |stem| stem.to_string_lossy());
             let mapping = self.request.mapping.text()?;
-            let stored = client.upload(&name, file, mapping.as_deref(), read_bytes(file)?);
-            uploaded.insert(file, stored.await?.id);
+            let stored: Stored = client
+                .upload(&name, file, mapping.as_deref(), read_bytes(file)?)
+                .await?;
+            uploaded.insert(file, stored.id);
         }
         let recordings = self.request.file_rows();
         let ids: Vec<String> = recordings

@@ -13,12 +13,13 @@ pub(super) struct Frame<'a> {
 }
 
 /// Where one can go from everywhere.
-const WAYS: [(&str, &str); 5] = [
+const WAYS: [(&str, &str); 6] = [
     ("/", "Jobs"),
     ("/maneuvers", "Maneuvers"),
     ("/models", "Models"),
     ("/new", "New job"),
     ("/docs/", "API"),
+    ("/guide", "Guide"),
 ];
 
 /// The whole page as HTML.

@@ -1,6 +1,6 @@
 //! The problems P1 to P4 and P5b of the performance peers, one JSON line each with the peers' keys.
 //!
-//! `cargo bench --bench peers` needs the flight data; see the README for running the peers beside it. P3 and P5b are
+//! `cargo bench --bench peers` needs the flight data; see `src/guide/development.md` for running the peers beside it. P3 and P5b are
 //! simulated by the peers: `TRIMTAB_PEER_PROBLEMS` names the folder that their `export_problems.py --out` has written.
 //! Names of problems as arguments restrict the run. One evaluation is by one thread; a solve of P5b, with its 50
 //! maneuvers, by as many as there are cores (`RAYON_NUM_THREADS=1` for one).

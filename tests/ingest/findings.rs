@@ -6,16 +6,16 @@ use trimtab_core::ingest::{Format, Limits, quality, read};
 /// The table of the documentation, held against the code.
 #[test]
 fn the_documentation_has_the_table_of_findings() {
-    let readme = concat!(env!("CARGO_MANIFEST_DIR"), "/../../README.md");
-    let readme = std::fs::read_to_string(readme).expect("the documentation");
-    let rows = readme.lines().filter(|line| line.starts_with("| `"));
+    let guide = concat!(env!("CARGO_MANIFEST_DIR"), "/../../src/guide/findings.md");
+    let guide = std::fs::read_to_string(guide).expect("the documentation");
+    let rows = guide.lines().filter(|line| line.starts_with("| `"));
     let rows: Vec<&str> = rows.collect();
     for code in FindingCode::ALL {
         let (name, severity) = (code.name(), code.severity().name());
         let row = format!("| `{name}` | {severity} | {} |", code.meaning());
         assert!(
             rows.contains(&row.as_str()),
-            "README.md lacks the row\n{row}"
+            "src/guide/findings.md lacks the row\n{row}"
         );
     }
 }

@@ -6,10 +6,11 @@ import os
 from pathlib import Path
 
 from trimtab_client import AuthenticatedClient
-from trimtab_client.api.jobs import get_job, list_jobs, rerun_job, submit_job
-from trimtab_client.api.maneuvers import get_maneuver
+from trimtab_client.api.jobs import get_job, list_events, list_jobs, rerun_job, submit_job
+from trimtab_client.api.maneuvers import get_maneuver, upload_file
 from trimtab_client.api.results import get_diagnosis, get_parameters
-from trimtab_client.models import JobKind, JobSpec, ManeuverUse, Problem, Role
+from trimtab_client.models import DiagnosisEvent, IterationEvent, JobKind, JobSpec, ManeuverUse, Problem, Role, SucceededEvent
+from trimtab_client.types import File
 
 DATA = Path(__file__).parents[2] / "data"
 server = AuthenticatedClient(os.environ.get("TRIMTAB_SERVER", "http://127.0.0.1:8300"),
@@ -17,11 +18,9 @@ server = AuthenticatedClient(os.environ.get("TRIMTAB_SERVER", "http://127.0.0.1:
 
 
 def upload(file):
-    """A recording, as it is: the generator has calls for JSON bodies only."""
-    answer = server.get_httpx_client().post("/v1/maneuvers", params={"name": file.stem}, content=file.read_bytes(),
-                                            headers={"content-type": "text/csv"})
-    answer.raise_for_status()
-    return answer.json()["id"]
+    """A recording, as it is."""
+    with file.open("rb") as payload:
+        return upload_file.sync(client=server, body=File(payload=payload), name=file.stem).id
 
 
 def run(spec):
@@ -43,6 +42,12 @@ for row in get_parameters.sync(id=fit.id, client=server).parameters:
     error = "fixed" if row.standard_error is None else f"± {row.standard_error:.5f}"
     print(f"{row.name:8} {row.estimate:10.5f} {error} {row.unit}")
 
+# its log: each event is of its own kind
+events = list_events.sync(id=fit.id, client=server).events
+costs = [event.cost for event in events if isinstance(event, IterationEvent)]
+assert costs == sorted(costs, reverse=True) and isinstance(events[-1], SucceededEvent)
+print(f"{len(costs)} iterations, -ln L from {costs[0]:.1f} to {costs[-1]:.1f}")
+
 # a mistake, and what is said of it
 wrong = submit_job.sync(client=server, body=JobSpec(model="short-perod", maneuvers=[ManeuverUse(id=elevator)]))
 assert isinstance(wrong, Problem) and wrong.errors[0].pointer == "/model", wrong
@@ -53,6 +58,10 @@ flights = [ManeuverUse(id=upload(DATA / "effects" / f"elevator-backlash-{name}.c
 found = run(JobSpec(kind=JobKind.DIAGNOSE, model="short-period", maneuvers=flights))
 diagnosis = get_diagnosis.sync(id=found.id, client=server)
 print(diagnosis.verdict, "-", diagnosis.sentence)
+assert diagnosis.effects[0].kind == "backlash"
+accepted = [event for event in list_events.sync(id=found.id, client=server).events
+            if isinstance(event, DiagnosisEvent) and event.step == "accepted"]
+assert [event.name for event in accepted] == ["backlash of de"]
 
 # the same numbers again
 again = rerun_job.sync(id=fit.id, client=server)

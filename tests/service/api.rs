@@ -147,6 +147,7 @@ fn every_operation_and_every_reference_is_described() {
             names.push(text("operationId"));
         }
     }
+    assert_eq!(undescribed(&document), Vec::<String>::new());
     let count = names.len();
     names.sort();
     names.dedup();
@@ -156,5 +157,48 @@ fn every_operation_and_every_reference_is_described() {
     for reference in text.split("\"#/components/schemas/").skip(1) {
         let name = reference.split('"').next().unwrap();
         assert!(schemas.contains_key(name), "{name}");
+    }
+}
+
+/// Places of the document without a word about them: parameters, schemas, and fields of schemas (a reference is described
+/// where it leads).
+fn undescribed(document: &serde_json::Value) -> Vec<String> {
+    let mut places = Vec::new();
+    for (path, item) in document["paths"].as_object().unwrap() {
+        for (method, operation) in item.as_object().unwrap() {
+            for parameter in operation["parameters"].as_array().into_iter().flatten() {
+                if parameter["description"].is_null() {
+                    places.push(format!("{method} {path} {}", parameter["name"]));
+                }
+            }
+        }
+    }
+    let schemas = document["components"]["schemas"].as_object().unwrap();
+    for (name, schema) in schemas {
+        if schema["description"].is_null() {
+            places.push(name.clone());
+        }
+        fields(name, schema, &mut places);
+    }
+    places
+}
+
+fn fields(name: &str, schema: &serde_json::Value, places: &mut Vec<String>) {
+    for (field, property) in schema["properties"].as_object().into_iter().flatten() {
+        let mut parts = ["oneOf", "allOf", "anyOf"].into_iter();
+        let in_a_part = parts.any(|kind| {
+            let items = property[kind].as_array().into_iter().flatten();
+            items
+                .into_iter()
+                .any(|item| item["description"].is_string())
+        });
+        if property["description"].is_null() && !in_a_part && property["$ref"].is_null() {
+            places.push(format!("{name}.{field}"));
+        }
+    }
+    for kind in ["oneOf", "allOf", "anyOf"] {
+        for item in schema[kind].as_array().into_iter().flatten() {
+            fields(name, item, places);
+        }
     }
 }

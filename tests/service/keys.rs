@@ -99,6 +99,7 @@ const NEEDED: &[(&str, &[&str])] = &[
         "submit",
         &[
             "uploadManeuver",
+            "uploadFile",
             "updateManeuver",
             "addMapping",
             "addModel",

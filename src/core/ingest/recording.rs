@@ -16,6 +16,7 @@ use utoipa::ToSchema;
     "channels": {"alpha": {"unit": "deg", "values": [1.2, null, 1.4]}}
 }))]
 pub struct Recording {
+    /// When samples were taken.
     pub(super) time: RecordedTime,
     /// By name; a name is an identifier that equations refer to.
     #[schema(value_type = IndexMap<String, RecordedChannel>)]
@@ -26,15 +27,20 @@ pub struct Recording {
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RecordedTime {
+    /// A unit of time.
     #[schema(example = "s")]
     pub(super) unit: String,
+    /// One for each sample, increasing.
     #[schema(value_type = Option<Vec<Option<f64>>>)]
     pub(super) values: Option<Vec<Number>>,
+    /// The first time of even sampling; absent: 0.
     pub(super) start: Option<f64>,
+    /// From one sample to the next of even sampling.
     #[schema(example = 0.04)]
     pub(super) step: Option<f64>,
 }
 
+/// One channel.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RecordedChannel {

@@ -19,7 +19,9 @@ pub(crate) fn router() -> OpenApiRouter<Server> {
 /// Something that was done.
 #[derive(Serialize, ToSchema)]
 struct AuditLine {
+    /// Of this line; later ones sort behind earlier ones.
     id: Uuid,
+    /// When it was done, RFC 3339.
     #[schema(example = "2026-11-21T12:00:00.123Z")]
     at: String,
     /// The key that did it, by its id; `null`: who has the database at hand, or needs no key.
@@ -44,8 +46,10 @@ impl AuditLine {
     }
 }
 
+/// A page of the audit.
 #[derive(Serialize, ToSchema)]
 struct AuditPage {
+    /// Newest first.
     lines: Vec<AuditLine>,
     /// Where the next page begins; `null`: this is the last.
     next_cursor: Option<String>,

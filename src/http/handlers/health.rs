@@ -16,8 +16,10 @@ pub(crate) fn router() -> OpenApiRouter<Server> {
         .routes(routes!(ready))
 }
 
+/// That the service is there.
 #[derive(Serialize, ToSchema)]
 pub(crate) struct Health {
+    /// `ok`; what is not is a problem instead.
     #[schema(example = "ok")]
     status: &'static str,
     /// The version of the program.

@@ -37,16 +37,23 @@ const LONGEST_OVERLAP_HOURS: u32 = 24 * 30;
 #[derive(Serialize, ToSchema)]
 #[schema(as = Key)]
 struct KeyResource {
+    /// Under which it is rotated and revoked.
     id: Uuid,
+    /// The project that it opens.
     #[schema(example = "icing")]
     project: String,
+    /// What it is used by, for people.
     #[schema(example = "data pipeline of the lab")]
     name: String,
+    /// What it allows.
     scopes: BTreeSet<Scope>,
     /// The highest priority of jobs that are submitted with it.
     max_priority: i32,
+    /// When it was made, RFC 3339.
     created: String,
+    /// From when on it is no longer good; `null`: never.
     expires: Option<String>,
+    /// When it was revoked; `null`: it was not.
     revoked: Option<String>,
     /// When it was last used, to ten minutes.
     used: Option<String>,
@@ -78,8 +85,10 @@ struct MadeKey {
     key: KeyResource,
 }
 
+/// The keys of a project.
 #[derive(Serialize, ToSchema)]
 struct KeyList {
+    /// Newest first, without secrets.
     keys: Vec<KeyResource>,
 }
 
@@ -224,6 +233,7 @@ async fn revoke_key(service: Service, Id(text): Id) -> Result<Json<KeyResource>,
         .ok_or_else(|| unknown_key(&text))
 }
 
+/// How a key is replaced.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct Rotation {

@@ -26,6 +26,7 @@ use crate::store::{ManeuverFilter, ManeuverRecord, Uploaded};
 pub(crate) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new()
         .routes(routes!(upload_maneuver, list_maneuvers))
+        .routes(routes!(upload_file))
         .routes(routes!(get_maneuver))
 }
 
@@ -38,21 +39,28 @@ pub(crate) struct ManeuverResource {
     /// SHA-256 of the content: the same recording has the same id.
     #[schema(example = "3f0a1c0f6f5a7a0e8f3a0f0c8f7a1b2c3d4e5f60718293a4b5c6d7e8f9a0b1c2")]
     id: String,
+    /// For people; as it was given, and empty if it was not.
     #[schema(example = "ATTAS elevator 3-2-1-1")]
     name: String,
+    /// When it was first uploaded, RFC 3339.
     #[schema(example = "2026-11-21T12:00:00.123Z")]
     created: String,
+    /// Its length, sampling and channels, and what is odd about it.
     #[schema(value_type = Summary)]
     summary: Box<RawValue>,
     /// What was flown, as far as it was said; `PATCH` says more of it.
     flown: Flown,
+    /// Where the rest of it is.
     links: ManeuverLinks,
 }
 
+/// Paths of what there is of a recording.
 #[derive(Serialize, ToSchema)]
 struct ManeuverLinks {
+    /// The recording without its samples.
     #[serde(rename = "self")]
     this: String,
+    /// Its samples.
     data: String,
 }
 
@@ -73,9 +81,12 @@ impl ManeuverResource {
     }
 }
 
+/// A page of recordings.
 #[derive(Serialize, ToSchema)]
 pub(crate) struct ManeuverPage {
+    /// Newest first.
     maneuvers: Vec<ManeuverResource>,
+    /// What to say in `cursor` for the next page; `null`: this is the last.
     next_cursor: Option<String>,
 }
 
@@ -98,14 +109,9 @@ struct UploadQuery {
     mapping: Option<String>,
 }
 
-/// The bytes of a MAT file of any version (`save -v7.3`, `save -v7`, `save -v6`, `save -v4`).
-#[derive(ToSchema)]
-#[schema(value_type = String, format = Binary)]
-#[expect(dead_code, reason = "it is there for the API's document")]
-struct MatFile(Vec<u8>);
-
-/// The bytes of a file that its first bytes tell: a workbook of Excel (`.xlsx`), Parquet, HDF5, TDMS, MDF 4, a log of
-/// PX4 (`.ulg`) or ArduPilot (`.bin`), or any recording packed with gzip or zip.
+/// The bytes of a file, which tell what it is: a table of text (CSV and its like), an ASCII matrix, a MAT file of any version, a
+/// workbook of Excel (`.xlsx`), Parquet, HDF5, TDMS, MDF 4, a log of PX4 (`.ulg`) or ArduPilot (`.bin`), or any of these
+/// packed with gzip or zip.
 #[derive(ToSchema)]
 #[schema(value_type = String, format = Binary)]
 #[expect(dead_code, reason = "it is there for the API's document")]
@@ -121,7 +127,8 @@ struct AnyFile(Vec<u8>);
 /// JSON. Or, with a `mapping`, a MAT file, another HDF5 file or an ASCII matrix. Or a TDMS or MDF 4 file, whose channels say
 /// their units and times. Or a log of PX4 or ArduPilot, without a `mapping` by those called `px4` and `ardupilot`.
 ///
-/// Whatever the `Content-Type` says, a file is what its first bytes tell; it may be packed with gzip or zip. What is not read is
+/// A file may come as `application/octet-stream`, or as what it is (`text/csv`, `text/plain`, `application/x-matlab-data`):
+/// whatever the `Content-Type` says, a file is what its first bytes tell; it may be packed with gzip or zip. What is not read is
 /// refused with its name and how to convert it. Channels of several tables with times of their own keep their samples, and
 /// have no value at the times of the others. Where a choice is to be made, the answer has the draft of a mapping that makes
 /// it, as `mapping`. Values are converted to SI. Content that is here already answers 200 with the maneuver it was first
@@ -132,12 +139,9 @@ struct AnyFile(Vec<u8>);
 #[utoipa::path(post, path = "/v1/maneuvers", tag = "Maneuvers", operation_id = "uploadManeuver",
     params(UploadQuery),
     request_body(content(
-        (String = "text/csv", example = "t[s],alpha[deg],q[deg/s],de[deg]\n0,1.2,0,0\n0.04,1.2,0.1,-1\n0.08,1.3,0.4,-1\n"),
         (ingest::Recording = "application/json"),
-        (MatFile = "application/x-matlab-data"),
         (AnyFile = "application/octet-stream"),
         (several::SeveralFiles = "multipart/form-data"),
-        (String = "text/plain", example = "0.00  1.2  0.0\n0.04  1.2  0.1\n0.08  1.3  0.4\n"),
     )),
     responses(
         (status = 201, description = "It is new.", body = ManeuverResource, headers(("Location" = String, description = "Its path."))),
@@ -210,6 +214,29 @@ async fn upload_maneuver(
     let (status, maneuver) = keep_maneuver(&service, &name, maneuver, summary).await?;
     let location = [(header::LOCATION, maneuver.links.this.clone())];
     Ok((status, location, Json(maneuver)).into_response())
+}
+
+/// Upload a recording's file.
+///
+/// The same as `POST /v1/maneuvers` with `application/octet-stream`, for clients made by generators: the body is the file's
+/// bytes, and nothing else.
+#[utoipa::path(post, path = "/v1/maneuvers/files", tag = "Maneuvers", operation_id = "uploadFile",
+    params(UploadQuery),
+    request_body(content = AnyFile, content_type = "application/octet-stream"),
+    responses(
+        (status = 201, description = "It is new.", body = ManeuverResource, headers(("Location" = String, description = "Its path."))),
+        (status = 200, description = "The same content was here before.", body = ManeuverResource, headers(("Location" = String, description = "Its path."))),
+        (status = 413, description = "`body_too_large`", body = ProblemDocument, content_type = "application/problem+json"),
+        (status = 415, description = "`unsupported_media_type`", body = ProblemDocument, content_type = "application/problem+json"),
+        (status = 422, description = "`invalid_maneuver`: `errors` lists all faults, by column and row or JSON pointer.", body = ProblemDocument, content_type = "application/problem+json"),
+    ))]
+async fn upload_file(
+    service: Service,
+    query: Parameters<UploadQuery>,
+    headers: HeaderMap,
+    body: Body,
+) -> Result<Response, Problem> {
+    upload_maneuver(service, query, headers, body).await
 }
 
 /// Keeps a recording, if it is not here already, within the project's quota.

@@ -37,6 +37,7 @@ struct NameQuery {
 #[derive(Serialize, ToSchema)]
 #[schema(as = MappingEntry)]
 pub(crate) struct MappingResource {
+    /// What an upload says in `mapping`.
     #[schema(example = "lab-logger-3")]
     pub name: String,
     /// Which recordings it is for.
@@ -45,8 +46,10 @@ pub(crate) struct MappingResource {
     created: Option<String>,
 }
 
+/// Mappings that an upload can name.
 #[derive(Serialize, ToSchema)]
 struct MappingList {
+    /// Those that come with Trimtab, then the project's own.
     mappings: Vec<MappingResource>,
 }
 

@@ -37,23 +37,31 @@ pub(crate) struct ModelResource {
     /// What a job says in `model`: a catalog name, or the id of a stored model.
     #[schema(example = "short-period")]
     id: String,
+    /// Where it comes from.
     origin: ModelOrigin,
+    /// The document's `name`.
     #[schema(example = "short-period")]
     name: String,
+    /// What it is, in a line.
     #[schema(example = "Longitudinal short period, two states")]
     title: String,
     /// When it was stored; a catalog model has no such time.
     #[schema(example = "2026-11-21T12:00:00.123Z")]
     created: Option<String>,
+    /// Names of the inputs, in the order of the document.
     #[schema(example = json!(["de"]))]
     inputs: Vec<String>,
+    /// Names of the outputs, in the order of the document.
     #[schema(example = json!(["alpha", "q"]))]
     outputs: Vec<String>,
+    /// Names of the parameters, in the order of the document.
     #[schema(example = json!(["Zalpha", "Zq", "Zde"]))]
     parameters: Vec<String>,
+    /// Where the rest of it is.
     links: ModelLinks,
 }
 
+/// Where a model comes from.
 #[derive(Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = Origin)]
@@ -64,8 +72,10 @@ pub(crate) enum ModelOrigin {
     Stored,
 }
 
+/// Paths of what there is of a model.
 #[derive(Serialize, ToSchema)]
 struct ModelLinks {
+    /// The document.
     #[serde(rename = "self")]
     this: String,
 }
@@ -119,9 +129,12 @@ impl From<Listed> for ModelResource {
     }
 }
 
+/// A page of models.
 #[derive(Serialize, ToSchema)]
 pub(crate) struct ModelPage {
+    /// Those of the catalog first, then stored ones, newest first.
     models: Vec<ModelResource>,
+    /// What to say in `cursor` for the next page; `null`: this is the last.
     next_cursor: Option<String>,
 }
 

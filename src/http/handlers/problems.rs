@@ -22,12 +22,16 @@ pub(crate) fn router() -> OpenApiRouter<Server> {
 /// One code.
 #[derive(Serialize, ToSchema)]
 pub(crate) struct Explanation {
+    /// The stable word.
     #[schema(example = "not_finished")]
     code: &'static str,
+    /// The HTTP status that it comes with.
     #[schema(example = 409)]
     status: u16,
+    /// The code in words.
     #[schema(example = "The job is not finished")]
     title: &'static str,
+    /// What is meant, and what would put it right.
     #[schema(example = "The job is not over yet. Follow its events, and ask again when it is.")]
     meaning: &'static str,
 }
@@ -47,12 +51,15 @@ impl Explanation {
 /// One code of an entry of `errors`.
 #[derive(Serialize, ToSchema)]
 pub(crate) struct FaultExplanation {
+    /// The stable word.
     #[schema(example = "time_not_increasing")]
     code: &'static str,
+    /// What is meant.
     #[schema(example = "Time does not increase.")]
     meaning: &'static str,
 }
 
+/// All codes that the API has.
 #[derive(Serialize, ToSchema)]
 pub(crate) struct Explanations {
     /// What `code` of a problem can be.
@@ -66,10 +73,12 @@ pub(crate) struct Explanations {
 /// One code of a finding.
 #[derive(Serialize, ToSchema)]
 pub(crate) struct FindingExplanation {
+    /// The stable word.
     #[schema(example = "gap")]
     code: &'static str,
     /// Where nothing lessens it.
     severity: Severity,
+    /// What is meant.
     #[schema(example = "The recording stopped and started again.")]
     meaning: &'static str,
 }

@@ -86,10 +86,13 @@ fn keep() -> String {
 /// What was deleted, or would be.
 #[derive(Serialize, ToSchema)]
 struct Removed {
+    /// Whether it was only asked: nothing was deleted.
     dry_run: bool,
+    /// Jobs, with their results.
     jobs: u64,
     /// Those that no job uses which is left.
     maneuvers: u64,
+    /// What the samples of these maneuvers take, bytes.
     maneuver_bytes: u64,
 }
 

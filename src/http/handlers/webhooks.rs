@@ -69,11 +69,15 @@ impl EndEvent {
 #[derive(Serialize, ToSchema)]
 #[schema(as = Webhook)]
 struct WebhookResource {
+    /// Under which it is rotated, tested and deleted.
     id: Uuid,
+    /// Where messages are sent.
     #[schema(example = "https://lab.example/hooks/trimtab")]
     url: String,
+    /// What is told.
     #[schema(value_type = Vec<EndEvent>)]
     events: Vec<String>,
+    /// When it was added, RFC 3339.
     created: String,
     /// Since when the receiver is told nothing: it answered 410.
     disabled: Option<String>,
@@ -91,8 +95,10 @@ impl WebhookResource {
     }
 }
 
+/// The webhooks of a project.
 #[derive(Serialize, ToSchema)]
 struct WebhookList {
+    /// Newest first.
     webhooks: Vec<WebhookResource>,
 }
 
@@ -107,6 +113,7 @@ struct WithSecret {
     webhook: WebhookResource,
 }
 
+/// A webhook that is wanted.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct WebhookOrder {
@@ -243,15 +250,19 @@ async fn test_webhook(service: Service, Id(text): Id) -> Result<StatusCode, Prob
 struct DeliveryResource {
     /// The header `webhook-id`.
     id: Uuid,
+    /// What is told: `job.succeeded`, `job.failed`, `job.cancelled`, or `webhook.test`.
     #[serde(rename = "type")]
     #[schema(example = "job.succeeded")]
     event: String,
     /// Empty, if it was only a test.
     job: String,
+    /// When it was first due, RFC 3339.
     created: String,
+    /// How often it was sent.
     attempts: u32,
     /// When it will be sent again.
     next_attempt: Option<String>,
+    /// When it arrived.
     delivered: Option<String>,
     /// What was answered last.
     status: Option<u16>,
@@ -275,8 +286,10 @@ impl DeliveryResource {
     }
 }
 
+/// What was sent to a webhook last.
 #[derive(Serialize, ToSchema)]
 struct DeliveryList {
+    /// Newest first, at most 100.
     deliveries: Vec<DeliveryResource>,
 }
 

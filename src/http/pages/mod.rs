@@ -4,6 +4,7 @@
 
 mod compare;
 mod dynamics;
+mod guide;
 mod job;
 mod jobs;
 mod maneuver;
@@ -32,6 +33,7 @@ pub(super) fn router() -> Router<Server> {
         .merge(report::router())
         .merge(dynamics::router())
         .merge(new_job::router())
+        .merge(guide::router())
         .merge(maneuvers::router())
         .merge(maneuver::router())
         .merge(models::router())

@@ -629,7 +629,17 @@ async fn pages_are_accessible_in_light_and_dark_and_fit_a_narrow_screen() {
         pages.extend([&over, &stopped, &waiting].map(|id| format!("/jobs/{id}")));
         pages.push(format!("/jobs/{over}/dynamics"));
         pages.extend([format!("/jobs/{over}/report"), format!("/new?like={over}")]);
-        pages.extend(["/maneuvers", "/models", "/models/short-period"].map(String::from));
+        pages.extend(
+            [
+                "/maneuvers",
+                "/models",
+                "/models/short-period",
+                "/guide",
+                "/guide/method",
+                "/guide/findings",
+            ]
+            .map(String::from),
+        );
         look(&pages).await;
     })
     .await;

@@ -6,9 +6,11 @@ use utoipa::ToSchema;
 use super::super::union::Between;
 use super::{ChannelTime, NoValue, Titles};
 
+/// How a channel is made from a file.
 #[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(in super::super) struct MappedChannel {
+    /// Where its values are in the file: a variable, field, column or title, or several to choose from.
     pub(in super::super) from: Titles,
     /// `-` for a pure number; it must be said where the file does not say it.
     #[serde(default, skip_serializing_if = "String::is_empty")]

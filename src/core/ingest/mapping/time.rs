@@ -12,6 +12,7 @@ pub(in super::super) struct MappedTime {
     /// May be left out where a table says it, or has time stamps.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub(in super::super) unit: String,
+    /// Where the times are in the file; of a time in parts, the finest one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(in super::super) from: Option<Titles>,
     /// The column of a table that has the date of a time of day.
@@ -24,18 +25,25 @@ pub(in super::super) struct MappedTime {
     /// `unit`. A day without a month is that of the year.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(in super::super) year: Option<Titles>,
+    /// The column that has the month, 1 to 12.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(in super::super) month: Option<Titles>,
+    /// The column that has the day of the month, or of the year.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(in super::super) day: Option<Titles>,
+    /// The column that has the hour.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(in super::super) hour: Option<Titles>,
+    /// The column that has the minute.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(in super::super) minute: Option<Titles>,
+    /// The column that has the second.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(in super::super) second: Option<Titles>,
+    /// The first time of even sampling, in `unit`; absent: 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(in super::super) start: Option<f64>,
+    /// From one sample to the next of even sampling, in `unit`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(in super::super) step: Option<f64>,
     /// What is made of several rows of a table with one time.

@@ -34,6 +34,7 @@ const MOST_BYTES: usize = 20_000_000;
 /// Beyond so many, further faults tell nothing new.
 const MOST_FAULTS: usize = 100;
 
+/// One job for each of many maneuvers.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct Bulk {
@@ -45,6 +46,7 @@ struct Bulk {
     maneuvers: Vec<Value>,
 }
 
+/// Jobs that were accepted.
 #[derive(Serialize, ToSchema)]
 struct Submitted {
     /// In the order of the maneuvers.

@@ -95,9 +95,16 @@ struct FlyingQualityQuery {
     to: Option<f64>,
 }
 
+/// The bytes of a MAT file.
+#[derive(ToSchema)]
+#[schema(value_type = String, format = Binary)]
+#[expect(dead_code, reason = "it is there for the API's document")]
+struct MatFile(Vec<u8>);
+
 /// Of each input and output that depends on it.
 #[derive(Serialize, ToSchema)]
 struct FrequencyResponses {
+    /// By input, then output.
     responses: Vec<FrequencyResponse>,
 }
 
@@ -106,7 +113,7 @@ struct FrequencyResponses {
 #[utoipa::path(get, path = "/v1/jobs/{id}/linear-system", tag = "Results", operation_id = "getLinearSystem",
     params(("id" = Uuid, Path), SegmentQuery),
     responses(
-        (status = 200, description = "The linear system.", content((LinearSystem = "application/json"), (Vec<u8> = "application/x-matlab-data"))),
+        (status = 200, description = "The linear system.", content((LinearSystem = "application/json"), (MatFile = "application/x-matlab-data"))),
         (status = 400, description = "`invalid_query`: there is no such segment.", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 404, description = "`unknown_job`, `no_result`", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 409, description = "`not_finished`, `no_linear_system`, `no_trajectory`: a maneuver was deleted, or another program made the result.", body = ProblemDocument, content_type = "application/problem+json"),

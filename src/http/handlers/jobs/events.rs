@@ -41,6 +41,7 @@ const LONGEST_PAGE: usize = 1000;
 /// Events of a job, in order.
 #[derive(Serialize, ToSchema)]
 pub(crate) struct EventPage {
+    /// In the order in which they happened.
     #[schema(value_type = Vec<Event>)]
     events: Vec<Box<RawValue>>,
     /// What to say in `after` for the next page.

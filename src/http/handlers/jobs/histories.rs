@@ -47,11 +47,14 @@ struct HistoryQuery {
 /// Residuals, measured minus model, SI.
 #[derive(Serialize, ToSchema)]
 pub(crate) struct Residuals {
+    /// In the order of the job.
     segments: Vec<SegmentResiduals>,
 }
 
+/// Residuals of one segment.
 #[derive(Serialize, ToSchema)]
 struct SegmentResiduals {
+    /// The segment's label.
     #[schema(example = "elevator")]
     segment: String,
     /// Whether the model was fitted to it.
@@ -61,15 +64,18 @@ struct SegmentResiduals {
     samples: usize,
     /// Seconds of the recording.
     time: Vec<f64>,
+    /// By output, in the order of the model.
     outputs: Vec<Series>,
 }
 
 /// Inputs, and outputs as measured and as modelled, SI.
 #[derive(Serialize, ToSchema)]
 pub(crate) struct TimeHistories {
+    /// In the order of the job.
     segments: Vec<SegmentHistory>,
 }
 
+/// One segment over time.
 #[derive(Serialize, ToSchema)]
 struct SegmentHistory {
     /// Samples of the segment, before `from`, `to` and `max_points`.

@@ -26,6 +26,7 @@ pub(crate) fn router() -> OpenApiRouter<Server> {
 /// The iterations of a job's latest attempt.
 #[derive(Serialize, ToSchema)]
 pub(crate) struct Iterations {
+    /// From the start values to the last step.
     #[schema(value_type = Vec<Iteration>)]
     iterations: Vec<serde_json::Map<String, serde_json::Value>>,
 }

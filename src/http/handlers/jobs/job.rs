@@ -31,8 +31,10 @@ pub(crate) fn router() -> OpenApiRouter<Server> {
 #[derive(Serialize, ToSchema)]
 #[schema(as = Job)]
 pub(crate) struct JobResource {
+    /// Under which it is followed and asked for.
     #[schema(example = "0193518e-6b6f-7d3c-9c53-b1cbb2b7a1f4")]
     id: Uuid,
+    /// What was wanted of the model and the data.
     #[schema(value_type = JobKind)]
     kind: String,
     /// As it was submitted; empty: none was given.
@@ -41,19 +43,23 @@ pub(crate) struct JobResource {
     /// What to call it: its name, or else its model and maneuvers.
     #[schema(example = "short-period: flight 12 and flight 13")]
     title: String,
+    /// The model that it was submitted with.
     model: JobModel,
     /// In the order of the spec.
     maneuvers: Vec<JobManeuver>,
+    /// For people, to find jobs by.
     #[schema(example = json!(["flight 12"]))]
     tags: Vec<String>,
     /// Of two that wait, the higher is taken first.
     #[schema(example = 0)]
     priority: i32,
+    /// Where it stands.
     status: Status,
     /// How many jobs, of everybody, are taken before this one; said where one job is asked for, and it waits.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(example = 3)]
     ahead: Option<usize>,
+    /// When it was accepted, RFC 3339.
     #[schema(example = "2026-11-21T12:00:00.123Z")]
     created: String,
     /// When a worker first took it.
@@ -79,12 +85,14 @@ pub(crate) struct JobResource {
     /// How well the output is reproduced that is reproduced worst; the estimate has all of them. Absent without an estimate.
     #[serde(skip_serializing_if = "Option::is_none")]
     fit: Option<FitSummary>,
+    /// Where the rest of it is.
     links: JobLinks,
 }
 
 /// The model of a job.
 #[derive(Serialize, ToSchema)]
 struct JobModel {
+    /// By its document's `name`.
     #[schema(example = "short-period")]
     name: String,
     /// A catalog name, or the id of a stored model, which may have been deleted since; absent of a model that only the job
@@ -97,28 +105,43 @@ struct JobModel {
 /// A maneuver of a job.
 #[derive(Serialize, ToSchema)]
 struct JobManeuver {
+    /// SHA-256 of the content.
     #[schema(example = "3f0a1c0f6f5a7a0e8f3a0f0c8f7a1b2c3d4e5f60718293a4b5c6d7e8f9a0b1c2")]
     id: String,
     /// The label in the spec; else the recording's name when the job was submitted, and the part in use.
     #[schema(example = "flight 12, 2 to 32.5 s")]
     label: String,
+    /// Whether the model is fitted to it, or predicts it.
     role: Role,
 }
 
+/// Paths of what there is of a job; those of results lead to something where `has_result` is true.
 #[derive(Serialize, ToSchema)]
 struct JobLinks {
+    /// The job itself.
     #[serde(rename = "self")]
     this: String,
+    /// As it was submitted.
     spec: String,
+    /// Its log, live or page by page.
     events: String,
+    /// Cost and parameters by iteration.
     iterations: String,
+    /// POST here to end it.
     cancel: String,
+    /// The whole estimate.
     estimate: String,
+    /// The parameter table.
     parameters: String,
+    /// Measured minus model over time.
     residuals: String,
+    /// What is in the residuals.
     residual_analysis: String,
+    /// Inputs and outputs over time, measured and modelled.
     time_histories: String,
+    /// States and definitions over time.
     trajectories: String,
+    /// The model with the estimates as start values.
     model: String,
     /// Of a job of the kind `diagnose`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -213,9 +236,12 @@ impl JobResource {
     }
 }
 
+/// A page of jobs.
 #[derive(Serialize, ToSchema)]
 pub(crate) struct JobPage {
+    /// Newest first.
     jobs: Vec<JobResource>,
+    /// What to say in `cursor` for the next page; `null`: this is the last.
     next_cursor: Option<String>,
 }
 

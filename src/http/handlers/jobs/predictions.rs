@@ -35,6 +35,7 @@ struct PredictionQuery {
 /// One of each recording.
 #[derive(Serialize, ToSchema)]
 struct Predictions {
+    /// In the order of the request.
     segments: Vec<PredictedSegment>,
 }
 

@@ -29,6 +29,7 @@ pub(crate) fn router() -> OpenApiRouter<Server> {
 /// All that a result was made from.
 #[derive(Serialize, ToSchema)]
 struct Provenance {
+    /// Whose result it is.
     job: Uuid,
     /// As it was submitted.
     #[schema(value_type = JobSpec)]

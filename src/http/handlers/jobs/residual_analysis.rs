@@ -23,6 +23,7 @@ pub(crate) fn router() -> OpenApiRouter<Server> {
 /// Of the segments that the model was fitted to.
 #[derive(Serialize, ToSchema)]
 struct ResidualAnalyses {
+    /// By output, in the order of the model.
     outputs: Vec<ResidualAnalysis>,
 }
 

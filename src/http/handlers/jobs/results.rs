@@ -80,8 +80,11 @@ async fn get_estimate(
 /// The parameter table, with what is needed to judge it.
 #[derive(Serialize, Deserialize, ToSchema)]
 pub(crate) struct ParameterTable {
+    /// How good the result is.
     outcome: Outcome,
+    /// The outcome in a sentence.
     reason: String,
+    /// All of them in the order of the document, those of segments behind each other.
     parameters: Vec<ParameterEstimate>,
     /// What `standard_error` and `correlation` are made from; `null` where they would mean nothing.
     #[serde(default)]

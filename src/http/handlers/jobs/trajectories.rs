@@ -46,6 +46,7 @@ struct TrajectoryQuery {
 /// Of the segments that the model was fitted to.
 #[derive(Serialize, ToSchema)]
 struct Trajectories {
+    /// In the order of the job.
     segments: Vec<Trajectory>,
 }
 

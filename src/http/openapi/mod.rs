@@ -1,5 +1,9 @@
 //! The OpenAPI document, made from the handlers.
 
+mod descriptions;
+mod examples;
+mod flat_events;
+
 use axum::http::Method;
 use utoipa::OpenApi;
 use utoipa::openapi::path::{Operation, ParameterBuilder, ParameterIn};
@@ -21,6 +25,10 @@ use super::{caller, handlers, problem};
             and in `errors` every place that is at fault. Lists are paged by cursor; \
             `next_cursor: null` is the only end. Results and maneuvers never change and carry an `ETag`.",
         license(name = "MIT", identifier = "MIT"),
+    ),
+    servers(
+        (url = "/", description = "The server that this document is from."),
+        (url = "http://127.0.0.1:8300", description = "A server on this machine, as `trimtab serve` starts it."),
     ),
     tags(
         (name = "Maneuvers", description = "Recordings: immutable, identified by their content."),
@@ -48,6 +56,7 @@ pub fn document() -> utoipa::openapi::OpenApi {
         for (method, operation) in [
             (Method::GET, &mut path.get),
             (Method::POST, &mut path.post),
+            (Method::PATCH, &mut path.patch),
             (Method::DELETE, &mut path.delete),
         ] {
             if let Some(operation) = operation {
@@ -64,6 +73,9 @@ pub fn document() -> utoipa::openapi::OpenApi {
         let scheme = SecurityScheme::Http(Http::new(scheme));
         schemes.insert(name.to_string(), scheme.into());
     }
+    flat_events::flatten(&mut document);
+    descriptions::complete(&mut document);
+    examples::put_in(&mut document);
     document
 }
 
