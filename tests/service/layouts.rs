@@ -36,7 +36,13 @@ async fn every_layout_goes_in_over_http() {
             let sent = server.post(&path, content_type, layout.file).await;
             let name = layout.name;
             assert!(sent.status.is_success(), "{name}: {}", sent.text());
-            assert_eq!(sent.json()["id"], digest(&layout), "{name}, {content_type}");
+            let kept = sent.json();
+            assert_eq!(kept["id"], digest(&layout), "{name}, {content_type}");
+            let summary = &kept["summary"];
+            let off = summary["duration"].as_f64().unwrap() - layout.duration;
+            assert!(off.abs() < 1e-9, "{name}: {off} s");
+            let mut channels = summary["channels"].as_array().unwrap().iter();
+            assert!(channels.any(|c| c["name"] == layout.channel.0), "{name}");
         }
     }
 }
