@@ -224,7 +224,7 @@ fn arrays_of_structs_and_cells_of_matlab_are_read() {
         ("run.inner", "each of 2 structs"),
         ("run(3).alpha", "to rec(2).alpha"),
         ("c[7]", "to c[2] of cells"),
-        ("run(2).beta", "'run/alpha'"),
+        ("run(2).beta", "there is no 'run/beta'"),
         ("run(1).inner.q", "is not a struct"),
         ("sample.note", "not numbers"),
         ("sample(2).note", "char"),

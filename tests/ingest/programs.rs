@@ -209,6 +209,16 @@ fn headers_of_nasa_ames_say_factors_and_missing_values() {
     let flight = read(icartt).maneuver;
     assert_read(&flight, 2, 0.02, ("Ps", 870.1, "hPa"));
     assert!(flight.channels()["Alpha"].values[1].is_nan());
+    // a header that is longer than the file is none
+    assert!(
+        reading(
+            &icartt.replace("17, 1001", "18446744073709551615, 1001"),
+            None
+        )
+        .is_err()
+    );
+    let skipped = mapping(r#"{"skip": 9223372036854775807, "channels": {"a": {"from": "(:,1)"}}}"#);
+    assert!(reading(icartt, Some(&skipped)).is_err());
 }
 
 /// Octave's manual, "Simple File I/O", and its ls-oct-text.cc.
@@ -233,6 +243,9 @@ fn variables_of_octave_are_taken_by_name() {
     for at in 0..text.len() {
         let _ = reading(&text[..at], Some(&mapping(said)));
     }
+    // a matrix without columns has no values, however many rows it says
+    let endless = text.replace(" 2 2\n  1\n", " 1e18 0\n  1\n");
+    assert!(reading(&endless, Some(&mapping(said))).is_ok());
 }
 
 /// Mission Planner's text of a DataFlash log: a line for each message, numbers as they are meant.

@@ -75,6 +75,9 @@ impl<'a> Header<'a> {
     fn of(text: &'a str) -> Option<Self> {
         let count = cells(text.lines().next()?).first()?.parse().ok()?;
         let lines: Vec<&str> = text.lines().take(count).collect();
+        if lines.len() < count {
+            return None;
+        }
         let variables: usize = lines.get(COUNT)?.trim().parse().ok()?;
         let mut at = COUNT + 1;
         let mut numbers = || {

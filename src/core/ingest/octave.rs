@@ -267,6 +267,8 @@ fn number(word: &str) -> Option<f64> {
 /// Column by column to row by row.
 fn transposed(values: &[f64], rows: usize) -> Vec<f64> {
     let columns = values.len().checked_div(rows).unwrap_or(0);
-    let row = |row: usize| (0..columns).map(move |column| values[column * rows + row]);
-    (0..rows).flat_map(row).collect()
+    let places = 0..columns * rows;
+    places
+        .map(|at| values[at % columns * rows + at / columns])
+        .collect()
 }

@@ -91,7 +91,9 @@ impl<'a> Looked<'a> {
 pub(super) fn lines<'a>(text: &'a str, skip: usize) -> Vec<Looked<'a>> {
     let mut rest = Lines::of(text);
     for _ in 0..skip {
-        let _ = rest.any_line();
+        if rest.any_line().is_none() {
+            break;
+        }
     }
     let mut looked = Vec::new();
     let mut bytes = 0;
