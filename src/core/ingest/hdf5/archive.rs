@@ -112,7 +112,7 @@ impl Datasets<'_> {
             Ok(Followed::Object(object)) => {
                 self.objects.push(Object {
                     path: path.to_vec(),
-                    ..object
+                    ..*object
                 });
                 Ok(Some(self.objects.len() - 1))
             }

@@ -15,7 +15,7 @@ use crate::flight::Fault;
 
 /// What a path leads to.
 pub(super) enum Followed<'a> {
-    Object(Object<'a>),
+    Object(Box<Object<'a>>),
     /// One field of all structs of an array, a row for each; and the columns of a row.
     Gathered(Vec<f64>, usize),
 }
@@ -85,7 +85,7 @@ pub(super) fn follow<'a>(
         said = rest;
     }
     match said {
-        None | Some(0) => Ok(Followed::Object(here)),
+        None | Some(0) => Ok(Followed::Object(Box::new(here))),
         Some(_) => Err(say_which(&here, 1)),
     }
 }
