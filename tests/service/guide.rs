@@ -282,12 +282,24 @@ fn run(name: &str, text: &str, server: &str) {
 fn every_command_of_the_guide_runs() {
     let directory = tempfile::tempdir().expect("a directory");
     let server = Process::start(directory.path(), 2);
-    let pages = pages();
+    let mut pages = pages();
+    pages.insert("../../README".to_string(), commands_of_the_readme());
     std::thread::scope(|scope| {
         for (name, text) in &pages {
             scope.spawn(|| run(name, text, &server.url));
         }
     });
+}
+
+/// What `README.md` has a reader type, but for what starts a server: a block of shell.
+fn commands_of_the_readme() -> String {
+    let readme = include_str!("../../README.md");
+    let typed = readme
+        .lines()
+        .filter_map(|line| line.strip_prefix("    trimtab "));
+    let commands: Vec<&str> = typed.filter(|line| !line.starts_with("serve")).collect();
+    assert!(!commands.is_empty());
+    format!("```sh\ntrimtab {}\n```\n", commands.join("\ntrimtab "))
 }
 
 /// A block is of a kind that is run or looked at somewhere, or is only shown.
