@@ -58,6 +58,7 @@ const TEXTS: &[(Part, &str, &str)] = pages! {
     HowTo "turbulence";
     HowTo "frequency";
     HowTo "structure";
+    HowTo "design";
     HowTo "campaigns";
     HowTo "operating";
     Reference "effects";
