@@ -56,7 +56,7 @@ pub(super) fn make(flight: &mut Flight, design: &DesignKind) -> Result<Made, Fau
             band,
             start,
             period,
-        } => of_multisine(flight, amplitudes, (*band, *start, *period)),
+        } => of_multisine(flight, &amplitudes.0, (*band, *start, *period)),
         DesignKind::Optimal {
             amplitudes,
             pulse,
@@ -66,7 +66,7 @@ pub(super) fn make(flight: &mut Flight, design: &DesignKind) -> Result<Made, Fau
             simulations,
         } => of_optimal(
             flight,
-            amplitudes,
+            &amplitudes.0,
             (*pulse, *start, *end),
             (parameters, *simulations),
         ),

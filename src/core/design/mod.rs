@@ -33,7 +33,7 @@ pub use report::{
     CorrelatedBound, DesignedInput, DesignedManeuver, DesignedResponse, Designs, PredictedBound,
     SharedBound,
 };
-pub use spec::{DesignKind, DesignSpec, ManeuverDesign, MultistepShape};
+pub use spec::{Amplitudes, DesignKind, DesignSpec, ManeuverDesign, MultistepShape};
 
 use nalgebra::DMatrix;
 

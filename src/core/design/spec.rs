@@ -76,9 +76,8 @@ pub enum DesignKind {
     /// Sums of sines, all inputs at the same time: harmonics of one period are dealt out among them, so that they are orthogonal,
     /// with phases of low relative peak factor.
     Multisine {
-        /// By input: its amplitude.
-        #[serde(deserialize_with = "crate::model::unique")]
-        amplitudes: IndexMap<String, f64>,
+        /// How far each input moves.
+        amplitudes: Amplitudes,
         /// Lowest and highest frequency, Hz.
         band: [f64; 2],
         /// When they begin, s.
@@ -91,9 +90,8 @@ pub enum DesignKind {
     /// Steps to plus or minus the amplitude, or trim, at whole multiples of a pulse: those of least determinant of the covariance
     /// of the parameters.
     Optimal {
-        /// By input: its amplitude.
-        #[serde(deserialize_with = "crate::model::unique")]
-        amplitudes: IndexMap<String, f64>,
+        /// How far each input moves.
+        amplitudes: Amplitudes,
         /// The length of the shortest pulse, s.
         pulse: f64,
         /// When it may begin, s.
@@ -112,6 +110,13 @@ pub enum DesignKind {
         simulations: usize,
     },
 }
+
+/// By input: its largest deflection from trim, in the unit of the input.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(transparent)]
+pub struct Amplitudes(
+    #[serde(deserialize_with = "crate::model::unique")] pub IndexMap<String, f64>,
+);
 
 fn simulations() -> usize {
     2_000

@@ -61,7 +61,11 @@ impl LocalFit {
     pub(crate) fn kernel(&self, time: &[f64]) -> Kernel {
         let weights = |row: usize, factor: f64| {
             let row = self.inverse.row(row) * factor;
-            time.iter().map(|&t| (row * self.powers(t))[0]).collect()
+            let weight = |&t: &f64| {
+                let s = scaled(t, self.at, self.width);
+                row[0] + row[1] * s + row[2] * (s * s) + row[3] * (s * s * s)
+            };
+            time.iter().map(weight).collect()
         };
         Kernel {
             value: weights(0, 1.0),
@@ -71,6 +75,7 @@ impl LocalFit {
     }
 
     /// s⁰, s¹, ...
+    #[inline]
     fn powers(&self, t: f64) -> SVector<f64, ORDER> {
         let s = scaled(t, self.at, self.width);
         SVector::from_column_slice(&[1.0, s, s * s, s * s * s])
@@ -83,6 +88,7 @@ impl LocalFit {
 }
 
 /// Scaled to the window, so that powers stay of one size.
+#[inline]
 fn scaled(t: f64, at: f64, width: f64) -> f64 {
     2.0 * (t - at) / width
 }
