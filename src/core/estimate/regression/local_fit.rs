@@ -59,13 +59,14 @@ impl LocalFit {
 
     /// The weight of each measurement of the window, if all count.
     pub(crate) fn kernel(&self, time: &[f64]) -> Kernel {
+        let scaled: Vec<f64> = (time.iter())
+            .map(|&t| scaled(t, self.at, self.width))
+            .collect();
         let weights = |row: usize, factor: f64| {
             let row = self.inverse.row(row) * factor;
-            let weight = |&t: &f64| {
-                let s = scaled(t, self.at, self.width);
-                row[0] + row[1] * s + row[2] * (s * s) + row[3] * (s * s * s)
-            };
-            time.iter().map(weight).collect()
+            let [one, first, second, third] = [row[0], row[1], row[2], row[3]];
+            let weight = |&s: &f64| one + first * s + second * (s * s) + third * (s * s * s);
+            scaled.iter().map(weight).collect()
         };
         Kernel {
             value: weights(0, 1.0),
