@@ -78,7 +78,7 @@ class Connection:
                     raise
                 time.sleep(min(0.2 * 2**attempt, _LONGEST_PAUSE))
                 continue
-            if response.status_code not in _LATER or last:
+            if last or not (is_busy(response) or _is_in_hand(response)):
                 return checked(response)
             time.sleep(_pause(response, attempt))
         raise AssertionError("the last attempt returns or raises")
@@ -97,6 +97,16 @@ class Connection:
             return self.http.request(method, path, params=params, headers=dict(headers), json=body, content=content)
         except httpx.TransportError as error:
             raise unreachable(self.server, error) from error
+
+
+def is_busy(response: httpx.Response) -> bool:
+    """Whether the server has too much to do now, is being restarted, or waits for its database."""
+    return response.status_code in _LATER
+
+
+def _is_in_hand(response: httpx.Response) -> bool:
+    """Whether what was sent before its line broke is still being worked on."""
+    return response.status_code == 409 and b'"idempotency_key_in_hand"' in response.content
 
 
 def unreachable(server: str, error: Exception) -> Unreachable:

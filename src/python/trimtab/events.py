@@ -10,13 +10,14 @@ from typing import Any
 
 import httpx
 
-from .connection import Connection, checked, unreachable
+from .connection import Connection, checked, is_busy, unreachable
 
 _LAST = {"succeeded", "failed", "cancelled"}
 # the server sends a comment every 15 s: a line that is silent for longer is dead
 _SILENCE = 45.0
+_CONNECT = 10.0
 _PAUSE = 0.5
-_MOST_FAILURES = 60
+_PATIENCE = 30.0
 
 
 @dataclass(frozen=True)
@@ -41,26 +42,27 @@ class Event:
 def follow(connection: Connection, job: str, after: int = 0) -> Iterator[Event]:
     """The events of a job behind the number `after`, as they come, up to the last.
 
-    A line that breaks, and a server that is restarted, are waited out for half a minute; with `Last-Event-ID` nothing is
+    A line that breaks, and a server that is restarted, are tried again for half a minute from the first failure; with `Last-Event-ID` nothing is
     lost and nothing comes twice. Raises `Unreachable`, and `Problem` if there is no such job.
     """
-    failures = 0
+    lost: float | None = None
     while True:
+        error: Exception = TimeoutError("its event stream ends again and again")
         try:
             for event in _one_line(connection, job, after):
                 after = event.seq
-                failures = 0
+                lost = None
                 yield event
                 if event.is_last:
                     return
         except _Over:
             return
-        except httpx.TransportError as error:
-            if failures >= _MOST_FAILURES:
-                raise unreachable(connection.server, error) from error
-        failures += 1
-        if failures > _MOST_FAILURES:
-            raise unreachable(connection.server, TimeoutError("its event stream ends again and again"))
+        except httpx.TransportError as broken:
+            error = broken
+        now = time.monotonic()
+        lost = now if lost is None else lost
+        if now - lost > _PATIENCE:
+            raise unreachable(connection.server, error) from error
         time.sleep(_PAUSE)
 
 
@@ -71,11 +73,11 @@ class _Over(Exception):
 def _one_line(connection: Connection, job: str, after: int) -> Iterator[Event]:
     headers = {"accept": "text/event-stream", **({"last-event-id": str(after)} if after else {})}
     usual = connection.http.timeout
-    timeout = httpx.Timeout(connect=usual.connect, read=_SILENCE, write=usual.write, pool=usual.pool)
+    timeout = httpx.Timeout(connect=_CONNECT, read=_SILENCE, write=usual.write, pool=usual.pool)
     with connection.http.stream("GET", f"/v1/jobs/{job}/events", headers=headers, timeout=timeout) as response:
         if response.status_code == 204:
             raise _Over
-        if response.status_code >= 500:
+        if is_busy(response) or response.status_code >= 500:
             return
         for data in messages(lines(checked(response).iter_text())):
             raw = json.loads(data)

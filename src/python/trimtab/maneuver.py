@@ -108,13 +108,18 @@ def as_recording(frame: Frame, time: str | None = None, units: Mapping[str, str]
     for title, values in columns.items():
         match = _TITLE.fullmatch(title)
         name, unit = (match.group(1), match.group(2)) if match else (title, None)
+        if name in named:
+            raise ValueError(f"two columns of the frame are called {name} without their units: rename or drop one")
         named[name] = (known.get(title, known.get(name, unit)), values)
+    strange = [title for title in units or {} if title not in columns and title not in named]
+    if strange:
+        raise ValueError(f"`units` has {', '.join(strange)}, which the frame does not have; it has {', '.join(named)}")
     chosen = _time_column(named, time)
     unit, values = named.pop(chosen)
     recording = {"time": _times(chosen, unit, values), "channels": {}}
     for name, (unit, values) in named.items():
         recording["channels"][name] = {"unit": unit or "-", "values": _numbers(name, values)}
-    return json.dumps(recording).encode()
+    return json.dumps(recording, allow_nan=False).encode()
 
 
 def _columns(frame: Frame) -> tuple[dict[str, list[Any]], dict[str, str]]:
@@ -153,6 +158,10 @@ def _time_column(named: Mapping[str, Any], time: str | None) -> str:
 
 
 def _times(name: str, unit: str | None, values: list[Any]) -> dict[str, Any]:
+    for row, value in enumerate(values, 1):
+        # pandas' NaT and NaN differ from themselves
+        if value is None or value != value:
+            raise ValueError(f"row {row} of {name} has no time: leave it out of the frame")
     if values and all(isinstance(value, (datetime, timedelta)) for value in values):
         return {"unit": "s", "values": [(value - values[0]).total_seconds() for value in values]}
     if not unit:

@@ -40,11 +40,18 @@ def test_times_and_gaps_of_frames(client):
         ({"t": [0.0, 0.1], "q[deg/s]": [1.0, 2.0]}, "no unit"),
         ({"q[deg/s]": [1.0, 2.0]}, "no column t or time"),
         ({"t[s]": [0.0, 0.1], "note": ["up", "down"]}, "column note is not numbers"),
+        ({"t[s]": [0.0, 0.1], "q[deg/s]": [1.0, 2.0], "q[rad/s]": [0.0, 0.0]}, "two columns of the frame are called q"),
+        ({"t": [pd.Timestamp(0), pd.NaT], "q": [1.0, 2.0]}, "row 2 of t has no time"),
     ],
 )
 def test_what_a_frame_does_not_say_is_asked_for(client, frame, words):
     with pytest.raises(ValueError, match=words):
         client.upload(pd.DataFrame(frame))
+
+
+def test_units_of_a_column_that_is_not_there_are_asked_about(client):
+    with pytest.raises(ValueError, match="`units` has alhpa"):
+        client.upload(pd.DataFrame({"t[s]": [0.0, 0.1], "alpha": [1.0, 2.0]}), units={"alhpa": "deg"})
 
 
 def test_a_refused_file_says_where_and_what_to_do(client, tmp_path):
