@@ -68,9 +68,10 @@ fn written(table: &Table, encoding: &str) -> Vec<(&'static str, String)> {
         (Decimal::Comma, true) => "commas, points between thousands",
     };
     let line = |row: &Option<(Line, Vec<&str>)>| {
-        row.as_ref().map_or("no line of their own".to_string(), |(line, _)| {
-            format!("line {}", line.number)
-        })
+        row.as_ref()
+            .map_or("no line of their own".to_string(), |(line, _)| {
+                format!("line {}", line.number)
+            })
     };
     let mut written = vec![
         ("encoding", encoding.to_string()),
