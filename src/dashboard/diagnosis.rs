@@ -43,7 +43,7 @@ fn verdict(diagnosis: &Diagnosis) -> Markup {
         div.verdict {
             @match diagnosis.effects.as_slice() {
                 [] => p { strong { (in_a_word(diagnosis)) }
-                    @if diagnosis.verdict == Verdict::NotTestable { @if let Some(remedy) = diagnosis.left_over() { ": " (remedy) } } },
+                    @if diagnosis.verdict == Verdict::NotTestable { @if let Some(remedy) = &diagnosis.left_over { ": " (remedy) } } },
                 [effect] => p { strong { (in_a_word(diagnosis)) ": " } (effect.sentence) (alternatives(effect)) },
                 effects => {
                     p { strong { (in_a_word(diagnosis)) ":" } }
@@ -69,7 +69,7 @@ fn in_a_word(diagnosis: &Diagnosis) -> &'static str {
 
 /// A remedy stands in the verdict.
 fn left_over(diagnosis: &Diagnosis) -> Option<&str> {
-    let left = diagnosis.left_over();
+    let left = diagnosis.left_over.as_deref();
     left.filter(|_| diagnosis.verdict != Verdict::NotTestable)
 }
 

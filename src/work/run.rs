@@ -99,6 +99,7 @@ async fn work_on(
             load(store, claim).await
         };
         let ready = tokio::select! {
+            biased;
             ready = ready => ready,
             () = stop.overdue() => Err(Unanswered::Interrupted),
         };
@@ -117,7 +118,9 @@ async fn work_on(
             told = record(store, claim, events, &stop) => told,
             never = end_in_time(company, &stop) => match never {},
         };
+        // finished is finished, however late
         let answered = tokio::select! {
+            biased;
             answered = solver => answered.unwrap_or_else(|error| Err(error.into())),
             () = stop.overdue() => Err(Unanswered::Interrupted),
         };

@@ -129,9 +129,11 @@ pub(super) fn answer(
         .iter()
         .map(|accepted| named(accepted, &after))
         .collect();
+    let left_over = verdict::left_over(verdict, &left);
     let diagnosis = Diagnosis {
         verdict,
-        sentence: verdict::sentence(verdict, &effects, &fits, &left),
+        sentence: verdict::sentence(verdict, &effects, &fits, left_over.as_deref()),
+        left_over,
         effects,
         refused: found.truly_refused(),
         quantities: taken_for(case),

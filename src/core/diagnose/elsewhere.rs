@@ -9,7 +9,7 @@ use super::fitted::Fitted;
 use super::screen::critical;
 use super::size::Size;
 use crate::estimate::Role;
-use crate::model::Added;
+use crate::model::{Added, AddedRole};
 
 /// One effect is asked of, not a catalogue.
 const ERROR: f64 = 1e-3;
@@ -41,25 +41,42 @@ impl Elsewhere {
         Some(Self { case, ln_evidence })
     }
 
-    /// What an effect with parameters `added`, its size first, is worth to them: twice the gain of ln L. `None` where it is
-    /// not clearly there, or has another size.
+    /// What an effect with parameters `added` is worth to them: twice the gain of ln L. `None` where it is not clearly there,
+    /// or is another one: of another size, frequency or time. What each flight has of its own is asked for no likeness.
     pub(super) fn shows(&self, settled: &Fitted, added: &[Added], freedom: usize) -> Option<f64> {
         let document = settled.document.clone();
         let fitted = Fitted::settled(&self.case, document, &settled.values()).ok()?;
-        let size = added.get(..1)?;
-        let agree = match (settled.sizes(size).first(), fitted.sizes(size).first()) {
-            (Some(here), Some(there)) => are_alike(here, there),
-            _ => false,
-        };
+        let agree = added.iter().all(|added| {
+            let of = |fitted: &Fitted| {
+                let sizes = fitted.sizes(std::slice::from_ref(added));
+                sizes.into_iter().find(|size| size.segment.is_none())
+            };
+            match (of(settled), of(&fitted)) {
+                (Some(here), Some(there)) if added.role == AddedRole::Size => {
+                    are_alike(&here, &there)
+                }
+                (Some(here), Some(there)) => are_within_chance(&here, &there),
+                _ => true,
+            }
+        });
         let ratio = 2.0 * (fitted.likeliest().ln_evidence() - self.ln_evidence);
         (agree && ratio > critical(ERROR, 1.0, freedom)).then_some(ratio)
     }
 }
 
 fn are_alike(here: &Size, there: &Size) -> bool {
-    let error = |size: &Size| size.standard_error_si().unwrap_or(f64::INFINITY);
     let differ = (here.value - there.value).abs();
-    let chance = AGREE * error(here).hypot(error(there));
-    here.value * there.value > 0.0
-        && differ < chance.min(here.value.abs()).max(SHARE * here.value.abs())
+    let least = here.value.abs();
+    here.value * there.value > 0.0 && differ < chance(here, there).min(least).max(SHARE * least)
+}
+
+fn are_within_chance(here: &Size, there: &Size) -> bool {
+    let differ = (here.value - there.value).abs();
+    differ < chance(here, there).max(SHARE * here.value.abs())
+}
+
+/// By how much two estimates of one size may differ.
+fn chance(here: &Size, there: &Size) -> f64 {
+    let error = |size: &Size| size.standard_error_si().unwrap_or(f64::INFINITY);
+    AGREE * error(here).hypot(error(there))
 }

@@ -61,6 +61,7 @@ impl Found {
         };
         let most = |refused: &&RefusedEffect| refused.likelihood_ratio.unwrap_or(0.0);
         (self.refused.iter())
+            .filter(|refused| !self.stands(&refused.effect))
             .filter(is_open)
             .filter(clearly)
             .max_by(|a, b| most(a).total_cmp(&most(b)))
@@ -81,17 +82,14 @@ impl Found {
 
     /// Candidates that stand in the group of one that was accepted, or were accepted later, were not refused.
     pub(super) fn truly_refused(&self) -> Vec<RefusedEffect> {
-        let stands = |effect: &Effect| {
-            let groups = self.accepted.iter().flat_map(|accepted| &accepted.group);
-            groups
-                .map(|member| &member.effect)
-                .any(|member| member == effect)
-        };
-        let refused = self
-            .refused
-            .iter()
-            .filter(|refused| !stands(&refused.effect));
+        let refused = (self.refused.iter()).filter(|refused| !self.stands(&refused.effect));
         refused.cloned().collect()
+    }
+
+    /// Whether an effect was accepted, singly or in a group.
+    fn stands(&self, effect: &Effect) -> bool {
+        let mut groups = self.accepted.iter().flat_map(|accepted| &accepted.group);
+        groups.any(|member| member.effect == *effect)
     }
 
     /// Notes why an effect that was accepted was taken out again, and what it was worth in the end, if that is known.

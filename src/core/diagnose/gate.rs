@@ -6,18 +6,18 @@
 use super::case::Case;
 use super::effect::{Effect, EffectKind};
 use super::fitted::Fitted;
+use super::heard::{Heard, plain_gain, predictive};
 use super::null_model::NullModel;
 use super::passed::Passed;
-use super::predicted::Predicted;
-use super::refused::differs;
+use super::refused::{Objection, differs};
 use super::repeats::disagreement;
-use super::report::{OutputGain, Refusal};
+use super::report::Refusal;
+use super::sentence;
 use super::size::Size;
-use super::stack::Layout;
 use super::swapped;
 use super::threshold::Threshold;
 use super::trial::Trial;
-use crate::estimate::{Bound, Role};
+use crate::estimate::Bound;
 use crate::model::{Added, AddedRole, EditKind};
 
 /// A size within so many standard errors of nothing is nothing that one can tell an engineer of.
@@ -27,27 +27,11 @@ const LEAST_ERRORS: f64 = 2.0;
 /// its tail (Wagner's function; l/V): with margin within this time, s, of aircraft from gliders to transports.
 const SLOWEST_FLOW: f64 = 0.6;
 
-/// A frequency that is told is at least so many of its standard errors.
-const LEAST_FREQUENCY: f64 = 4.0;
+/// A frequency or a time that is told is at least so many of its standard errors.
+const LEAST_TOLD: f64 = 4.0;
 
 /// Two sizes of a larger correlation are one.
 const TIED: f64 = 0.97;
-
-/// Flights that were not fitted speak of an effect where it should change their likelihood by at least this.
-const HEARD: f64 = 8.0;
-
-/// The least gain there: a fixed part and a share of what the effect should bring,
-const LEAST_GAIN: f64 = 2.0;
-const LEAST_SHARE: f64 = 0.1;
-
-/// or, where that is less, what an effect of which E is expected brings by chance: its gain spreads by 2 √E about E from
-/// the noise of those flights alone, and by as much again from the uncertainty of all parameters.
-const SPREADS: f64 = 6.0;
-
-/// Where flights that were not fitted say nothing of an effect, those that were must say this much more.
-const UNHEARD: f64 = 2.0;
-
-pub(super) type Objection = (Refusal, String);
 
 /// Lets a candidate pass, or says what speaks against it.
 ///
@@ -67,15 +51,6 @@ pub(super) fn pass(
         }),
         Err(objection) => Err(Box::new((trial, objection))),
     }
-}
-
-/// What flights that were not fitted say of an effect.
-#[derive(Default)]
-struct Heard {
-    /// By output, of plain errors.
-    gains: Vec<OutputGain>,
-    /// What it is worth where these are fitted themselves, if that was asked.
-    again: Option<f64>,
 }
 
 fn judge(
@@ -141,7 +116,7 @@ fn within_range(effect: &Effect, fitted: &Fitted, added: &[Added]) -> Result<(),
 /// A parameter that stands at a bound, with its value.
 fn at_bound_of(fitted: &Fitted, added: &Added) -> String {
     match fitted.sizes(std::slice::from_ref(added)).first() {
-        Some(size) => format!("{} = {:.3} {}", size.name, size.own_units(), size.unit),
+        Some(size) => sentence::written(size),
         None => added.name.clone(),
     }
 }
@@ -149,6 +124,7 @@ fn at_bound_of(fitted: &Fitted, added: &Added) -> String {
 /// Whether the numbers that make it what it is called are those of such an effect: a flow forms in a time that the
 /// aircraft takes to fly some lengths of its own, and a mode has a frequency.
 fn is_of_its_kind(effect: &Effect, fitted: &Fitted, added: &[Added]) -> Result<(), Objection> {
+    let error_of = |size: &Size| size.standard_error_si().unwrap_or(0.0);
     let of = |role: AddedRole| {
         let added = added.iter().find(|added| added.role == role)?;
         let sizes = fitted.sizes(std::slice::from_ref(added));
@@ -156,7 +132,7 @@ fn is_of_its_kind(effect: &Effect, fitted: &Fitted, added: &[Added]) -> Result<(
     };
     match effect.kind {
         EffectKind::Edit(EditKind::UnsteadyAero) => match of(AddedRole::TimeConstant) {
-            Some(time) if time.value > SLOWEST_FLOW => Err((
+            Some(time) if is_too_slow(time.value, error_of(&time)) => Err((
                 Refusal::OutOfRange,
                 format!(
                     "a flow that follows {:.2} s late is none: it forms within {SLOWEST_FLOW} s",
@@ -166,7 +142,7 @@ fn is_of_its_kind(effect: &Effect, fitted: &Fitted, added: &[Added]) -> Result<(
             _ => Ok(()),
         },
         EffectKind::Edit(EditKind::StructuralMode) => match of(AddedRole::Frequency) {
-            Some(mode) if is_not_told(&mode) => Err((
+            Some(mode) if is_not_told(mode.value, error_of(&mode)) => Err((
                 Refusal::OutOfRange,
                 "the data do not tell its frequency: what swings so is no mode".into(),
             )),
@@ -186,10 +162,15 @@ fn is_of_its_kind(effect: &Effect, fitted: &Fitted, added: &[Added]) -> Result<(
     }
 }
 
-/// Whether the error of a frequency is so large that it is none.
-fn is_not_told(frequency: &Size) -> bool {
-    (frequency.standard_error_si())
-        .is_some_and(|error| frequency.value.abs() < LEAST_FREQUENCY * error)
+/// Whether a flow that follows after a `time` ± `error` is none: slower than any, or not told.
+fn is_too_slow(time: f64, error: f64) -> bool {
+    let at_least = time - LEAST_ERRORS * error;
+    time > SLOWEST_FLOW && (at_least > SLOWEST_FLOW || is_not_told(time, error))
+}
+
+/// Whether the error of a frequency or a time is so large that it is none.
+fn is_not_told(value: f64, error: f64) -> bool {
+    value.abs() < LEAST_TOLD * error
 }
 
 /// The fit that is reported: converged, by output error.
@@ -284,84 +265,6 @@ fn repeats(trial: &Trial, settled: &Fitted) -> Result<(), Objection> {
     }
 }
 
-/// Whether flights that were not fitted are predicted better with it.
-fn predictive(
-    null: &NullModel<'_>,
-    trial: &Trial,
-    settled: &Fitted,
-    least: f64,
-) -> Result<Heard, Objection> {
-    // a gust comes once, and innovations are no prediction
-    let is_heard =
-        !trial.effect.is_noise() && trial.effect.kind != EffectKind::Edit(EditKind::Gust);
-    let (Some(before), true) = (&null.predicted, is_heard) else {
-        return Ok(Heard::default());
-    };
-    let predicted = Predicted::of(settled, null.case, Role::Validation)
-        .map_err(|why| (Refusal::NotPredictive, why.to_string()))?;
-    let Some(after) = predicted else {
-        return Ok(Heard::default());
-    };
-    let gains = after.gains_over(before);
-    if trial.effect.is_local_in_time() {
-        // each flight has a size of its own, found on that flight
-        return Ok(Heard { gains, again: None });
-    }
-    let gain: f64 = gains.iter().map(|gain| gain.gain).sum();
-    let expected = after.gain_expected_over(before);
-    if expected < HEARD && trial.likelihood_ratio < UNHEARD * least {
-        let why = format!(
-            "flights that were not fitted hardly show it (their likelihood changes by {expected:.1}), and those that were do not show it clearly enough alone"
-        );
-        return Err((Refusal::NotPredictive, why));
-    }
-    // what speaks for it on all flights together
-    let in_all = trial.likelihood_ratio + gain;
-    let is_clear = trial.likelihood_ratio >= UNHEARD * least;
-    let is_seen = gain > 0.0 || is_clear;
-    let is_denied =
-        expected >= HEARD && (gain < least_gain(expected) || in_all < least || !is_seen);
-    // plain errors of coloured noise say little: whether the effect is there is asked as it was of the flights fitted
-    let again = match is_denied && is_clear && null.base.is_coloured() {
-        true => null.shown_again(settled, &trial.added, trial.freedom),
-        false => None,
-    };
-    if is_denied && again.is_none() {
-        let why = format!(
-            "it differs between maneuvers: flights that were not fitted are not predicted better with it (gain {gain:.1}, where {expected:.1} is expected)"
-        );
-        return Err((Refusal::NotPredictive, why));
-    }
-    if let Some((output, ratio)) = after.clearly_worse_than(before) {
-        let why = format!(
-            "{output} of flights that were not fitted is predicted worse with it: RMS error {ratio:.2} times as large"
-        );
-        return Err((Refusal::NotPredictive, why));
-    }
-    Ok(Heard { gains, again })
-}
-
-/// The gain below which flights that were not fitted speak against an effect that should bring `expected`.
-fn least_gain(expected: f64) -> f64 {
-    let by_chance = expected - SPREADS * expected.sqrt();
-    by_chance.min(LEAST_GAIN + LEAST_SHARE * expected)
-}
-
-/// What smaller plain errors are worth: on flights that were not fitted, or where all were, on these. `None` of a gust,
-/// which other flights do not have, and of innovations, which are no such errors.
-fn plain_gain(
-    null: &NullModel<'_>,
-    effect: &Effect,
-    settled: &Fitted,
-    gains: &[OutputGain],
-) -> Option<f64> {
-    if null.predicted.is_none() && !effect.is_noise() {
-        let layout = Layout::of(&settled.problem);
-        return Some(layout.plain_gain(&null.base.residual, &settled.residual));
-    }
-    (!gains.is_empty()).then(|| gains.iter().map(|gain| gain.gain).sum())
-}
-
 /// Whether a parameter at its bound speaks against the effect: how steeply and how late the flow separates is hardly seen
 /// in many a stall, at which angle it does is; and how lightly a mode is damped is not seen in a short flight, while one
 /// that is damped heavily is none.
@@ -380,11 +283,16 @@ fn decides(effect: &Effect, role: AddedRole, bound: Bound) -> bool {
 mod tests {
     use super::*;
 
-    /// A gain is by chance as far below E as six spreads of √E; where E is large a tenth of it must be there.
+    /// Two standard errors below the limit is no flow that is too slow; one that is told by less than four is none at all.
     #[test]
-    fn what_chance_makes_is_not_held_against_an_effect() {
-        for (expected, least) in [(9.0, -9.0), (36.0, 0.0), (49.0, 6.9), (400.0, 42.0)] {
-            assert!((least_gain(expected) - least).abs() < 1e-12, "{expected}");
+    fn a_flow_is_as_fast_as_its_error_lets_it_be() {
+        for (time, error, too_slow) in [
+            (0.5, 0.2, false),
+            (0.7, 0.1, false),
+            (2.0, 0.1, true),
+            (4.0, 2.0, true),
+        ] {
+            assert_eq!(is_too_slow(time, error), too_slow, "{time} ± {error} s");
         }
     }
 }

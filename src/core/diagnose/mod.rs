@@ -26,6 +26,7 @@ mod flight;
 mod found;
 mod gate;
 mod group;
+mod heard;
 mod inconclusive;
 mod knowledge;
 mod lines;

@@ -6,7 +6,7 @@ use super::declared::Declared;
 use super::effect::Effect;
 use super::found::{CLEARLY, Found};
 use super::report::{Refusal, RefusedEffect};
-use super::truth::{Noise, Truth, steps};
+use super::truth::{Noise, Truth, elevator};
 use super::two_at_once::two_at_once;
 use super::{Case, Step, candidates, diagnose};
 use crate::estimate::Role;
@@ -24,22 +24,6 @@ struct Undeclared {
     square: f64,
     /// Of the vane, rad/s.
     drift: f64,
-}
-
-/// In each flight otherwise.
-fn elevator(t: f64, flight: usize) -> Vec<f64> {
-    let size = [0.05, -0.045, 0.06][flight];
-    let t = t - [0.0, 0.7, 0.3][flight];
-    let moves = [
-        (2.5, 4.0, size),
-        (4.0, 5.0, -size),
-        (5.0, 5.5, size),
-        (5.5, 6.0, -size),
-        (11.0, 12.0, 0.7 * size),
-        (12.0, 13.0, -0.7 * size),
-        (17.0, 19.5, 0.5 * size),
-    ];
-    vec![-0.03 + steps(t, &moves)]
 }
 
 fn flown(undeclared: Undeclared, seed: u64) -> Case {
@@ -144,12 +128,19 @@ fn two_that_hide_each_other_are_found_and_one_alone_is_not_two() {
         let catalogue = candidates::candidates(&case, &base.problem.model);
         let drift = (catalogue.iter()).find(|effect| effect.name() == "sensor_drift of alpha");
         let refused = [denied(drift.expect("a drift of the vane"))];
-        let found = Found::default();
+        let mut found = Found::default();
         let two = two_at_once(&case, &base, &found, &refused, &catalogue, 1, quiet);
         let two = two.unwrap_or_else(|_| panic!("stopped"));
-        let names = two.map(|two| two.map(|accepted| accepted.effect.name()));
+        let names = (two.as_ref()).map(|two| [&two[0], &two[1]].map(|one| one.effect.name()));
         println!("{names:?}");
         let expected = ["missing_term alpha^3 in q", "sensor_drift of alpha"].map(String::from);
         assert_eq!(names, pair.then_some(expected));
+        // what was denied by itself and stands beside the other is not open any more
+        found.refuse(refused.to_vec());
+        assert!(found.clear_but_refused().is_some());
+        for accepted in two.into_iter().flatten() {
+            assert!(found.accept(accepted, 1, quiet).is_ok());
+        }
+        assert_eq!(found.clear_but_refused().is_none(), pair);
     }
 }

@@ -6,6 +6,9 @@ use super::screen::Screened;
 use super::threshold::Threshold;
 use super::trial::Trial;
 
+/// Why a candidate is not accepted, and the reason in a sentence.
+pub(super) type Objection = (Refusal, String);
+
 /// One that could not be fitted at all.
 pub(super) fn not_fitted(effect: Effect, why: String) -> RefusedEffect {
     untried(effect, Refusal::NotFitted, why)
@@ -31,7 +34,7 @@ fn untried(effect: Effect, reason: Refusal, why: String) -> RefusedEffect {
 /// One that was tried; `held_out` is its gain on flights that were not fitted.
 pub(super) fn after_trial(
     trial: &Trial,
-    (reason, sentence): (Refusal, String),
+    (reason, sentence): Objection,
     held_out: Option<f64>,
     threshold: Threshold,
 ) -> RefusedEffect {
@@ -56,7 +59,7 @@ pub(super) fn after_trial(
 pub(super) fn after_screen(
     effect: &Effect,
     screened: &Screened,
-    (reason, sentence): (Refusal, String),
+    (reason, sentence): Objection,
     threshold: Threshold,
 ) -> RefusedEffect {
     let seen = reason != Refusal::Invisible;

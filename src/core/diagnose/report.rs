@@ -39,13 +39,12 @@ impl Verdict {
     }
 }
 
-/// How sentences of verdicts begin, or go on.
+/// How sentences of verdicts begin.
 pub(super) const NOTHING: &str =
     "no effect of the catalogue is missing, and what is left follows no input";
 pub(super) const UNEXPLAINED: &str =
     "something is missing that no effect of the catalogue explains";
 pub(super) const UNDECIDED: &str = "the data cannot decide";
-pub(super) const MORE: &str = ". That is not all: ";
 
 /// The answer of a diagnosis.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
@@ -57,6 +56,9 @@ pub struct Diagnosis {
         example = "alpha is recorded 62.1 ± 1.5 ms late (alpha_delay). RMS error of the prediction: alpha 0.31 to 0.11 deg"
     )]
     pub sentence: String,
+    /// What is left unexplained, or to be done, as the sentence says it; absent where there is nothing of the kind.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub left_over: Option<String>,
     /// What the model lacked, in the order in which it was found.
     pub effects: Vec<NamedEffect>,
     /// All other candidates, with the reason.
@@ -94,17 +96,6 @@ impl Diagnosis {
             Verdict::Unexplained if named.is_empty() => UNEXPLAINED.to_string(),
             Verdict::Unexplained => format!("{named}; more is missing"),
             Verdict::NotTestable => UNDECIDED.to_string(),
-        }
-    }
-
-    /// What is left unexplained, or to be done, in the words of the sentence.
-    pub fn left_over(&self) -> Option<&str> {
-        let rest = |begin: &str| self.sentence.strip_prefix(begin)?.strip_prefix(": ");
-        match self.verdict {
-            Verdict::Unexplained if self.effects.is_empty() => rest(UNEXPLAINED),
-            Verdict::Unexplained => self.sentence.split_once(MORE).map(|(_, rest)| rest),
-            Verdict::NotTestable => rest(UNDECIDED),
-            Verdict::Named | Verdict::NamedGroup | Verdict::NothingMissing => None,
         }
     }
 }

@@ -93,7 +93,7 @@ pub(super) fn round(
         candidates: count,
         visible: visible.len(),
         promising: visible.iter().filter(|seen| in_play(seen, &[])).count(),
-        rounds: MOST_ROUNDS,
+        rounds: MOST_ROUNDS.max(number),
     };
     tell(watcher, &step)?;
     result.refused.extend(hidden.iter().map(|seen| {

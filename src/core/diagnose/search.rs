@@ -66,7 +66,7 @@ impl<'c> Search<'c> {
     /// # Errors
     /// The watcher stopped it.
     pub(super) fn run(&mut self, watcher: &mut Watcher<'_>) -> Result<(), Stopped> {
-        while self.number <= MOST_ROUNDS {
+        while self.number <= self.last() {
             let left = self.left_of(&self.pool);
             let added = self.found.added();
             let round = round(self.case, &self.base, left, &added, self.number, watcher)?;
@@ -79,6 +79,11 @@ impl<'c> Search<'c> {
             }
         }
         Ok(())
+    }
+
+    /// The last round: an exchange is a round, and adds no effect.
+    fn last(&self) -> usize {
+        MOST_ROUNDS + self.exchanges
     }
 
     /// Those that what was accepted has not ruled out.
@@ -156,7 +161,8 @@ impl<'c> Search<'c> {
         refused: &[RefusedEffect],
         watcher: &mut Watcher<'_>,
     ) -> Result<bool, Stopped> {
-        if std::mem::replace(&mut self.has_tried_two, true) {
+        let is_room_for_two = self.number < self.last();
+        if !is_room_for_two || std::mem::replace(&mut self.has_tried_two, true) {
             return Ok(false);
         }
         let left = self.left_of(&self.catalogue);

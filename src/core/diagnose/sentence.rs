@@ -76,7 +76,7 @@ fn measured(sign: f64, size: &Size) -> String {
 }
 
 /// A size with its bound: angles in degrees, frequencies in Hz.
-fn written(size: &Size) -> String {
+pub(super) fn written(size: &Size) -> String {
     let (value, error, unit) = shown(size);
     let value = match error {
         Some(error) => with_error(value, error),

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use super::declared::Declared;
 use super::elsewhere::Elsewhere;
 use super::fitted::Fitted;
-use super::truth::{Chance, Noise, Truth, steps};
+use super::truth::{Chance, Noise, Truth, elevator};
 use super::{Case, Diagnosis, Verdict, candidates, diagnose};
 use crate::estimate::Role;
 use crate::model::catalog;
@@ -29,22 +29,6 @@ enum Undeclared {
     TurbulenceAndCube,
     /// The moment alone: in all flights, or in those that are fitted.
     Cube(bool),
-}
-
-/// An elevator that moves in all maneuvers, in each otherwise.
-fn elevator(t: f64, flight: usize) -> Vec<f64> {
-    let size = [0.05, -0.045, 0.06][flight];
-    let t = t - [0.0, 0.7, 0.3][flight];
-    let moves = [
-        (2.5, 4.0, size),
-        (4.0, 5.0, -size),
-        (5.0, 5.5, size),
-        (5.5, 6.0, -size),
-        (11.0, 12.0, 0.7 * size),
-        (12.0, 13.0, -0.7 * size),
-        (17.0, 19.5, 0.5 * size),
-    ];
-    vec![-0.03 + steps(t, &moves)]
 }
 
 fn flown(undeclared: Undeclared, colour: f64, seed: u64) -> Case {

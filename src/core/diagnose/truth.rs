@@ -148,3 +148,19 @@ pub(in crate::diagnose) fn steps(t: f64, all: &[(f64, f64, f64)]) -> f64 {
         .map(|&(begin, end, size)| size * (reached(t - begin) - reached(t - end)))
         .sum()
 }
+
+/// An elevator about -0.03 rad that moves in all of three maneuvers, in each otherwise.
+pub(in crate::diagnose) fn elevator(t: f64, flight: usize) -> Vec<f64> {
+    let size = [0.05, -0.045, 0.06][flight];
+    let t = t - [0.0, 0.7, 0.3][flight];
+    let moves = [
+        (2.5, 4.0, size),
+        (4.0, 5.0, -size),
+        (5.0, 5.5, size),
+        (5.5, 6.0, -size),
+        (11.0, 12.0, 0.7 * size),
+        (12.0, 13.0, -0.7 * size),
+        (17.0, 19.5, 0.5 * size),
+    ];
+    vec![-0.03 + steps(t, &moves)]
+}

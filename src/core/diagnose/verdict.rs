@@ -6,7 +6,7 @@ use super::effect::EffectKind;
 use super::fitted::Fitted;
 use super::found::Found;
 use super::report::{
-    FitChange, MORE, NOTHING, NamedEffect, Refusal, RefusedEffect, UNDECIDED, UNEXPLAINED, Verdict,
+    FitChange, NOTHING, NamedEffect, Refusal, RefusedEffect, UNDECIDED, UNEXPLAINED, Verdict,
 };
 use super::unmodelled::Unmodelled;
 use crate::estimate::{Role, five_digits};
@@ -101,23 +101,29 @@ pub(super) fn sentence(
     verdict: Verdict,
     effects: &[NamedEffect],
     fits: &[FitChange],
-    left: &Left<'_>,
+    left_over: Option<&str>,
 ) -> String {
+    let left_over = left_over.unwrap_or_default();
     match verdict {
         Verdict::Named | Verdict::NamedGroup => with_errors(effects, fits),
         Verdict::NothingMissing => NOTHING.into(),
-        Verdict::Unexplained if effects.is_empty() => {
-            format!("{UNEXPLAINED}: {}", what_is_left(left))
-        }
+        Verdict::Unexplained if effects.is_empty() => format!("{UNEXPLAINED}: {left_over}"),
         Verdict::Unexplained => {
             let found = with_errors(effects, fits);
-            format!("{found}{MORE}{}", what_is_left(left))
+            format!("{found}. That is not all: {left_over}")
         }
-        Verdict::NotTestable => {
-            format!(
-                "{UNDECIDED}: fly another maneuver that moves every input, at least some seconds long"
-            )
-        }
+        Verdict::NotTestable => format!("{UNDECIDED}: {left_over}"),
+    }
+}
+
+/// What is left unexplained, or to be done.
+pub(super) fn left_over(verdict: Verdict, left: &Left<'_>) -> Option<String> {
+    match verdict {
+        Verdict::Named | Verdict::NamedGroup | Verdict::NothingMissing => None,
+        Verdict::Unexplained => Some(what_is_left(left)),
+        Verdict::NotTestable => Some(
+            "fly another maneuver that moves every input, at least some seconds long".to_string(),
+        ),
     }
 }
 

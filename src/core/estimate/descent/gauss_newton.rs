@@ -76,6 +76,7 @@ pub(crate) fn descend_with<'p, E: Evaluate<'p>>(
             if let Ok(first) = first {
                 search = Search::new(problem, fallback.method());
                 spent = Some((std::mem::replace(&mut current, first), distance));
+                (on_the_spot, has_turned) = (0, false);
                 taken = Taken::default();
                 iteration += 1;
                 continue;
@@ -119,7 +120,8 @@ pub(crate) fn descend_with<'p, E: Evaluate<'p>>(
         spent.filter(|(spent, _)| spent.weighting.cost < current.weighting.cost - margin)
     {
         current = nearest;
-        if ended {
+        // the distance that is told is that of the iterate which is kept
+        if stopped.distance().is_some() {
             stopped = Stopped::Budget { distance };
         }
     }

@@ -63,7 +63,7 @@ impl Stopped {
             }
             Self::Corner { distance } => {
                 let reason = format!(
-                    "steps come to nothing, though the next one would be {distance:.1e} standard errors long: the cost has a corner here, as a limit or a play makes it, or the floor of a narrow bend"
+                    "steps come to nothing, though the next one would be {distance:.1e} standard errors long: the cost has a corner here, as a limit or a play makes it, or the floor of a narrow bend; try other start values, or hold the parameter that limits"
                 );
                 (Outcome::Stalled, reason)
             }

@@ -42,12 +42,14 @@ pub(crate) fn multi_start(
         .map_or(1, NonZero::get)
         .min(starts);
     let (send, runs) = mpsc::channel();
-    // where it is dropped, no further one is begun
     let one = shared(|number: usize| {
-        droppable(|| {
-            let theta = random_start(problem, number, seed, spread);
-            run(problem, number, theta, &stop)
-        })
+        let theta = random_start(problem, number, seed, spread);
+        let run = run(problem, number, theta, &stop);
+        // where it was dropped it is kept as far as it came, and no further one is begun
+        if droppable(check).is_err() {
+            stop.store(true, Ordering::Relaxed);
+        }
+        run
     });
     let mut tally = Tally::default();
     std::thread::scope(|scope| {
@@ -60,7 +62,7 @@ pub(crate) fn multi_start(
                     if number >= starts || stop.load(Ordering::Relaxed) {
                         return;
                     }
-                    let Ok(Ok(run)) = caught(|| one(number)) else {
+                    let Ok(run) = caught(|| one(number)) else {
                         stop.store(true, Ordering::Relaxed);
                         return;
                     };
