@@ -45,6 +45,7 @@ mod search;
 mod study;
 mod study_figure;
 mod style;
+mod ticks;
 mod tolerances;
 mod unit_list;
 mod unmodelled;
