@@ -40,6 +40,7 @@ mod palette;
 mod problem_page;
 mod report;
 mod report_basis;
+mod report_method;
 mod residual_figures;
 mod search;
 mod study;
