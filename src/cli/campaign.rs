@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 use super::recording::read_text;
 use super::{Failure, table};
 use crate::estimate::{Role, TimeHistory, five_digits as number};
-use crate::flight::{p_value, with_error};
+use crate::flight::p_value;
 use crate::http::campaign_as_csv;
 use crate::job::{
     Campaign, CampaignQuestion, Flown, JobResult, UsedRecording, campaign, channel_of,
@@ -64,7 +64,7 @@ impl ShowCampaign {
         } else if self.json {
             println!("{}", serde_json::to_string_pretty(&campaign)?);
         } else {
-            println!("{}", tables(&campaign));
+            println!("{}", tables(&campaign, &self.by));
         }
         for left_out in &campaign.left_out {
             eprintln!("{} is left out: {}", left_out.job, left_out.reason);
@@ -150,18 +150,9 @@ fn untold(campaign: &Campaign) -> IndexMap<String, Vec<&str>> {
     untold
 }
 
-fn tables(campaign: &Campaign) -> String {
+/// Means of channels are SI here, as the results are.
+fn tables(campaign: &Campaign, by: &[String]) -> String {
     let rows = campaign.curves.iter().map(|curve| {
-        let terms: Vec<String> = (curve.terms.iter())
-            .map(|term| {
-                let value = with_error(term.value, term.standard_error);
-                if term.term == "1" {
-                    value
-                } else {
-                    format!("({value}) {}", term.term)
-                }
-            })
-            .collect();
         let outliers = curve.points.iter().filter(|point| point.is_outlier);
         let outliers: Vec<String> = outliers
             .map(|point| format!("{} ({:+.1} s.e.)", point.job, point.deviation))
@@ -174,16 +165,19 @@ fn tables(campaign: &Campaign) -> String {
         vec![
             format!("{} [{}]", curve.parameter, curve.unit),
             group.join(", "),
-            terms.join(" + "),
-            format!(
-                "{} of {}",
-                number(curve.chi_squared),
-                curve.degrees_of_freedom
-            ),
+            curve.written(1.0, 1.0),
+            match curve.tested() {
+                Ok(tested) => format!("{} of {}", number(tested), curve.degrees_of_freedom),
+                Err(why) => why.to_string(),
+            },
             curve.probability.map(p_value).unwrap_or_default(),
             outliers.join(", "),
         ]
     });
-    let header = ["parameter", "group", "curve", "χ²", "by chance", "outliers"];
+    let curve = match by.iter().any(|name| channel_of(name).is_some()) {
+        true => "curve, means in SI",
+        false => "curve",
+    };
+    let header = ["parameter", "group", curve, "χ²", "by chance", "outliers"];
     table::bordered(header, rows, 0..0)
 }

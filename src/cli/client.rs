@@ -334,11 +334,16 @@ async fn accepted(response: Response) -> Result<Response, Failure> {
             }
         })
         .collect();
-    let title = problem["detail"]
-        .as_str()
-        .or(problem["title"].as_str())
-        .unwrap_or("no explanation");
-    let what = format!("the server answers {status}: {title}");
+    // the detail tells the first fault, which is among them
+    let members = match faults.is_empty() {
+        true => ["detail", "title"],
+        false => ["title", "detail"],
+    };
+    let said = { members.iter() }.find_map(|member| problem[*member].as_str());
+    let what = format!(
+        "the server answers {status}: {}",
+        said.unwrap_or("no explanation")
+    );
     Err(match faults.is_empty() {
         true => Failure::new(what),
         false => Failure::faults(&what, &faults),

@@ -35,30 +35,13 @@ impl Compare {
         } else {
             println!("{}", side_by_side(&comparison));
         }
-        for (one, other) in dependent(&comparison) {
+        for (one, other) in comparison.dependent_pairs() {
             eprintln!(
                 "jobs {one} and {other} were fitted to samples of the same recording: they are not independent, and their differences in standard errors are not to be relied on"
             );
         }
         Ok(())
     }
-}
-
-/// Numbers, from 1, of jobs that have samples in common.
-fn dependent(comparison: &Comparison) -> Vec<(usize, usize)> {
-    let jobs = &comparison.jobs;
-    let place = |id: &String| jobs.iter().position(|job| job.job == *id);
-    let of = |(at, others): (usize, &Vec<String>)| {
-        let later = others
-            .iter()
-            .filter_map(place)
-            .filter(move |other| *other > at);
-        later
-            .map(move |other| (at + 1, other + 1))
-            .collect::<Vec<_>>()
-    };
-    let shared = jobs.iter().map(|job| &job.shares_data_with).enumerate();
-    shared.flat_map(of).collect()
 }
 
 fn side_by_side(comparison: &Comparison) -> String {

@@ -15,12 +15,12 @@ use super::server::ServerOption;
 #[derive(Args, Debug)]
 pub(super) struct Models {
     /// A catalog name, or the id of a stored model.
-    #[arg(conflicts_with_all = ["add", "search"])]
+    #[arg(conflicts_with_all = ["add", "search", "limit", "csv"])]
     id: Option<String>,
     #[command(flatten)]
     server: ServerOption,
     /// Store a model document (.toml, .json), and print its id, which a job names as its model.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["search", "limit", "csv", "json"])]
     add: Option<PathBuf>,
     /// Only those that have each of these words in their name or title.
     #[arg(long, value_name = "WORDS")]
@@ -34,12 +34,12 @@ pub(super) struct Models {
 
 const COLUMNS: [Column; 7] = [
     Column::text("id", "/id"),
-    Column::text("origin", "/origin"),
+    Column::only_in_csv("origin", "/origin"),
     Column::text("name", "/name"),
     Column::text("title", "/title"),
-    Column::text("inputs", "/inputs"),
-    Column::text("outputs", "/outputs"),
-    Column::text("created", "/created"),
+    Column::only_in_csv("inputs", "/inputs"),
+    Column::only_in_csv("outputs", "/outputs"),
+    Column::only_in_csv("created", "/created"),
 ];
 
 impl Models {

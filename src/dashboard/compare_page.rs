@@ -7,7 +7,7 @@ use super::eigenvalues;
 use super::error_bars::{ErrorBars, Point};
 use super::estimate_tables::mode_table;
 use super::layout::{Frame, page};
-use super::palette::colour;
+use super::palette::{colour, number_of};
 use crate::estimate::Mode;
 use crate::flight::{Shown, shown_in, with_error};
 use crate::job::{Campaign, ComparedJob, ComparedParameter, ComparedValue, Comparison};
@@ -30,15 +30,15 @@ pub fn compare_page(view: &CompareView) -> String {
     let ids: Vec<&str> = comparison.jobs.iter().map(|job| job.job.as_str()).collect();
     let content = html! {
         h1 { "Compare jobs" }
-        (jobs(comparison, &ids))
-        (dependence(&comparison.jobs))
+        (jobs(comparison, &view.chosen, &ids))
+        (dependence(comparison))
         h2 id="parameters" { "Parameters" }
         p.soft { "Each with its standard error, below it the difference from the first job in standard errors of independent estimates, √(σ² + σ₁²); beyond " (FAR) " in bold." }
         (parameters(comparison))
         (bars(comparison))
         (modes(&comparison.jobs))
         h2 id="histories" { "Measured and model" }
-        p.soft { "Dots are measured, lines are models, each in the colour of its job. Jobs on the same recording share one plot; the others start at 0 s together." }
+        p.soft { "Dots are measured, lines are models, each in the colour of its job. Segments with the same samples of the same outputs share one plot. Of the others the first of each job stand in one, then the second, and so on, each from 0 s." }
         div id="compared" data-loading="true" data-jobs=(ids.join(",")) {}
         (conditions::section(&view.campaign, &view.offered, &view.chosen, &ids))
         h2 { "Downloads" }
@@ -55,16 +55,11 @@ pub fn compare_page(view: &CompareView) -> String {
     page(&frame, &content)
 }
 
-/// The number and colour of a job, by which figures call it.
-pub(super) fn number_of(at: usize) -> Markup {
-    html! { span.key style={ "--of: " (colour(at)) } { (at + 1) } }
-}
-
-fn jobs(comparison: &Comparison, ids: &[&str]) -> Markup {
+fn jobs(comparison: &Comparison, chosen: &Chosen, ids: &[&str]) -> Markup {
     let without = |at: usize| {
         let kept = ids.iter().enumerate().filter(|(other, _)| *other != at);
         let kept: Vec<&str> = kept.map(|(_, id)| *id).collect();
-        format!("/compare?jobs={}", kept.join(","))
+        conditions::address("/compare", chosen, &kept)
     };
     html! {
         div.scroll tabindex="0" role="region" aria-label="Jobs that are compared" { table {
@@ -81,19 +76,11 @@ fn jobs(comparison: &Comparison, ids: &[&str]) -> Markup {
 }
 
 /// Which jobs are not independent of each other.
-fn dependence(jobs: &[ComparedJob]) -> Markup {
-    let place = |id: &String| jobs.iter().position(|job| job.job == *id);
-    let mut pairs = Vec::new();
-    for (at, job) in jobs.iter().enumerate() {
-        for other in job
-            .shares_data_with
-            .iter()
-            .filter_map(place)
-            .filter(|other| *other > at)
-        {
-            pairs.push(format!("{} and {}", at + 1, other + 1));
-        }
-    }
+fn dependence(comparison: &Comparison) -> Markup {
+    let pairs = comparison.dependent_pairs().into_iter();
+    let pairs: Vec<String> = pairs
+        .map(|(one, other)| format!("{one} and {other}"))
+        .collect();
     html! {
         @if !pairs.is_empty() {
             p.note {

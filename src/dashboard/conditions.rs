@@ -3,9 +3,10 @@
 use maud::{Markup, html};
 
 use super::error_bars::{ErrorBars, Point};
+use super::palette::number_of;
 use crate::estimate::five_digits as number;
-use crate::flight::{Shown, p_value, shown_in, with_error};
-use crate::job::{Campaign, CampaignCurve, CampaignPoint, CampaignTerm, channel_of};
+use crate::flight::{Shown, p_value, shown_in};
+use crate::job::{Campaign, CampaignCurve, CampaignPoint, LeftOut, channel_of};
 
 /// What parameters can be seen over.
 #[derive(Default)]
@@ -39,9 +40,9 @@ pub(super) fn section(
     html! {
         h2 id="conditions" { @if chosen.by.is_empty() { "Weighted means" } @else { "Over " (words(&chosen.by)) } }
         (form(offered, chosen, ids))
-        @for job in &campaign.left_out { p.soft { (job.name) " is left out: " (job.reason) "." } }
+        @for job in &campaign.left_out { p.soft { (left_out(job, ids)) } }
         @if campaign.curves.is_empty() { p { "No parameter with a standard error is left." } }
-        @else { (table(campaign, across(offered, chosen).map_or(1.0, |shown| shown.scale))) }
+        @else { (table(campaign, offered, chosen, ids)) }
         @if !chosen.by.is_empty() {
             div.tiles.wide {
                 @for curve in &campaign.curves {
@@ -54,7 +55,7 @@ pub(super) fn section(
             }
             p.soft { "Error bars and bands of 2 standard errors; open circles are outliers, which do not count." }
         }
-        ul.links { li { a href=(address(chosen, ids)) { "this table (CSV)" } } }
+        ul.links { li { a href={ (address("/v1/campaigns", chosen, ids)) "&format=csv" } { "this table (CSV)" } } }
     }
 }
 
@@ -63,6 +64,20 @@ fn words(by: &str) -> String {
         Some(channel) => format!("the mean of {channel}"),
         None => by.to_string(),
     }
+}
+
+/// By the numbers that jobs have on the page.
+fn left_out(job: &LeftOut, ids: &[&str]) -> Markup {
+    let numbers = ids.iter().enumerate();
+    let reason = numbers.fold(job.reason.clone(), |reason, (at, id)| {
+        reason.replace(id, &(at + 1).to_string())
+    });
+    html! { (named(&job.job, ids)) " " (job.name) " is left out: " (reason) "." }
+}
+
+/// The number of a job.
+fn named(job: &str, ids: &[&str]) -> Markup {
+    html! { @if let Some(at) = ids.iter().position(|id| *id == job) { (number_of(at)) } }
 }
 
 fn form(offered: &Offered, chosen: &Chosen, ids: &[&str]) -> Markup {
@@ -90,7 +105,8 @@ fn form(offered: &Offered, chosen: &Chosen, ids: &[&str]) -> Markup {
     }
 }
 
-fn address(chosen: &Chosen, ids: &[&str]) -> String {
+/// What these jobs say over what is chosen: a page, or a resource.
+pub(super) fn address(path: &str, chosen: &Chosen, ids: &[&str]) -> String {
     let mut query = form_urlencoded::Serializer::new(String::new());
     query.append_pair("jobs", &ids.join(","));
     for (name, value) in [("by", &chosen.by), ("group", &chosen.group)] {
@@ -98,24 +114,25 @@ fn address(chosen: &Chosen, ids: &[&str]) -> String {
             query.append_pair(name, value);
         }
     }
-    query.append_pair("format", "csv");
-    format!("/v1/campaigns?{}", query.finish())
+    format!("{path}?{}", query.finish())
 }
 
-fn table(campaign: &Campaign, wide: f64) -> Markup {
+fn table(campaign: &Campaign, offered: &Offered, chosen: &Chosen, ids: &[&str]) -> Markup {
+    let across = across(offered, chosen);
+    let wide = across.as_ref().map_or(1.0, |shown| shown.scale);
     html! {
         div.scroll tabindex="0" role="region" aria-labelledby="conditions" { table {
             thead { tr {
-                th scope="col" { "parameter" } th scope="col" { "unit" } th scope="col" { "mean or curve" }
+                th scope="col" { "parameter" } th scope="col" { "unit" } th scope="col" { @match &across { Some(shown) => { "curve, " (chosen.by) " in " (shown.unit) } None => "mean or curve" } }
                 th.number scope="col" { "χ²" } th.number scope="col" { "degrees of freedom" } th.number scope="col" { "by chance" } th scope="col" { "outliers" }
             } }
             tbody { @for curve in &campaign.curves { tr {
                 th scope="row" { (curve.parameter) @if let Some(group) = group_of(curve) { " " span.soft { (group) } } }
                 td.soft { (shown_in(&curve.unit).unit) }
-                td { (terms(curve, wide)) }
-                td.number { (number(curve.chi_squared)) } td.number { (curve.degrees_of_freedom) }
+                td { (curve.written(shown_in(&curve.unit).scale, wide)) }
+                td.number { @match curve.tested() { Ok(tested) => (number(tested)), Err(why) => span.soft { (why) } } } td.number { (curve.degrees_of_freedom) }
                 td.number { @if let Some(p) = curve.probability { (p_value(p)) } }
-                td { (outliers(curve)) }
+                td { (outliers(curve, ids)) }
             } } }
         } }
     }
@@ -130,21 +147,6 @@ fn group_of(curve: &CampaignCurve) -> Option<String> {
     (!pairs.is_empty()).then(|| pairs.join(", "))
 }
 
-/// In the units of the figures.
-fn terms(curve: &CampaignCurve, wide: f64) -> String {
-    let Shown { scale, .. } = shown_in(&curve.unit);
-    let text = |term: &CampaignTerm| {
-        let scale = scale / wide.powi(power(&term.term));
-        let value = with_error(term.value * scale, term.standard_error * scale);
-        if term.term == "1" {
-            value
-        } else {
-            format!("({value}) {}", term.term)
-        }
-    };
-    curve.terms.iter().map(text).collect::<Vec<_>>().join(" + ")
-}
-
 /// How the condition that was chosen is shown: angles in degrees. Nothing of a tag.
 fn across(offered: &Offered, chosen: &Chosen) -> Option<Shown> {
     let channel = channel_of(&chosen.by)?;
@@ -152,10 +154,13 @@ fn across(offered: &Offered, chosen: &Chosen) -> Option<Shown> {
     Some(shown_in(unit))
 }
 
-fn outliers(curve: &CampaignCurve) -> String {
-    let of = curve.points.iter().filter(|point| point.is_outlier);
-    let of = of.map(|point| format!("{} ({:+.1} s.e.)", point.name, point.deviation));
-    of.collect::<Vec<_>>().join(", ")
+fn outliers(curve: &CampaignCurve, ids: &[&str]) -> Markup {
+    let outliers = curve.points.iter().filter(|point| point.is_outlier);
+    html! {
+        @for (at, point) in outliers.enumerate() {
+            @if at > 0 { ", " } (named(&point.job, ids)) " " (point.name) " (" (format!("{:+.1}", point.deviation)) " s.e.)"
+        }
+    }
 }
 
 fn figure_of(curve: &CampaignCurve, offered: &Offered, chosen: &Chosen, ids: &[&str]) -> ErrorBars {
@@ -211,7 +216,7 @@ fn line(curve: &CampaignCurve, by: &str, [scale, wide]: [f64; 2]) -> Vec<[f64; 3
         let value: f64 = curve
             .terms
             .iter()
-            .map(|term| term.value * x.powi(power(&term.term)))
+            .map(|term| term.value * x.powi(term.power()))
             .sum();
         [
             x * wide,
@@ -223,13 +228,5 @@ fn line(curve: &CampaignCurve, by: &str, [scale, wide]: [f64; 2]) -> Vec<[f64; 3
         Vec::new()
     } else {
         (0..=POINTS).map(at).map(point).collect()
-    }
-}
-
-/// Of a term in one condition: `1`, `alpha`, `alpha^2`.
-fn power(term: &str) -> i32 {
-    match term.rsplit_once('^') {
-        Some((_, power)) => power.parse().unwrap_or(1),
-        None => i32::from(term != "1"),
     }
 }

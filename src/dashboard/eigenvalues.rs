@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use super::ticks::{steps, tidy};
 use crate::estimate::{Measure, Mode};
 use crate::ingest::CsvWriter;
 
@@ -79,18 +80,13 @@ fn drawn(crosses: Vec<Cross<'_>>) -> Markup {
                     fill="var(--model)" opacity=".13" {}
                 line x1=(MARGIN) x2=(WIDTH - 0.5 * MARGIN) y1=(y(0.0)) y2=(y(0.0)) stroke="currentColor" {}
                 line x1=(x(0.0)) x2=(x(0.0)) y1="8" y2=(y(0.0)) stroke="currentColor" {}
-                @for tick in ticks(most_real) {
-                    @for at in [-tick, tick] {
-                        @if x(at) < WIDTH - 0.5 * MARGIN {
-                            line x1=(x(at)) x2=(x(at)) y1=(y(0.0)) y2=(y(0.0) + 4.0) stroke="currentColor" {}
-                            text x=(x(at)) y=(y(0.0) + 17.0) text-anchor="middle" { (plain(at)) }
-                        }
-                    }
+                @for tick in steps(-most_real, right) {
+                    line x1=(x(tick)) x2=(x(tick)) y1=(y(0.0)) y2=(y(0.0) + 4.0) stroke="currentColor" {}
+                    text x=(x(tick)) y=(y(0.0) + 17.0) text-anchor="middle" { (tidy(tick)) }
                 }
-                text x=(x(0.0)) y=(y(0.0) + 17.0) text-anchor="middle" { "0" }
-                @for tick in ticks(most_imaginary) {
+                @for tick in steps(0.0, most_imaginary).into_iter().filter(|tick| *tick > 0.0) {
                     line x1=(x(0.0) - 4.0) x2=(x(0.0)) y1=(y(tick)) y2=(y(tick)) stroke="currentColor" {}
-                    text x=(x(0.0) + 5.0) y=(y(tick) + 4.0) { (plain(tick)) }
+                    text x=(x(0.0) + 5.0) y=(y(tick) + 4.0) { (tidy(tick)) }
                 }
                 text x=(WIDTH / 2.0) y=(HEIGHT - 6.0) text-anchor="middle" { "real part, 1/s" }
                 @for Cross { mode, colour, text, shift } in &crosses {
@@ -146,23 +142,4 @@ fn bound(measure: Measure) -> f64 {
         .standard_error
         .filter(|error| error.is_finite())
         .unwrap_or(0.0)
-}
-
-/// Two or three round numbers up to `most`.
-fn ticks(most: f64) -> Vec<f64> {
-    let power = 10f64.powf((most / 3.0).log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].map(|digit| digit * power).into_iter();
-    let step = step
-        .filter(|step| most / step <= 4.0)
-        .fold(f64::INFINITY, f64::min);
-    (1..=4)
-        .map(|k| f64::from(k) * step)
-        .filter(|tick| *tick <= most)
-        .collect()
-}
-
-fn plain(value: f64) -> String {
-    // what binary fractions leave behind is rounded off
-    let rounded = (value * 1e9).round() / 1e9;
-    format!("{rounded}").replace('-', "\u{2212}")
 }

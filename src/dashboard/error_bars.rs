@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::palette::colour;
-use crate::estimate::five_digits as number;
+use super::ticks::{steps, tidy};
 use crate::ingest::CsvWriter;
 
 /// A point of the figure.
@@ -101,7 +101,8 @@ impl ErrorBars {
     }
 
     fn band(&self, x: impl Fn(f64) -> f64, y: impl Fn(f64) -> f64) -> Markup {
-        let at = |place: f64, value: f64| format!("{:.1},{:.1}", x(place), y(value));
+        let within = |value: f64| y(value).clamp(TOP, HEIGHT - BOTTOM);
+        let at = |place: f64, value: f64| format!("{:.1},{:.1}", x(place), within(value));
         let upper = self
             .curve
             .iter()
@@ -158,28 +159,6 @@ fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
     }
 }
 
-/// Three to six round numbers between two.
-pub(super) fn steps(low: f64, high: f64) -> Vec<f64> {
-    let rough = (high - low) / 4.0;
-    let power = 10f64.powf(rough.log10().floor());
-    let of = [1.0, 2.0, 5.0, 10.0].map(|digit| digit * power);
-    let step = of.into_iter().find(|step| *step >= rough).unwrap_or(rough);
-    let first = (low / step).ceil() as i64;
-    let last = (high / step).floor() as i64;
-    (first..=last).take(12).map(|k| k as f64 * step).collect()
-}
-
-/// What binary fractions leave behind is rounded off.
-fn tidy(value: f64) -> String {
-    let size = value.abs();
-    if value == 0.0 || (1e-3..1e5).contains(&size) {
-        let rounded = (value * 1e9).round() / 1e9;
-        format!("{rounded}").replace('-', "\u{2212}")
-    } else {
-        number(value).replace('-', "\u{2212}")
-    }
-}
-
 fn round(value: f64) -> f64 {
     (value * 10.0).round() / 10.0
 }
@@ -189,12 +168,42 @@ mod tests {
     use super::*;
 
     #[test]
-    fn axes_have_a_few_round_numbers() {
-        assert_eq!(steps(-0.9, 1.1), [-0.5, 0.0, 0.5, 1.0]);
-        assert_eq!(steps(3.0, 11.0), [4.0, 6.0, 8.0, 10.0]);
-        assert!(steps(0.0, f64::MIN_POSITIVE).len() <= 12);
+    fn an_axis_has_two_ends() {
         assert!(extremes([2.0, f64::NAN].into_iter()).0 < 2.0);
         assert_eq!(extremes([].into_iter()), (-1.0, 1.0));
+    }
+
+    /// Between two points far apart a curve may be hardly known.
+    #[test]
+    fn a_wide_band_stays_within_the_axes() {
+        let point = |x: f64| Point {
+            x,
+            value: x,
+            error: Some(0.1),
+            job: 0,
+            is_outlier: false,
+        };
+        let figure = ErrorBars {
+            label: "Ma".into(),
+            along: Some("alpha".into()),
+            points: vec![point(0.0), point(1.0)],
+            curve: vec![[0.0, 0.0, 0.1], [0.5, 0.5, 40.0], [1.0, 1.0, 0.1]],
+        };
+        let svg = figure.drawn().into_string();
+        let (_, outline) = svg.split_once("polygon points=\"").expect("a band");
+        let (outline, _) = outline.split_once('"').expect("its end");
+        let heights: Vec<f64> = (outline.split(' '))
+            .map(|point| {
+                point
+                    .split_once(',')
+                    .expect("a pair")
+                    .1
+                    .parse()
+                    .expect("a number")
+            })
+            .collect();
+        let (low, high) = extremes(heights.into_iter());
+        assert_eq!((low, high), (TOP, HEIGHT - BOTTOM));
     }
 
     #[test]

@@ -7,7 +7,8 @@ use super::estimate_tables::{mode_table, tables};
 use super::figure::history_svg;
 use super::job_page::{JobView, facts, findings, state};
 use super::layout::head;
-use super::report_basis::{ReportRecording, channels, method, model, recordings};
+use super::report_basis::{ReportRecording, channels, model, recordings};
+use super::report_method::method;
 use super::residual_figures::residual_figures;
 use super::study::study_section;
 use super::tolerances::tolerances;
@@ -66,7 +67,7 @@ pub fn report(view: &ReportView) -> String {
                         (channels(&view.spec, document, &view.recordings))
                     }
                     (recordings(&view.recordings))
-                    (method(&view.spec.options, job.estimate.as_ref()))
+                    (method(&view.spec, job.estimate.as_ref()))
                     (provenance(view))
                     (signatures())
                 }

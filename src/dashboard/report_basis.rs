@@ -1,4 +1,4 @@
-//! What the numbers of a report rest on: the model, the recordings and their channels, the method.
+//! What the numbers of a report rest on: the model, the recordings and their channels.
 
 use maud::{Markup, html};
 use serde::Serialize;
@@ -7,7 +7,7 @@ use super::diagnosis::part;
 use super::maneuver_page::what_was_flown;
 use super::model_page::{equations, quantities};
 use super::notation::Notation;
-use crate::estimate::{Estimate, Noise, Options, five_digits as number};
+use crate::estimate::five_digits as number;
 use crate::flight::{Flown, shown_in};
 use crate::ingest::Summary;
 use crate::job::{JobSpec, ManeuverUse};
@@ -105,10 +105,10 @@ pub(super) fn channels(
                 @for (what, name, unit) in &rows { tr {
                     th scope="row" { (name) } td { (what) } td.soft { (shown_in(unit).unit) }
                     td { @match spec.channels.get(*name) { Some(formula) => code { (formula) }, None => "the channel of this name" } }
-                    td.soft { (recorded_units(recordings, name)) }
+                    td.soft { (recorded_units(spec, recordings, name)) }
                 } }
                 @for (name, formula) in others { tr {
-                    th scope="row" { (name) } td {} td {} td { code { (formula) } } td.soft { (recorded_units(recordings, name)) }
+                    th scope="row" { (name) } td {} td {} td { code { (formula) } } td.soft { (recorded_units(spec, recordings, name)) }
                 } }
             }
         } }
@@ -121,13 +121,17 @@ pub(super) fn channels(
     }
 }
 
-/// Units in which the recordings have a channel, each once.
-fn recorded_units(recordings: &[ReportRecording], name: &str) -> String {
+/// Units in which the recordings have the channel that a quantity is, each once; nothing where it is made by a formula of several.
+fn recorded_units(spec: &JobSpec, recordings: &[ReportRecording], name: &str) -> String {
     let mut units: Vec<&str> = Vec::new();
-    let summaries = recordings.iter().filter_map(|one| one.summary.as_ref());
-    for channel in summaries.flat_map(|summary| &summary.channels) {
-        if channel.name == name && !units.contains(&channel.unit.as_str()) {
-            units.push(&channel.unit);
+    for one in recordings {
+        let formula = one.used.channels.get(name).or(spec.channels.get(name));
+        let channel = formula.map_or(name, |formula| formula.trim());
+        let channels = one.summary.iter().flat_map(|summary| &summary.channels);
+        for found in channels.filter(|found| found.name == channel) {
+            if !units.contains(&found.unit.as_str()) {
+                units.push(&found.unit);
+            }
         }
     }
     units.join(", ")
@@ -152,106 +156,17 @@ fn constants(spec: &JobSpec, recordings: &[ReportRecording]) -> Markup {
     }
 }
 
-/// Estimator, integration, noise, bounds: the options of the job, defaults included.
-pub(super) fn method(options: &Options, estimate: Option<&Estimate>) -> Markup {
-    let integration = estimate.and_then(|estimate| estimate.integration.as_ref());
-    html! {
-        h2 id="method" { "Method" }
-        dl.facts {
-            dt { "estimator" } dd { (words(options.estimator.name())) }
-            dt { "start" } dd { (words(&kind(&options.start))) }
-            dt { "optimiser" } dd { (word(&options.method)) ", " (words(&kind(&options.derivatives))) }
-            dt { "convergence" } dd { "a further step below " (plain(&options.tolerance)) " standard errors; at most " (options.max_iterations) " iterations" }
-            dt { "integrator" } dd { (word(&options.integrator)) ", steps between samples: " (word(&options.steps_per_sample))
-                @if let Some(integration) = integration {
-                    " (" (integration.most_steps()) " used"
-                    @if let Some(halved) = &integration.halved { "; halving the steps moves no estimate by more than " (number(halved.most)) " standard errors" }
-                    ")"
-                }
-            }
-            dt { "inputs between samples" } dd { (word(&options.input_interpolation)) }
-            dt { "measurement noise" } dd { (noise(&options.noise)) }
-            dt { "standard errors" } dd { (word(&options.error_bounds)) }
-            @if !options.process_noise.is_empty() { dt { "process noise" } dd { code { (plain(&options.process_noise)) } } }
-            @if let Some(band) = &options.frequency { dt { "frequencies" } dd { code { (plain(band)) } } }
-        }
-        @if let Some(estimate) = estimate { (noise_table(estimate)) }
-    }
-}
-
-fn noise(noise: &Noise) -> &'static str {
-    match noise {
-        Noise::Given { .. } => "known, from the job",
-        estimated if estimated.is_full() => {
-            "estimated with the parameters, correlated between outputs"
-        }
-        _ => "estimated with the parameters, independent between outputs",
-    }
-}
-
-/// Standard deviations of the noise, and correlations where there are any.
-fn noise_table(estimate: &Estimate) -> Markup {
-    let r = &estimate.noise_covariance;
-    let sd = |at: usize| {
-        r.get(at)
-            .and_then(|row| row.get(at))
-            .map_or(f64::NAN, |variance| variance.sqrt())
-    };
-    let correlation = |i: usize, j: usize| {
-        r.get(i)
-            .and_then(|row| row.get(j))
-            .map(|c| c / (sd(i) * sd(j)))
-    };
-    let is_full = (0..r.len()).any(|i| (0..i).any(|j| correlation(i, j).is_some_and(|c| c != 0.0)));
-    html! {
-        @if r.len() == estimate.outputs.len() && !r.is_empty() {
-            h3 id="noise" { "Noise of the outputs" }
-            div.scroll tabindex="0" role="region" aria-labelledby="noise" { table {
-                thead { tr {
-                    th scope="col" { "output" } th scope="col" { "unit" } th.number scope="col" { "standard deviation" }
-                    @if is_full { @for output in &estimate.outputs { th.number scope="col" { "correlation with " (output.name) } } }
-                } }
-                tbody { @for (at, output) in estimate.outputs.iter().enumerate() {
-                    @let shown = shown_in(&output.unit);
-                    tr {
-                        th scope="row" { (output.name) } td.soft { (shown.unit) } td.number { (number(sd(at) * shown.scale)) }
-                        @if is_full { @for other in 0..r.len() { td.number { @if let Some(c) = correlation(at, other) { (format!("{c:.2}")) } } } }
-                    }
-                } }
-            } }
-        }
-    }
-}
-
 /// An option as people read it: of a word in JSON the word, without underscores.
-fn word(option: &impl Serialize) -> String {
+pub(super) fn word(option: &impl Serialize) -> String {
     words(&plain(option))
 }
 
-/// The kind of an option that has more to say; where it has, all of it follows.
-fn kind(option: &impl Serialize) -> String {
-    let Ok(serde_json::Value::Object(mut fields)) = serde_json::to_value(option) else {
-        return plain(option);
-    };
-    let names = ["kind", "technique"];
-    let name = names.iter().find_map(|name| fields.remove(*name));
-    let name = name.map_or_else(String::new, |name| plain(&name));
-    let rest: Vec<String> = (fields.iter().filter(|(_, value)| !value.is_null()))
-        .map(|(field, value)| format!("{field} {}", plain(value)))
-        .collect();
-    if rest.is_empty() {
-        name
-    } else {
-        format!("{name} ({})", rest.join(", "))
-    }
-}
-
-fn words(name: &str) -> String {
+pub(super) fn words(name: &str) -> String {
     name.replace('_', " ")
 }
 
 /// As JSON, a text without its quotes.
-fn plain(value: &impl Serialize) -> String {
+pub(super) fn plain(value: &impl Serialize) -> String {
     match serde_json::to_value(value) {
         Ok(serde_json::Value::String(text)) => text,
         Ok(other) => other.to_string(),

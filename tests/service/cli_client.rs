@@ -223,6 +223,13 @@ fn jobs_are_listed_cancelled_and_deleted() {
             .contains("there is no job")
     );
 
+    // what the server says is said once
+    let refused = client.refuses(&["submit", "data/rudder.csv", "-m", "short-period"]);
+    assert!(refused.contains("alpha"), "{refused}");
+    for line in refused.lines().map(str::trim) {
+        assert_eq!(refused.matches(line).count(), 1, "{line}: {refused}");
+    }
+
     let maneuver = client.says(&["upload", "data/rudder.csv"]);
     let in_use = client.refuses(&["delete", "maneuver", maneuver.trim()]);
     assert!(in_use.contains("409"), "{in_use}");
@@ -285,6 +292,25 @@ fn models_are_stored_shown_and_deleted() {
         table.contains(id) && table.contains("six-degrees-of-freedom"),
         "{table}"
     );
+    // what a table has no room for is in CSV
+    assert!(
+        table.lines().all(|line| line.chars().count() < 140),
+        "{table}"
+    );
+    assert!(
+        client
+            .says(&["models", "--csv"])
+            .starts_with("id,origin,name,title,inputs,outputs,created\n")
+    );
+    for both in [
+        [id, "--csv"],
+        [id, "--limit=3"],
+        ["--add=x.toml", "--json"],
+        ["--add=x.toml", "--search=x"],
+    ] {
+        let refused = client.output(&["models", both[0], both[1]]);
+        assert_eq!(refused.status.code(), Some(2), "{both:?}");
+    }
     client.says(&["delete", "model", id]);
     assert!(!client.says(&["models", "--csv"]).contains(id));
     assert!(

@@ -134,6 +134,22 @@ async fn every_result_has_its_forms() {
     let segment = &thinned["segments"][0];
     assert_eq!(segment["samples"], 626);
     assert!(segment["time"].as_array().unwrap().len() <= 100);
+    for resource in ["time-histories", "residuals", "trajectories"] {
+        for (query, named) in [
+            ("from=20&to=5", "from: 20 s is after to: 5 s"),
+            ("to=NaN", "to: NaN"),
+        ] {
+            let refused = server.get(&at(&format!("{resource}?{query}"))).await;
+            refused.problem(400, "invalid_query");
+            assert!(refused.text().contains(named), "{}", refused.text());
+        }
+    }
+    // a stretch without samples has the same columns
+    let none = server
+        .get_as(&at("time-histories?from=1e6"), "text/csv")
+        .await
+        .text();
+    assert_eq!(none.trim_end(), header);
 
     let model: ModelDocument =
         serde_json::from_value(server.get(&at("model")).await.json()).unwrap();

@@ -136,6 +136,17 @@ async fn samples_come_back_as_they_were_recorded() {
     assert_eq!(thinned.header("x-trimtab-samples"), "626");
     let count = thinned.json()["time"]["values"].as_array().unwrap().len();
     assert!((20..=50).contains(&count), "{count}");
+    // what is no stretch of time, and what is no length of one
+    for (query, named) in [
+        ("data?from=20&to=5", "from: 20 s is after to: 5 s"),
+        ("data?from=NaN", "from: NaN"),
+        ("data?to=inf", "to: inf"),
+        ("segments?quiet=NaN", "quiet: NaN"),
+    ] {
+        let refused = server.get(&format!("/v1/maneuvers/{long}/{query}")).await;
+        refused.problem(400, "invalid_query");
+        assert!(refused.text().contains(named), "{}", refused.text());
+    }
 }
 
 #[tokio::test]

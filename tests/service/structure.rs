@@ -61,6 +61,15 @@ async fn an_equation_is_found_and_its_steps_are_told() {
     );
     let model = server.get(&format!("/v1/jobs/{id}/model")).await.json();
     assert_eq!(model["outputs"]["CL"]["equation"], found.equation);
+    // the report tells how terms were chosen, and of no integration of a model without states
+    let report = server.get(&format!("/jobs/{id}/report")).await.text();
+    for part in [
+        "stepwise regression of CL: partial F to enter 10",
+        "the start values being those of the regression",
+    ] {
+        assert!(report.contains(part), "{part}");
+    }
+    assert!(!report.contains("<dt>integrator"), "{report}");
     // its time histories are those of the equation
     let estimate = server.get(&format!("/v1/jobs/{id}/estimate")).await.json();
     assert!(estimate["outputs"][0]["r_squared"].as_f64().unwrap() > 0.999);

@@ -46,6 +46,6 @@ pub use segments::{Moved, Proposal, ProposedSegment, SegmentKind, Wanted, segmen
 pub use severity::Severity;
 pub use shown::{
     Shown, bounded, decimals, five_digits, five_digits_beside, p_value, shown_in, two_digits,
-    value_and_error, with_error,
+    value_and_error, with_digits, with_error,
 };
 pub use unit::{Unit, UnitError};

@@ -26,14 +26,21 @@ pub fn shown_in(unit: &str) -> Shown {
 
 /// A number for a table: five digits, as a decimal where that is readable.
 pub fn five_digits(value: f64) -> String {
+    with_digits(value, 5)
+}
+
+/// As [`five_digits`], with so many digits, of which there is at least one.
+pub fn with_digits(value: f64, digits: u8) -> String {
     let size = value.abs();
+    let behind_first = i32::from(digits) - 1;
     if value == 0.0 {
         "0".to_string()
     } else if (1e-3..1e5).contains(&size) {
-        let digits = (4 - size.log10().floor() as i32).max(0) as usize;
-        format!("{value:.digits$}")
+        let decimals = (behind_first - size.log10().floor() as i32).max(0) as usize;
+        format!("{value:.decimals$}")
     } else {
-        format!("{value:.4e}")
+        let decimals = behind_first.max(0) as usize;
+        format!("{value:.decimals$e}")
     }
 }
 
@@ -209,5 +216,7 @@ mod tests {
             assert_eq!(five_digits(value), text);
         }
         assert_eq!(five_digits(0.0), "0");
+        assert_eq!(with_digits(-4.917_632, 7), "-4.917632");
+        assert_eq!(with_digits(1.234_567e-9, 6), "1.23457e-9");
     }
 }

@@ -76,6 +76,27 @@ const fn default_f() -> f64 {
 const MOST_ORDER: usize = 8;
 
 impl StructureOptions {
+    /// How terms are chosen, in words.
+    pub fn words(&self) -> String {
+        let output = &self.output;
+        let mut words = match self.method {
+            StructureMethod::Stepwise => format!(
+                "stepwise regression of {output}: partial F to enter {}, to remove {}",
+                self.f_to_enter, self.f_to_remove
+            ),
+            StructureMethod::Orthogonal => format!(
+                "multivariate orthogonal functions of {output}: least predicted squared error"
+            ),
+        };
+        if self.method == StructureMethod::Stepwise && self.least_r_squared > 0.0 {
+            words += &format!("; at least {} of the variation", self.least_r_squared);
+        }
+        if let Some(most) = self.most_terms {
+            words += &format!("; at most {most} terms");
+        }
+        words
+    }
+
     /// Which field is out of range, and what is allowed.
     pub fn fault(&self) -> Option<(&'static str, String)> {
         let is_bound = |value: f64| value >= 0.0 && value.is_finite();

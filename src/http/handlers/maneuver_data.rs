@@ -52,6 +52,7 @@ struct DataQuery {
             (ingest::Recording = "application/json"), (String = "text/csv")),
             headers(("x-trimtab-samples" = usize, description = "Samples of the recording, before `from`, `to` and `max_points`."))),
         (status = 304, description = "As the `ETag` in `If-None-Match`."),
+        (status = 400, description = "`invalid_query`: a channel is not there, `from` or `to` is no number of seconds, or no two samples lie between them.", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 404, description = "`unknown_maneuver`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
 async fn get_maneuver_data(
@@ -61,17 +62,13 @@ async fn get_maneuver_data(
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
     let format = choose(query.format, &headers, &[Format::Json, Format::Csv])?;
+    let wanted = Wanted::of(query.from, query.to, query.max_points)?;
     let maneuver = service
         .store
         .maneuver_data(&id)
         .await?
         .ok_or_else(|| unknown_maneuver(&id))?;
     let samples = maneuver.len();
-    let wanted = Wanted {
-        from: query.from,
-        to: query.to,
-        most: query.max_points,
-    };
     let write = move || {
         let part = part(&maneuver, query.channels.as_deref(), wanted)?;
         let text = match format {

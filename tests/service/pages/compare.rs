@@ -84,7 +84,8 @@ async fn jobs_are_ticked_and_compared() {
         browser.click("form button").await;
         browser.says("#conditions", "Over the mean of alpha").await;
         is_drawn(browser).await;
-        browser.says("main", "is newer and was fitted to the same samples").await;
+        // by its number on this page
+        browser.says("main", "job 3 is newer and was fitted to the same samples").await;
         assert!(browser.count(".tiles.wide svg").await > 3);
         looks_well(browser, "over-a-mean").await;
         browser.choose("select[name=by]", "").await;
@@ -93,7 +94,7 @@ async fn jobs_are_ticked_and_compared() {
         browser.says("[aria-labelledby=conditions]", "flaps=down").await;
 
         browser.click("[aria-label='leave out job 3']").await;
-        browser.until(&format!("location.search === '?jobs={},{}'", ids[0], ids[1])).await;
+        browser.until(&format!("location.search === '?jobs={}%2C{}&group=flaps'", ids[0], ids[1])).await;
         is_drawn(browser).await;
         assert_eq!(browser.count("main .note").await, 0);
         // different recordings begin together

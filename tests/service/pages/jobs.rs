@@ -105,6 +105,23 @@ async fn estimates_have_the_digits_that_their_errors_leave() {
 }
 
 #[tokio::test]
+async fn a_report_says_in_what_a_renamed_channel_was_recorded() {
+    let server = Server::start().await;
+    let csv = include_str!("../../../data/elevator.csv").replacen("de[", "stick[", 1);
+    assert!(csv.lines().next().unwrap().contains("stick[deg]"), "{csv}");
+    let maneuver = server.upload(&csv).await;
+    let mut job = json!({"model": "short-period", "maneuvers": [{"id": maneuver}], "channels": {"de": "stick"}});
+    for (formula, recorded) in [("stick", "deg"), ("2*stick", "")] {
+        job["channels"]["de"] = json!(formula);
+        let id = server.submit(&job).await;
+        assert_eq!(server.wait(&id).await["status"], "succeeded");
+        let report = page(&server, &format!("/jobs/{id}/report")).await;
+        let row = format!("<code>{formula}</code></td><td class=\"soft\">{recorded}</td>");
+        assert!(report.contains(&row), "{row}");
+    }
+}
+
+#[tokio::test]
 async fn the_list_shows_what_is_asked_for() {
     let server = Server::start_with(trimtab::http::Config::default(), 0).await;
     let first = page(&server, "/").await;

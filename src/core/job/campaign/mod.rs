@@ -19,6 +19,7 @@ mod mean;
 mod monomials;
 mod recording;
 mod report;
+mod written;
 
 use indexmap::IndexMap;
 use statrs::distribution::{ChiSquared, ContinuousCDF};

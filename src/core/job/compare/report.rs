@@ -14,6 +14,19 @@ pub struct Comparison {
     pub parameters: Vec<ComparedParameter>,
 }
 
+impl Comparison {
+    /// Jobs that were fitted to samples of the same recording, by their numbers from 1, the lower one first.
+    pub fn dependent_pairs(&self) -> Vec<(usize, usize)> {
+        let number = |id: &String| self.jobs.iter().position(|job| job.job == *id);
+        let pairs = self.jobs.iter().enumerate().flat_map(|(at, job)| {
+            let others = job.shares_data_with.iter().filter_map(number);
+            let later = others.filter(move |other| *other > at);
+            later.map(move |other| (at + 1, other + 1))
+        });
+        pairs.collect()
+    }
+}
+
 /// A job of a comparison.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 pub struct ComparedJob {
@@ -70,4 +83,31 @@ pub struct ComparedValue {
     /// too small or too large.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub is_independent: Option<bool>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_pair_of_dependent_jobs_is_named_once() {
+        let job = |id: &str, shares: &[&str]| ComparedJob {
+            job: id.into(),
+            name: String::new(),
+            reason: String::new(),
+            fit: None,
+            modes: Vec::new(),
+            shares_data_with: shares.iter().map(ToString::to_string).collect(),
+        };
+        let comparison = Comparison {
+            jobs: vec![
+                job("a", &["c"]),
+                job("b", &[]),
+                job("c", &["a", "d"]),
+                job("d", &["c"]),
+            ],
+            parameters: Vec::new(),
+        };
+        assert_eq!(comparison.dependent_pairs(), [(1, 3), (3, 4)]);
+    }
 }

@@ -91,6 +91,7 @@ struct SegmentHistory {
     responses(
         (status = 200, description = "The residuals.", content((Residuals = "application/json"), (String = "text/csv"))),
         (status = 304, description = "As the `ETag` in `If-None-Match`."),
+        (status = 400, description = "`invalid_query`: `from` or `to` is no number of seconds, or `from` is after `to`.", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 404, description = "`unknown_job`, `no_result`", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 409, description = "`not_finished`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
@@ -117,6 +118,7 @@ async fn get_residuals(
     responses(
         (status = 200, description = "The time histories.", content((TimeHistories = "application/json"), (String = "text/csv"))),
         (status = 304, description = "As the `ETag` in `If-None-Match`."),
+        (status = 400, description = "`invalid_query`: `from` or `to` is no number of seconds, or `from` is after `to`.", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 404, description = "`unknown_job`, `no_result`", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 409, description = "`not_finished`", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
@@ -149,11 +151,7 @@ async fn answer(
     as_csv: Write,
 ) -> Result<Response, Problem> {
     let format = choose(query.format, &headers, &[Format::Json, Format::Csv])?;
-    let wanted = Wanted {
-        from: query.from,
-        to: query.to,
-        most: query.max_points,
-    };
+    let wanted = Wanted::of(query.from, query.to, query.max_points)?;
     let Some(histories) = service.store.histories(id).await? else {
         return Err(results::without_result(&job::find(service, id).await?));
     };
@@ -243,21 +241,20 @@ fn residuals_as_json(segments: Vec<SegmentHistory>) -> Result<Vec<u8>, Problem> 
 
 /// All segments have the same inputs and outputs: they come from one model.
 fn histories_as_csv(segments: Vec<SegmentHistory>) -> Result<Vec<u8>, Problem> {
+    let outputs = segments.iter().flat_map(|segment| &segment.history.outputs);
+    let are_declared = { outputs }.any(|output| !output.declared.is_empty());
     let columns = |history: &TimeHistory| {
         let inputs = history.inputs.iter();
         let inputs = inputs.map(|s| (title(&s.name, &s.unit), s.values.clone()));
         let outputs = history.outputs.iter().flat_map(|s| {
             let of = |what: &str| title(&format!("{}_{what}", s.name), &s.unit);
-            let columns = [
-                (of("measured"), &s.measured),
-                (of("declared"), &s.declared),
-                (of("model"), &s.model),
-                (of("residual"), &s.residual),
+            let declared = are_declared.then(|| (of("declared"), s.declared.clone()));
+            let end = [
+                (of("model"), s.model.clone()),
+                (of("residual"), s.residual.clone()),
             ];
-            columns
-                .into_iter()
-                .filter(|(_, values)| !values.is_empty())
-                .map(|(name, values)| (name, values.clone()))
+            let begin = [(of("measured"), s.measured.clone())];
+            begin.into_iter().chain(declared).chain(end)
         });
         inputs.chain(outputs).collect()
     };
@@ -333,11 +330,7 @@ mod tests {
     }
 
     fn most(rows: usize) -> Wanted {
-        Wanted {
-            from: None,
-            to: None,
-            most: Some(rows),
-        }
+        Wanted::of(None, None, Some(rows)).expect("all of the time")
     }
 
     #[test]
@@ -347,6 +340,30 @@ mod tests {
         let expected = "segment,t[s],de[rad],q_measured[rad/s],q_model[rad/s],q_residual[rad/s]\n\
                         a,0.0,0.0,1.0,1.0,0.0\na,0.1,0.0,,2.0,\na,0.2,0.0,3.0,2.0,1.0\n";
         assert_eq!(csv, expected);
+    }
+
+    /// In a stretch without samples, and in a diagnosis where the first segment has none and the second some.
+    #[test]
+    fn csv_has_the_same_columns_whatever_is_left() {
+        let none = Wanted::of(Some(9.0), None, None).unwrap();
+        let header = |segments| {
+            let csv = String::from_utf8(histories_as_csv(segments).unwrap()).unwrap();
+            csv.lines().next().unwrap().to_string()
+        };
+        let expected = "segment,t[s],de[rad],q_measured[rad/s],q_model[rad/s],q_residual[rad/s]";
+        assert_eq!(header(vec![thinned(history(), none)]), expected);
+        let mut later = history();
+        later.time = vec![9.0, 9.1, 9.2];
+        later.outputs[0].declared = vec![0.5; 3];
+        let both = vec![thinned(history(), none), thinned(later, none)];
+        let csv = String::from_utf8(histories_as_csv(both).unwrap()).unwrap();
+        let (header, rows) = csv.split_once('\n').unwrap();
+        assert!(header.contains("q_measured[rad/s],q_declared[rad/s],q_model[rad/s]"));
+        let cells = |line: &str| line.split(',').count();
+        assert_eq!(
+            rows.lines().map(cells).collect::<Vec<_>>(),
+            [cells(header); 3]
+        );
     }
 
     #[test]

@@ -59,7 +59,7 @@ struct Trajectories {
     responses(
         (status = 200, description = "The trajectories.", content((Trajectories = "application/json"), (String = "text/csv"))),
         (status = 304, description = "As the `ETag` in `If-None-Match`."),
-        (status = 400, description = "`invalid_query`: a name is none of the model's.", body = ProblemDocument, content_type = "application/problem+json"),
+        (status = 400, description = "`invalid_query`: a name is none of the model's; `from` or `to` is no number of seconds, or `from` is after `to`.", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 404, description = "`unknown_job`, `no_result`", body = ProblemDocument, content_type = "application/problem+json"),
         (status = 409, description = "`not_finished`, `no_trajectory`: filter error was used, a maneuver was deleted, or another program made the result.", body = ProblemDocument, content_type = "application/problem+json"),
     ))]
@@ -70,6 +70,7 @@ async fn get_trajectories(
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
     let format = choose(query.format, &headers, &[Format::Json, Format::Csv])?;
+    let wanted = Wanted::of(query.from, query.to, query.max_points)?;
     let kept = Kept::of(&service, id).await?;
     let answer = move || {
         let plan = kept.plan()?;
@@ -77,11 +78,6 @@ async fn get_trajectories(
         if let Some(names) = &query.names {
             keep(&mut segments, names)?;
         }
-        let wanted = Wanted {
-            from: query.from,
-            to: query.to,
-            most: query.max_points,
-        };
         segments
             .iter_mut()
             .for_each(|segment| thin(segment, wanted));
