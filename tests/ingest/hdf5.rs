@@ -237,6 +237,25 @@ fn arrays_of_structs_and_cells_of_matlab_are_read() {
     }
 }
 
+/// A reference to nothing keeps its place: h5py reads the elements of `run/alpha` as -alpha, none, alpha.
+#[test]
+fn references_to_nothing_keep_their_places() {
+    let file = bytes("v73_nothing.mat");
+    let third = mapping("run(3).t", "run(3).alpha", "run(3).q");
+    let reading = read(&file, Some(&third)).unwrap();
+    assert_is_the_recording(&reading.maneuver, "run(3)");
+    for (source, expected) in [
+        ("run(2).alpha", "'run/alpha' has nothing at its element 2"),
+        ("run(4).alpha", "to rec(3).alpha"),
+        ("run.single", "each of 3 structs"),
+    ] {
+        let error = read(&file, Some(&mapping("run(3).t", source, "run(3).q"))).unwrap_err();
+        let fault = &error.faults()[0];
+        assert_eq!(fault.pointer, "/channels/alpha/from", "{source}");
+        assert!(fault.message.contains(expected), "{source}: {fault}");
+    }
+}
+
 /// Whatever byte is another, the answer is a recording or a fault.
 #[test]
 fn no_damage_to_heaps_and_references_panics() {
