@@ -17,6 +17,7 @@ mod layouts;
 mod mdf4;
 mod mutations;
 mod newcomers;
+mod octave;
 mod parquet;
 mod programs;
 mod structs;

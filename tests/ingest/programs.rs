@@ -2,7 +2,9 @@
 //! own making; where the facts of a layout come from stands beside each.
 
 use trimtab_core::flight::{Maneuver, Unit};
-use trimtab_core::ingest::{Format, IngestError, Limits, Mapping, Reading, code, read_recording};
+use trimtab_core::ingest::{
+    Format, IngestError, Limits, Mapping, Reading, code, inspect, read_recording,
+};
 
 fn reading(text: &str, mapping: Option<&Mapping>) -> Result<Reading, IngestError> {
     let limits = Limits::default();
@@ -63,6 +65,34 @@ fn a_step_that_the_header_says_is_taken_where_no_column_has_times() {
         .iter()
         .any(|finding| finding.message.contains("as line 2 says"));
     assert!(said, "{:?}", counted.findings);
+    // a comma in it may stand between thousands: the numbers of the table tell, or it is asked for
+    let rate = |rate: &str, row: &str| {
+        let rows = [row; 3].map(|row| format!("{row}\n")).concat();
+        reading(
+            &format!("Sample rate: {rate} Hz\n\na [deg];b [deg]\n{rows}"),
+            None,
+        )
+    };
+    for (said, row, seconds) in [
+        ("1,000", "1.5;2", 0.002),
+        ("1,000", "1,5;2", 2.0),
+        ("1.000", "1,5;2", 0.002),
+        ("1.000", "1;2", 2.0),
+        ("1,000.0", "1;2", 0.002),
+        ("12,5", "1;2", 0.16),
+    ] {
+        let duration = rate(said, row).unwrap().maneuver.duration();
+        assert!(
+            (duration - seconds).abs() < 1e-9,
+            "{said}, {row}: {duration}"
+        );
+    }
+    let doubtful = rate("1,000", "1;2").unwrap_err();
+    assert_eq!(doubtful.faults()[0].code, code::AMBIGUOUS_NUMBER);
+    assert!(
+        doubtful.to_string().starts_with("line 1: the comma"),
+        "{doubtful}"
+    );
     // a column of times goes before what the header says
     let both = read("Sample rate;50\n\nt [s];a [deg]\n0;1\n0.1;2\n0.2;3\n");
     assert_read(&both.maneuver, 3, 0.2, ("a", 1.0, "deg"));
@@ -147,6 +177,11 @@ fn a_vbox_file_says_its_columns_in_a_section() {
     assert_read(&drive.maneuver, 3, 0.2, ("lat", 47.1, "deg"));
     assert_read(&drive.maneuver, 3, 0.2, ("lon", 8.1, "deg"));
     assert!(told(&drive, "recognised").contains("vbox"));
+    // of the vertical velocity the file does not say the unit, and firmware differs in it
+    let climbing = text.replace("height Pitch", "height vert-vel");
+    let climbing = read(&climbing);
+    assert_read(&climbing.maneuver, 3, 0.2, ("vert_vel", 2.5, "-"));
+    assert!(told(&climbing, "no_unit").contains("vert_vel"));
 }
 
 /// Tecplot's "Data Format Guide": `VARIABLES` over one or several lines.
@@ -221,6 +256,122 @@ fn headers_of_nasa_ames_say_factors_and_missing_values() {
     assert!(reading(icartt, Some(&skipped)).is_err());
 }
 
+/// A header of NASA Ames with this line for time and these for the end of the header, over rows of two variables.
+fn ames(time: &str, end: &[&str]) -> String {
+    let lines = [
+        "Own, Making",
+        "Own",
+        "Own aircraft",
+        "Own campaign",
+        "1 1",
+        "2026 03 01 2026 03 02",
+        "0.02",
+        time,
+        "2",
+        "0.1 1",
+        "-9999 -9999",
+        "Angle of attack [deg]",
+        "Mach number",
+        "0",
+    ];
+    let count = 1 + lines.len() + end.len();
+    let header = [&lines[..], end].concat().join("\n");
+    format!("{count} 1001\n{header}\n36900.00 30 0.5\n36900.02 -9999 0.6\n36900.04 -8888 0.7\n")
+}
+
+const UT: &str = "Elapsed UT seconds from 0 hours on the day given by DATE";
+
+/// Gaines and Hipskind put no meaning into comments: words are no names because there are as many of them.
+#[test]
+fn comments_of_nasa_ames_are_no_names() {
+    let comment = ames(UT, &["1", "Calibrated before flight"]);
+    let read = read(&comment);
+    assert_read(&read.maneuver, 3, 0.04, ("Angle_of_attack", 3.0, "deg"));
+    assert!(told(&read, "no_unit").contains("Mach_number"));
+    let named = ames(UT, &["2", "UT alpha M", "s deg none"]);
+    let read = reading(&named, None).unwrap();
+    assert_read(&read.maneuver, 3, 0.04, ("M", 0.5, "-"));
+    assert_eq!(told(&read, "no_unit"), "");
+    // a row of other units than the header's is none
+    let other = reading(&ames(UT, &["2", "UT alpha M", "s rad none"]), None).unwrap();
+    assert_read(&other.maneuver, 3, 0.04, ("Angle_of_attack", 3.0, "deg"));
+}
+
+/// The unit of the independent variable is free text in the format: it is found, or asked for, and never made up.
+#[test]
+fn time_of_nasa_ames_is_in_the_unit_that_it_says() {
+    for (time, seconds) in [("Time [ms]", 0.04e-3), ("Hours after midnight (h)", 144.0)] {
+        let read = read(&ames(time, &["0"]));
+        assert_read(&read.maneuver, 3, seconds, ("Angle_of_attack", 3.0, "deg"));
+    }
+    let below = read(&ames(
+        "Universal time",
+        &["2", "UT alpha M", "min deg none"],
+    ));
+    assert_read(&below.maneuver, 3, 2.4, ("alpha", 3.0, "deg"));
+    let unknown = reading(&ames("Time [fortnights]", &["0"]), None).unwrap_err();
+    let fault = &unknown.faults()[0];
+    assert_eq!(fault.code, code::TIME_UNIT);
+    assert!(
+        fault.message.starts_with("line 9: 'Time [fortnights]'"),
+        "{fault}"
+    );
+    // with the draft, in which the unit is said, it is read
+    let draft = unknown
+        .draft()
+        .unwrap()
+        .replacen('?', "s", 1)
+        .replacen('?', "-", 1);
+    let read = reading(&ames("Time [fortnights]", &["0"]), Some(&mapping(&draft))).unwrap();
+    assert_read(&read.maneuver, 3, 0.04, ("Angle_of_attack", 3.0, "deg"));
+    assert!(read.maneuver.channels()["Angle_of_attack"].values[1].is_nan());
+    for (from, to, place) in [
+        ("\n0.1 1\n", "\n0.1 one\n", "line 11: "),
+        ("\n-9999 -9999\n", "\n-9999\n", "line 13: "),
+        ("\n2\n0.1", "\ntwo\n0.1", "line 10: "),
+    ] {
+        let broken = ames(UT, &["0"]).replace(from, to);
+        let refused = reading(&broken, None).unwrap_err();
+        assert!(refused.to_string().starts_with(place), "{refused}");
+    }
+}
+
+/// ICARTT's "Format Document", 2.3.2: values beyond the limits of detection have flags of their own.
+#[test]
+fn flags_of_icartt_are_no_values() {
+    let flagged = ames(UT, &["2", "ULOD_FLAG: -7777", "LLOD_FLAG: -8888"]);
+    let alpha = read(&flagged).maneuver.channels()["Angle_of_attack"]
+        .values
+        .clone();
+    assert_eq!(alpha[0], 3.0_f64.to_radians());
+    assert!(alpha[1].is_nan() && alpha[2].is_nan());
+}
+
+/// What is drafted reads the same as the file itself, once what is asked for is said.
+#[test]
+fn a_draft_of_nasa_ames_has_factors_and_missing_values() {
+    let text = ames(UT, &["2", "UT alpha M", "s deg none"]);
+    let limits = Limits::default();
+    let inspected = inspect(text.as_bytes(), Format::Unstated, None, None, &limits);
+    let inspected = inspected.unwrap().unwrap();
+    let titles: Vec<_> = inspected
+        .columns
+        .iter()
+        .map(|c| (&*c.title, &*c.unit, &*c.first))
+        .collect();
+    let first = titles[1..].to_vec();
+    assert_eq!(first, [("alpha", "deg", "30"), ("M", "-", "0.5")]);
+    let whole = inspected.reading.unwrap().maneuver;
+    assert_read(&whole, 3, 0.04, ("alpha", 3.0, "deg"));
+    for drafted in [
+        Mapping::from_toml(&inspected.draft.to_toml()).unwrap(),
+        mapping(&inspected.draft.to_json()),
+    ] {
+        let drafted = reading(&text, Some(&drafted)).unwrap().maneuver;
+        assert_eq!(drafted.digest(), whole.digest());
+    }
+}
+
 /// Octave's manual, "Simple File I/O", and its ls-oct-text.cc.
 #[test]
 fn variables_of_octave_are_taken_by_name() {
@@ -244,7 +395,7 @@ fn variables_of_octave_are_taken_by_name() {
         let _ = reading(&text[..at], Some(&mapping(said)));
     }
     // a matrix without columns has no values, however many rows it says
-    let endless = text.replace(" 2 2\n  1\n", " 1e18 0\n  1\n");
+    let endless = text.replace(" 2 2\n  1\n", " 1000000000000000000 0\n  1\n");
     assert!(reading(&endless, Some(&mapping(said))).is_ok());
 }
 
@@ -288,6 +439,47 @@ fn a_log_of_ardupilot_as_text_is_the_log() {
     let silent = mapping(r#"{"channels": {"p": {"from": "IMU.GyrX"}}}"#);
     let silent = reading(&text, Some(&silent)).unwrap_err();
     assert_eq!(silent.faults()[0].pointer, "/channels/p/unit");
+}
+
+/// A log of two messages as text: the angle of roll with two decimals, as `c` is written, and a rate.
+fn attitude(rows: &str) -> String {
+    format!(
+        "FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\nFMT, 131, 27, ATT, QcBf, TimeUS,Roll,I,Rate\n{rows}"
+    )
+}
+
+/// A cell that is no number has no value, and is told; a number is not cut to the size that the binary log has for it.
+#[test]
+fn a_log_as_text_has_no_number_that_it_does_not_say() {
+    let roll = mapping(
+        r#"{"channels": {"phi": {"from": "ATT.Roll", "unit": "deg"}, "p": {"from": "ATT.Rate", "unit": "deg/s"}}}"#,
+    );
+    let text = attitude(
+        "ATT, 1000000, 1.25, 0, 2\nATT, 1020000, x1.5, 0, 3\nATT, 1040000, 400.55, 0, 1e999\nATT, 1060000, nan, 0, 5\nATT, 1080000, 2.5, 0, 6\n",
+    );
+    let log = reading(&text, Some(&roll)).unwrap();
+    assert_eq!(log.maneuver.len(), 5);
+    let phi = &log.maneuver.channels()["phi"].values;
+    assert_eq!(phi[0], 1.25_f64.to_radians());
+    assert!(phi[1].is_nan() && phi[3].is_nan());
+    assert!((phi[2].to_degrees() - 400.55).abs() < 1e-9, "{}", phi[2]);
+    assert!(log.maneuver.channels()["p"].values[2].is_nan());
+    let missing = told(&log, "missing_values");
+    assert!(missing.starts_with("2 cell(s) are no numbers"), "{missing}");
+    assert!(missing.contains("'x1.5' in line 4"), "{missing}");
+    // decimal commas part numbers: such a line is not read with its cells shifted
+    let commas = attitude(
+        "ATT, 1000000, 1.25, 0, 2\nATT, 1020000, 1,5, 0, 3\nATT, 1040000, 1.5, 0, 4\nATT, 1060000, 1.7, 0, 4,\nATT, 108",
+    );
+    let log = reading(&commas, Some(&roll)).unwrap();
+    assert_eq!(log.maneuver.len(), 3);
+    assert!(told(&log, "left_out").contains("the first of them line 4"));
+    assert!(told(&log, "incomplete_line").contains("line 7"));
+    // of which sensor a message is that does not say it is not known
+    let unsaid =
+        attitude("ATT, 1000000, 1.25, 0, 2\nATT, 1020000, 9.5, ?, 3\nATT, 1040000, 1.5, 0, 4\n");
+    let log = reading(&unsaid, Some(&roll)).unwrap();
+    assert_eq!(log.maneuver.time(), [1.0, 1.04]);
 }
 
 /// What has no columns of samples is refused by its name, with what makes CSV of it.
