@@ -237,6 +237,29 @@ fn arrays_of_structs_and_cells_of_matlab_are_read() {
     }
 }
 
+/// By the conventions of netCDF: what is stored times `scale_factor`, and `add_offset` more; `_FillValue` is no value.
+#[test]
+fn packed_numbers_are_unpacked_as_the_file_says() {
+    let file = bytes("packed.nc");
+    let text = r#"{"time": {"from": "time", "unit": "s"}, "channels": {"alpha": {"from": "alpha"}, "q": {"from": "q"}}}"#;
+    let reading = read(&file, Some(&Mapping::from_json(text).unwrap())).unwrap();
+    let channel = |name: &str| &reading.maneuver.channels()[name].values;
+    for (name, expected) in [
+        ("alpha", [1.5, 2.5, f64::NAN, 3.5, 4.5]),
+        ("q", [10.0, -20.0, 30.0, -40.0, 50.0]),
+    ] {
+        for (value, expected) in channel(name).iter().zip(expected) {
+            let off = value.to_degrees() - expected;
+            assert!(
+                off.abs() < 1e-12 || (value.is_nan() && expected.is_nan()),
+                "{name}: {off}"
+            );
+        }
+    }
+    let told = &reading.findings[0].message;
+    assert!(told.contains("'alpha', 'q'"), "{told}");
+}
+
 /// A reference to nothing keeps its place: h5py reads the elements of `run/alpha` as -alpha, none, alpha.
 #[test]
 fn references_to_nothing_keep_their_places() {

@@ -7,6 +7,7 @@ mod common {
     pub(crate) mod repository;
 }
 
+mod ames;
 mod corruptions;
 mod findings;
 mod flight_data;
@@ -22,4 +23,5 @@ mod parquet;
 mod programs;
 mod structs;
 mod tdms;
+mod text_logs;
 mod times;

@@ -4,6 +4,7 @@ use trimtab_core::flight::Maneuver;
 use trimtab_core::ingest::{Format, IngestError, Limits, Mapping, Reading, code, read_recording};
 
 use crate::common::repository;
+use crate::programs::{assert_read, mapping, reading};
 
 fn file() -> Vec<u8> {
     let path = repository::path("tests/ingest/recordings/octave.txt");
@@ -127,4 +128,31 @@ fn no_damage_to_a_file_of_octave_panics() {
             }
         }
     }
+}
+
+/// Octave's manual, "Simple File I/O", and its ls-oct-text.cc.
+#[test]
+fn variables_of_octave_are_taken_by_name() {
+    let text = "# Created by Octave 8.4.0, Sun Mar 01 10:15:00 2026 UTC <own@own>\n# name: t\n# type: double_range\n# base, limit, increment\n0 0.3 0.1\n\n\n# name: rec\n# type: scalar struct\n# ndims: 2\n 1 1\n# length: 2\n# name: alpha\n# type: matrix\n# rows: 4\n# columns: 1\n 3\n 3.5\n NaN\n NA\n\n\n# name: note\n# type: string\n# elements: 1\n# length: 4\nmade\n\n\n\n\n# name: d\n# type: matrix\n# rows: 4\n# columns: 2\n 0 1\n 1 2\n 2 3\n 3 4\n\n\n# name: n\n# type: int32 matrix\n# ndims: 2\n 2 2\n  1\n  2\n  3\n  4\n\n\n";
+    let said = r#"{"time": {"from": "t", "unit": "s"}, "channels": {"alpha": {"from": "rec.alpha", "unit": "deg"}, "q": {"from": "d(:,2)", "unit": "deg/s"}}}"#;
+    let octave = reading(text, Some(&mapping(said))).unwrap().maneuver;
+    assert_read(&octave, 4, 0.3, ("alpha", 3.0, "deg"));
+    assert_read(&octave, 4, 0.3, ("q", 1.0, "deg/s"));
+    assert!(octave.channels()["alpha"].values[3].is_nan());
+    // integers stand column by column
+    let whole = r#"{"time": {"from": "n(:,1)", "unit": "s"}, "channels": {"n": {"from": "n(:,2)", "unit": "-"}}}"#;
+    let whole = reading(text, Some(&mapping(whole))).unwrap().maneuver;
+    assert_read(&whole, 2, 1.0, ("n", 3.0, "-"));
+    let unmapped = reading(text, None).unwrap_err();
+    assert_eq!(unmapped.faults()[0].code, code::MAPPING_NEEDED);
+    assert!(
+        unmapped.to_string().contains("'rec.alpha' (4x1)"),
+        "{unmapped}"
+    );
+    for at in 0..text.len() {
+        let _ = reading(&text[..at], Some(&mapping(said)));
+    }
+    // a matrix without columns has no values, however many rows it says
+    let endless = text.replace(" 2 2\n  1\n", " 1000000000000000000 0\n  1\n");
+    assert!(reading(&endless, Some(&mapping(said))).is_ok());
 }

@@ -130,3 +130,14 @@ with h5py.File(here / "v73_nothing.mat", "w", userblock_size=512) as file:
         single[place, 0] = referred(file, [[place]])
 with open(here / "v73_nothing.mat", "r+b") as file:
     file.write(b"MATLAB 7.3 MAT-file, as h5py writes it".ljust(124) + b"\x00\x02IM")
+
+# numbers in two bytes, as netCDF packs them
+with h5py.File(here / "packed.nc", "w") as file:
+    file["time"] = time
+    stored = {"alpha": [115, 215, -9999, 315, 415], "q": [120, 90, 140, 70, 160]}
+    attributes = {"alpha": (0.01, 0.35, -9999, "deg"), "q": (1.0, -110.0, -32768, "deg/s")}
+    for name, numbers in stored.items():
+        file[name] = np.array(numbers, "i2")
+        factor, offset, fill, unit = attributes[name]
+        said = {"scale_factor": factor, "add_offset": offset, "_FillValue": np.int16(fill), "units": np.bytes_(unit)}
+        file[name].attrs.update(said)

@@ -219,7 +219,7 @@ fn a_unit_is_that_of_the_source_that_is_read() {
         [1000.0, 2000.0]
     );
     // of c no unit is said: that of another is none
-    let refused = of("c").map_err(IngestError::from);
+    let refused = of("c");
     assert_eq!(places(refused), ["invalid_mapping /channels/h/unit"]);
 }
 
