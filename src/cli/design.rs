@@ -1,12 +1,15 @@
 //! `trimtab design`: maneuvers before they are flown, without a server.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+
+use indexmap::IndexMap;
 
 use super::recording::read_text;
+use super::scenario::{model_of, read_inputs};
 use super::{Failure, table};
 use crate::design::{self, DesignSpec, DesignedManeuver, Designs};
 use crate::estimate::five_digits as number;
-use crate::model::{ModelDocument, catalog};
+use crate::model::Model;
 
 /// Designs the maneuvers of a plan (multisteps, multisines, D-optimal inputs) and predicts the error bounds that they will give.
 #[derive(clap::Args, Debug)]
@@ -33,15 +36,23 @@ impl Design {
             .plan
             .extension()
             .is_some_and(|extension| extension == "json");
-        let spec: DesignSpec = match is_json {
+        let mut spec: DesignSpec = match is_json {
             true => serde_json::from_str(&text).map_err(|e| unread(e.to_string()))?,
             false => toml::from_str(&text).map_err(|e| unread(e.to_string()))?,
         };
-        let document = self.document(&spec.scenario.model)?;
-        let designs = design::design(&spec, &document, f64::INFINITY)
+        read_inputs(&mut spec.scenario, &self.plan)?;
+        let document = model_of(&spec.scenario, &self.plan, self.model.as_deref())?;
+        let model =
+            Model::compile(&document).map_err(|faults| Failure::faults(&document.name, &faults))?;
+        let stems = match &self.output {
+            // before it takes its time
+            Some(_) => stems(spec.maneuvers.iter().map(|one| one.name.as_str()))?,
+            None => Vec::new(),
+        };
+        let designs = design::design(&spec, model, f64::INFINITY)
             .map_err(|faults| Failure::faults("there is no design", &faults))?;
         if let Some(directory) = &self.output {
-            write(directory, &designs)?;
+            write(directory, &stems, &designs)?;
         }
         match self.json {
             true => println!("{}", serde_json::to_string_pretty(&designs)?),
@@ -49,48 +60,35 @@ impl Design {
         }
         Ok(())
     }
-
-    /// The model by its name in the catalog, or in a file: one that the scenario names is beside the plan.
-    fn document(&self, named: &str) -> Result<ModelDocument, Failure> {
-        let name = self.model.as_deref().unwrap_or(named);
-        let beside = match self.model {
-            Some(_) => None,
-            None => self.plan.parent(),
-        };
-        let file = beside.map_or_else(|| PathBuf::from(name), |directory| directory.join(name));
-        let unread = |why: String| Failure::new(format!("{}: {why}", file.display()));
-        match file.extension().and_then(|extension| extension.to_str()) {
-            Some("toml") => toml::from_str(&read_text(&file)?).map_err(|e| unread(e.to_string())),
-            Some("json") => {
-                serde_json::from_str(&read_text(&file)?).map_err(|e| unread(e.to_string()))
-            }
-            _ => catalog::find(name).ok_or_else(|| {
-                Failure::new(format!(
-                    "there is no catalog model '{name}'; name one, or a model document (.toml, .json)"
-                ))
-            }),
-        }
-    }
 }
 
-fn write(directory: &std::path::Path, designs: &Designs) -> Result<(), Failure> {
-    let unwritten = |file: &std::path::Path, why: String| {
+/// Files are called as the maneuvers, without what cannot be in a name of a file; no two of them the same.
+fn stems<'n>(names: impl Iterator<Item = &'n str>) -> Result<Vec<String>, Failure> {
+    let fit = |c: char| match c.is_alphanumeric() || "-_.".contains(c) {
+        true => c,
+        false => '_',
+    };
+    let mut seen: IndexMap<String, &str> = IndexMap::new();
+    for name in names {
+        let stem: String = name.chars().map(fit).collect();
+        if let Some(before) = seen.insert(stem.clone(), name) {
+            return Err(Failure::new(format!(
+                "--output: the maneuvers '{before}' and '{name}' would both be {stem}.csv; rename one of them"
+            )));
+        }
+    }
+    Ok(seen.into_keys().collect())
+}
+
+fn write(directory: &Path, stems: &[String], designs: &Designs) -> Result<(), Failure> {
+    let unwritten = |file: &Path, why: String| {
         Failure::new(format!(
             "--output {}: {why}; name a directory that can be written",
             file.display()
         ))
     };
     std::fs::create_dir_all(directory).map_err(|why| unwritten(directory, why.to_string()))?;
-    for maneuver in &designs.maneuvers {
-        let stem: String = (maneuver.name.chars())
-            .map(|c| {
-                if c.is_alphanumeric() || "-_.".contains(c) {
-                    c
-                } else {
-                    '_'
-                }
-            })
-            .collect();
+    for (maneuver, stem) in designs.maneuvers.iter().zip(stems) {
         let scenario = toml::to_string(&maneuver.scenario)
             .map_err(|why| unwritten(directory, why.to_string()))?;
         for (ending, text) in [("csv", maneuver.to_csv()), ("toml", scenario)] {

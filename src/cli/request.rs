@@ -7,10 +7,11 @@ use indexmap::{IndexMap, IndexSet};
 
 use super::Failure;
 use super::changes::Changes;
+use super::document::{document, in_file};
 use super::file_rows::FileRows;
 use super::mapping::MappingOption;
 use super::pairs::{once, pair};
-use super::recording::{read_recording, read_text};
+use super::recording::read_recording;
 use super::start_method::start_method;
 use crate::estimate::{
     Derivatives, Estimator, FrequencyOptions, Method, Noise, NoiseStructure, Options, Role,
@@ -20,7 +21,7 @@ use crate::flight::Maneuver;
 use crate::job::{
     self, ConstantValue, Gaps, JobKind, JobSpec, ManeuverUse, ModelSource, Plan, Strict,
 };
-use crate::model::{ModelDocument, catalog};
+use crate::model::ModelDocument;
 use crate::simulate::{InputInterpolation, Integrator};
 
 #[derive(clap::Args, Debug)]
@@ -119,33 +120,15 @@ impl Request {
 
     /// The model: a name that the catalog (or the server) knows, or the document in a file.
     pub(super) fn model(&self) -> Result<ModelSource, Failure> {
-        let path = Path::new(&self.model);
-        let extension = path.extension().and_then(|extension| extension.to_str());
-        let document: ModelDocument = match extension {
-            Some("toml") => toml::from_str(&read_text(path)?)
-                .map_err(|e| Failure::new(format!("{}: {e}", self.model)))?,
-            Some("json") => serde_json::from_str(&read_text(path)?)
-                .map_err(|e| Failure::new(format!("{}: {e}", self.model)))?,
-            _ => return Ok(ModelSource::Reference(self.model.clone())),
-        };
-        Ok(ModelSource::Document(Box::new(document)))
+        Ok(match in_file(Path::new(&self.model))? {
+            Some(document) => ModelSource::Document(Box::new(document)),
+            None => ModelSource::Reference(self.model.clone()),
+        })
     }
 
     /// The document that `model` stands for here, without a server.
     pub(super) fn document(&self) -> Result<ModelDocument, Failure> {
-        match self.model()? {
-            ModelSource::Document(document) => Ok(*document),
-            ModelSource::Reference(name) => catalog::find(&name).ok_or_else(|| {
-                let known: Vec<String> = catalog::all()
-                    .into_iter()
-                    .map(|document| document.name)
-                    .collect();
-                Failure::new(format!(
-                    "there is no catalog model '{name}'; the catalog has {}; or give a .toml file",
-                    known.join(", ")
-                ))
-            }),
-        }
+        document(&self.model, None)
     }
 
     fn derivatives(&self) -> Result<Derivatives, Failure> {

@@ -4,9 +4,9 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use super::Failure;
-use super::recording::read_text;
-use crate::ingest::{self, Format, Limits};
-use crate::model::{Model, ModelDocument, catalog};
+use super::scenario::{model_of, read_inputs};
+use crate::ingest;
+use crate::model::Model;
 use crate::simulate::{Scenario, ScenarioEffect};
 
 /// Simulates a maneuver from a scenario and writes it as CSV. The same scenario gives the same file.
@@ -27,29 +27,6 @@ pub(super) struct Simulate {
 }
 
 impl Simulate {
-    /// The model by its name in the catalog, or in a file: one that the scenario names is beside it.
-    fn document(&self, named: &str) -> Result<ModelDocument, Failure> {
-        let name = self.model.as_deref().unwrap_or(named);
-        let beside = match self.model {
-            Some(_) => None,
-            None => self.scenario.parent(),
-        };
-        let file = beside.map_or_else(|| PathBuf::from(name), |directory| directory.join(name));
-        let unread = |error: String| Failure::new(format!("{}: {error}", file.display()));
-        match file.extension().and_then(|extension| extension.to_str()) {
-            Some("toml") => toml::from_str(&read_text(&file)?).map_err(|e| unread(e.to_string())),
-            Some("json") => {
-                serde_json::from_str(&read_text(&file)?).map_err(|e| unread(e.to_string()))
-            }
-            _ => catalog::find(name).ok_or_else(|| {
-                let path = self.scenario.display();
-                Failure::new(format!(
-                    "{path}: there is no catalog model '{name}'; name one, or a model document (.toml, .json)"
-                ))
-            }),
-        }
-    }
-
     pub(super) fn run(&self) -> Result<(), Failure> {
         let path = self.scenario.display();
         let text = std::fs::read_to_string(&self.scenario)
@@ -57,17 +34,8 @@ impl Simulate {
         let mut scenario: Scenario =
             toml::from_str(&text).map_err(|e| Failure::new(format!("{path}: {e}")))?;
         scenario.effects.extend(self.effects.iter().cloned());
-        let beside = self.scenario.parent();
-        let read = |file: &str| {
-            let file = beside.map_or_else(|| PathBuf::from(file), |directory| directory.join(file));
-            let bytes = std::fs::read(&file).map_err(|e| format!("{}: {e}", file.display()))?;
-            ingest::read(&bytes, Format::Csv, &Limits::default())
-                .map_err(|e| format!("{}: {e}", file.display()))
-        };
-        scenario
-            .read_recorded(read)
-            .map_err(|e| Failure::new(format!("{path}: {e}")))?;
-        let document = self.document(&scenario.model)?;
+        read_inputs(&mut scenario, &self.scenario)?;
+        let document = model_of(&scenario, &self.scenario, self.model.as_deref())?;
         let model =
             Model::compile(&document).map_err(|faults| Failure::faults(&document.name, &faults))?;
         let maneuver = scenario

@@ -2,13 +2,12 @@
 
 use indexmap::IndexMap;
 
+use super::document::document;
 use super::pairs::{once, pair};
-use super::recording::read_text;
 use super::{Failure, table};
 use crate::dynamics::{Trim, TrimKind, TrimOutcome, TrimQuantity, TrimSpec, TrimValue};
 use crate::estimate::five_digits as number;
 use crate::job::{ModelSource, ModelTrimSpec};
-use crate::model::{ModelDocument, catalog};
 
 /// Finds states and inputs of a steady flight: rates of states are zero, and other quantities are held where it is said. The estimated
 /// model of a fit is "model" in what trimtab fit --json printed.
@@ -44,7 +43,7 @@ pub(super) struct TrimCommand {
 
 impl TrimCommand {
     pub(super) fn run(&self) -> Result<(), Failure> {
-        let document = self.document()?;
+        let document = document(&self.model, None)?;
         let limits = |text: &str| {
             let (lowest, highest) = text
                 .split_once("..")
@@ -74,21 +73,6 @@ impl TrimCommand {
             TrimOutcome::NotReached => Err(Failure::new(
                 "no steady flight meets all conditions: what comes nearest is above",
             )),
-        }
-    }
-
-    fn document(&self) -> Result<ModelDocument, Failure> {
-        let place = &self.model;
-        let path = std::path::Path::new(place);
-        let unread = |why: String| Failure::new(format!("{place}: {why}"));
-        match path.extension().and_then(|extension| extension.to_str()) {
-            Some("toml") => toml::from_str(&read_text(path)?).map_err(|e| unread(e.to_string())),
-            Some("json") => {
-                serde_json::from_str(&read_text(path)?).map_err(|e| unread(e.to_string()))
-            }
-            _ => catalog::find(place).ok_or_else(|| {
-                unread("there is no such catalog model; trimtab model lists them, or name a model document (.toml, .json)".to_string())
-            }),
         }
     }
 }

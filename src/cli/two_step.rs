@@ -5,14 +5,13 @@ use std::sync::Arc;
 
 use indexmap::IndexMap;
 
+use super::document::document;
 use super::pairs::{once, pair};
 use super::progress::ProgressLine;
-use super::recording::read_text;
 use super::request::Request;
 use super::{Failure, notes, table};
 use crate::estimate::{Options, Role};
 use crate::job::{self, JobKind, JobSpec, ManeuverUse, ModelSource, Plan};
-use crate::model::{ModelDocument, catalog};
 
 #[derive(clap::Args, Debug)]
 pub(super) struct TwoStep {
@@ -38,7 +37,8 @@ impl TwoStep {
         let recordings = request.recordings()?;
         let ids: Vec<String> = recordings.iter().map(|one| one.digest()).collect();
         let asked = request.spec(&ids)?;
-        let document = document(name)?;
+        let document =
+            document(name, None).map_err(|why| Failure::new(format!("--reconstruct: {why}")))?;
         let source = ModelSource::Document(Box::new(document.clone()));
         let first = JobSpec {
             channels: self.channels()?,
@@ -96,17 +96,5 @@ impl TwoStep {
             once("--reconstruct-channel", name, before.is_some())?;
         }
         Ok(channels)
-    }
-}
-
-fn document(name: &str) -> Result<ModelDocument, Failure> {
-    let path = std::path::Path::new(name);
-    let unread = |why: String| Failure::new(format!("--reconstruct {name}: {why}"));
-    match path.extension().and_then(|extension| extension.to_str()) {
-        Some("toml") => toml::from_str(&read_text(path)?).map_err(|e| unread(e.to_string())),
-        Some("json") => serde_json::from_str(&read_text(path)?).map_err(|e| unread(e.to_string())),
-        _ => catalog::find(name).ok_or_else(|| {
-            unread("there is no such catalog model; trimtab model lists them, or name a model document (.toml, .json)".to_string())
-        }),
     }
 }

@@ -207,6 +207,11 @@ fn what_a_campaign_cannot_be_asked_says_why() {
             "'a' is there twice",
         ),
         (fault(&[], &["b", "b"], None), "group", "'b' is there twice"),
+        (
+            fault(&["mean(V)"], &["flaps", "mean(alpha)"], None),
+            "group",
+            "'mean(alpha)': a mean is a number: name it under \"by\"",
+        ),
         (fault(&[], &[], Some(4)), "degree", "between 0 and 3"),
     ] {
         let (place, message) = found.expect("a fault");

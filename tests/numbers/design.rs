@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 use trimtab_core::design::{DesignSpec, DesignedManeuver, Designs, design};
-use trimtab_core::model::catalog;
+use trimtab_core::model::{Model, Prior, catalog};
 use trimtab_core::simulate::Scenario;
 
-use crate::common::estimation::{fly, scenario, solve_all};
+use crate::common::estimation::{compiled, fly, scenario, solve_all};
 use crate::common::repository;
 
 fn plan() -> Value {
@@ -19,8 +19,8 @@ fn plan() -> Value {
 
 fn designed(plan: Value) -> Designs {
     let spec: DesignSpec = serde_json::from_value(plan).expect("a plan");
-    let document = catalog::find(&spec.scenario.model).expect("a model");
-    design(&spec, &document, f64::INFINITY).unwrap_or_else(|faults| panic!("{faults:#?}"))
+    let model = compiled(&spec.scenario.model);
+    design(&spec, model, f64::INFINITY).unwrap_or_else(|faults| panic!("{faults:#?}"))
 }
 
 /// The plan with these maneuvers alone, and without limits.
@@ -360,14 +360,71 @@ fn maneuvers_together_tell_what_information_adds_up_to() {
     }
 }
 
+/// A prior is no information of a maneuver, and not once more with each: bounds are those of the model without it, and of two small
+/// maneuvers together 1/√2 of one.
+#[test]
+fn bounds_are_of_maneuvers_without_priors() {
+    let mut small = three_two_one_one();
+    small["design"]["amplitude"] = json!(0.2);
+    let again = json!({"name": "again", "design": small["design"]});
+    let plan = only(json!([small, again]));
+    let without = designed(plan.clone());
+    let spec: DesignSpec = serde_json::from_value(plan).expect("a plan");
+    let mut document = catalog::find("short-period").expect("a model");
+    for (name, mean) in [("Ma", -3.4), ("Za", -0.85)] {
+        document.parameters[name].prior = Some(Prior { mean, sd: 0.05 });
+    }
+    let model = Model::compile(&document).expect("a model");
+    let with = design(&spec, model, f64::INFINITY).expect("designs");
+    // the priors would count: the maneuvers tell less than 0.05
+    assert!(error(&without.maneuvers[0], "Ma") > 0.1);
+    for row in &with.together {
+        let alone = error(&with.maneuvers[0], &row.name);
+        assert_eq!(alone, error(&without.maneuvers[0], &row.name));
+        let both = row.standard_error.expect("a bound");
+        let ratio = both * 2.0_f64.sqrt() / alone;
+        assert!((ratio - 1.0).abs() < 1e-12, "{}: {ratio}", row.name);
+    }
+}
+
+/// A step at the first sample by hand: 40 deg/s over 0.04 s are 1.6 deg, and then 2 deg.
+#[test]
+fn a_limit_of_rate_holds_from_trim_on() {
+    let mut step = three_two_one_one();
+    step["design"]["start"] = json!(0.0);
+    let mut plan = only(json!([step]));
+    let free = designed(plan.clone());
+    plan["rate_limits"] = json!({"de": 40.0});
+    let limited = designed(plan);
+    let of = |designs: &Designs| {
+        let input = &designs.maneuvers[0].inputs[0];
+        let trim = designs.maneuvers[0].scenario.inputs["de"].trim;
+        (input.values[0] - trim, input.values[1] - trim, input.rate)
+    };
+    for (found, expected) in [(of(&free), (2.0, 2.0)), (of(&limited), (1.6, 2.0))] {
+        assert!((found.0 - expected.0).abs() < 1e-9, "{found:?}");
+        assert!((found.1 - expected.1).abs() < 1e-9, "{found:?}");
+    }
+    // from 2 deg to -2 deg without a limit
+    assert!((of(&free).2 - 100.0).abs() < 1e-6, "{:?}", of(&free));
+    assert!((of(&limited).2 - 40.0).abs() < 1e-6, "{:?}", of(&limited));
+    // a pulse that moves most at its first sample
+    let pulse = json!([{"name": "pulse", "design": {"kind": "scenario"}}]);
+    let mut plan = only(pulse);
+    plan["scenario"]["inputs"]["de"]["design"] =
+        json!({"shape": "steps", "steps": [[0.0, 2.0], [1.0, 1.0], [2.0, 0.0]]});
+    let rate = of(&designed(plan)).2;
+    assert!((rate - 50.0).abs() < 1e-6, "{rate}");
+}
+
 #[test]
 fn what_does_not_fit_is_told_by_pointer() {
     let refused = |change: &dyn Fn(&mut Value)| {
         let mut plan = plan();
         change(&mut plan);
         let spec: DesignSpec = serde_json::from_value(plan).expect("a plan");
-        let document = catalog::find(&spec.scenario.model).expect("a model");
-        let faults = design(&spec, &document, 1e7).expect_err("a fault");
+        let model = compiled(&spec.scenario.model);
+        let faults = design(&spec, model, 1e7).expect_err("a fault");
         (faults[0].pointer.clone(), faults[0].message.clone())
     };
     let of = |maneuver: Value| {

@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 
 use serde_json::{Value, json};
 use trimtab_core::job::{self, JobResult, NoSourceCode, Plan, SimulatorFormat};
-use trimtab_core::model::{Model, NoAerodynamics};
+use trimtab_core::model::{FmuSetting, Model, NoAerodynamics};
 
 use crate::common::estimation::{fly, scenario};
 use crate::common::plans::scatter;
@@ -200,6 +200,40 @@ print(pick("Outputs"), pick("Derivatives"), [n for n in names if n.startswith("s
     assert_eq!(printed.trim(), expected);
 }
 
+/// In FMI 2.0's schema `UnitDefinitions` has one `Unit` or more, and need not be there.
+#[test]
+fn a_model_without_units_has_no_unit_definitions() {
+    let described = |unit: &str| {
+        let text = format!(
+            "name = \"ratio\"\n[inputs]\nu = {{ unit = \"{unit}\" }}\n[parameters]\nk = {{ start = 1 }}\n[outputs]\ny = {{ unit = \"{unit}\", equation = \"k*u\" }}\n"
+        );
+        let model = Model::compile(&toml::from_str(&text).expect("a document"));
+        let archive = model.expect("a model").fmu(&FmuSetting {
+            parameters: &[1.0],
+            inputs: &[0.0],
+            step: 0.1,
+            duration: 1.0,
+            of: "\u{ffff}",
+        });
+        let mut all = files(&archive).into_iter();
+        let description = all.find(|(name, _)| name == "modelDescription.xml");
+        description.expect("the description").1
+    };
+    let (without, with) = (described("-"), described("m"));
+    assert!(!without.contains("UnitDefinitions"), "{without}");
+    // XML cannot have it
+    assert!(!without.contains('\u{ffff}'), "{without}");
+    let units =
+        "<UnitDefinitions>\n<Unit name=\"m\"><BaseUnit m=\"1\"/></Unit>\n</UnitDefinitions>";
+    assert!(with.contains(units), "{with}");
+    if has_python() {
+        let folder = Folder::new("no-units-fmu");
+        let file = folder.write("modelDescription.xml", &without);
+        let parse = "import sys, xml.etree.ElementTree as xml; xml.parse(sys.argv[1])";
+        run(Command::new("python3").arg("-c").arg(parse).arg(file));
+    }
+}
+
 /// Forces and moments in N and N m of a model with its parameters, by Python from the file; JSBSim's properties from `rows`.
 fn forces(file: &[u8], rows: &Value) -> Vec<Value> {
     let folder = Folder::new(&format!("jsbsim-{}", rows.to_string().len()));
@@ -301,7 +335,7 @@ fn aerodynamics(text: &str) -> Result<String, NoAerodynamics> {
     let document = toml::from_str(text).expect("a document");
     let model = Model::compile(&document).unwrap_or_else(|faults| panic!("{faults:#?}"));
     let parameters = vec![2.0; model.parameters.len()];
-    model.jsbsim(&parameters, "it -- it")
+    model.jsbsim(&parameters, "it --- it ---- it\u{8}")
 }
 
 /// Functions that JSBSim does not have, its stability axes, controls of its own; by hand.
@@ -328,14 +362,10 @@ fn every_function_of_an_equation_is_one_of_jsbsim() {
         "#,
     )
     .expect("a file");
-    assert!(
-        !file
-            .split_once("-->")
-            .expect("a head")
-            .0
-            .contains("it -- it"),
-        "{file}"
-    );
+    let (_, head) = file.split_once("<!--").expect("a head");
+    let (head, _) = head.split_once("-->").expect("its end");
+    assert!(head.contains("it - - - it - - - - it"), "{head}");
+    assert!(!head.contains("--") && !head.contains('\u{8}'), "{head}");
     assert!(file.contains("aero/trimtab/df [-] has to be set"), "{file}");
     let k = 2.0;
     let points = [0.3, 0.12, 0.05, -0.05, -0.1, -0.4];

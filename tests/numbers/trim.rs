@@ -220,6 +220,66 @@ fn names_and_units_that_do_not_fit_are_told_by_pointer() {
     );
 }
 
+/// What is held stays where it is held; limits that exclude the value are refused.
+#[test]
+fn what_is_held_beyond_its_limits_is_refused() {
+    let model = compiled("longitudinal-nonlinear");
+    for limits in [json!([0, 100]), json!(["130[m/s]", "200[m/s]"])] {
+        let spec = conditions(json!({"hold": {"V": 120}, "limits": {"V": limits}}));
+        let faults = trim(&model, &starts(&model), &spec).expect_err("a fault");
+        assert_eq!(faults.len(), 1, "{faults:#?}");
+        assert_eq!(faults[0].pointer, "/limits/V");
+        let message = &faults[0].message;
+        assert!(
+            message.contains("held at 120")
+                && message.contains("change what is held or the limits"),
+            "{message}"
+        );
+    }
+    let spec = json!({"hold": {"V": 120}, "limits": {"V": [0, 120]}});
+    let found = trimmed("longitudinal-nonlinear", spec);
+    assert_eq!(found.outcome, TrimOutcome::Trimmed);
+    assert_eq!(value(&found, "V"), 120.0);
+}
+
+/// An angle in degrees: a text without a unit means what the same number means, and arithmetic needs a unit.
+#[test]
+fn a_number_in_a_text_is_in_the_unit_of_the_model() {
+    let mut document = catalog::find("longitudinal-nonlinear").expect("a model");
+    let at = |model: &Model, alpha: &Value| {
+        let spec = conditions(json!({"hold": {"alpha": alpha}, "start": {"V": 100, "theta": 0}}));
+        trim(model, &starts(model), &spec)
+    };
+    let in_radians = Model::compile(&document).expect("a model");
+    document.states["alpha"].unit = "deg".to_string();
+    let in_degrees = Model::compile(&document).expect("a model");
+    let five = 5.0_f64.to_radians();
+    let cases = [
+        (&in_degrees, json!(5)),
+        (&in_degrees, json!("5")),
+        (&in_degrees, json!(" 5.0 ")),
+        (&in_degrees, json!("5[deg]")),
+        (&in_degrees, json!("2[deg] + 3[deg]")),
+        // in SI both readings are the same
+        (&in_radians, json!("pi/36")),
+    ];
+    for (model, alpha) in cases {
+        let found = at(model, &alpha).unwrap_or_else(|faults| panic!("{alpha}: {faults:#?}"));
+        assert_eq!(found.outcome, TrimOutcome::Trimmed, "{alpha}");
+        let off = value(&found, "alpha") - five;
+        assert!(off.abs() < 1e-15, "{alpha}: {off}");
+    }
+    for alpha in ["2+3", "pi/36", "5*1"] {
+        let faults = at(&in_degrees, &json!(alpha)).expect_err(alpha);
+        assert_eq!(faults[0].pointer, "/hold/alpha");
+        let message = &faults[0].message;
+        assert!(
+            message.contains("write its unit in square brackets"),
+            "{message}"
+        );
+    }
+}
+
 /// √(dᵀ P d) with d by central differences of trims at other parameters, P from standard errors and correlations.
 #[test]
 fn standard_errors_of_a_trim_are_those_of_its_parameters() {

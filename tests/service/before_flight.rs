@@ -150,9 +150,139 @@ async fn maneuvers_are_designed_before_they_are_flown() {
     assert_eq!(refused.json()["errors"][0]["code"], "too_large");
 }
 
+/// Faults point into what was sent.
+#[tokio::test]
+async fn faults_of_a_model_are_told_where_it_stands() {
+    let server = Server::start().await;
+    let document = trimtab::model::catalog::find("short-period").expect("a model");
+    let sound = serde_json::to_value(document).expect("JSON");
+    let mut broken = sound.clone();
+    broken["states"]["q"]["derivative"] = json!("alpha*nothing");
+    let pointer =
+        |refused: &crate::common::server::Answer| refused.json()["errors"][0]["pointer"].clone();
+    let spec = json!({"model": broken, "plan": plan()});
+    let refused = server.post_json("/v1/designs", &spec).await;
+    refused.problem(422, "invalid_model");
+    assert_eq!(pointer(&refused), "/model/states/q/derivative");
+    let refused = server
+        .post_json("/v1/trims", &json!({"model": broken}))
+        .await;
+    refused.problem(422, "invalid_trim");
+    assert_eq!(pointer(&refused), "/model/states/q/derivative");
+    // a value beyond the bounds of the document stands beside it
+    let mut bounded = sound;
+    bounded["parameters"]["Ma"]["upper"] = json!(0.0);
+    let spec = json!({"model": bounded, "parameters": {"Ma": 1.0}});
+    let refused = server.post_json("/v1/trims", &spec).await;
+    assert_eq!(pointer(&refused), "/parameters/Ma", "{}", refused.text());
+}
+
+/// A plan that is sent in has no files beside it.
+#[tokio::test]
+async fn recorded_inputs_of_a_plan_are_not_read_over_http() {
+    let server = Server::start().await;
+    let mut from_file = plan();
+    from_file["scenario"]["inputs"]["de"]["design"] =
+        json!({"shape": "recorded", "file": "elevator.csv"});
+    let refused = server
+        .post_json("/v1/designs", &json!({"plan": from_file}))
+        .await;
+    refused.problem(422, "invalid_design");
+    assert_eq!(refused.json()["errors"][0]["pointer"], "/plan/scenario");
+    let text = refused.text();
+    assert!(text.contains("files are not read here"), "{text}");
+}
+
+fn said(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).expect("text")
+}
+
+/// All commands that take a model say which there are.
+#[test]
+fn a_model_that_is_not_there_is_told_with_those_that_are() {
+    let commands: [&[&str]; 5] = [
+        &["trim", "nothing"],
+        &["design", "data/design/short-period.toml", "-m", "nothing"],
+        &["simulate", "data/elevator.toml", "-m", "nothing"],
+        &["fit", "data/elevator.csv", "-m", "nothing"],
+        &[
+            "fit",
+            "data/elevator.csv",
+            "-m",
+            "short-period",
+            "--reconstruct",
+            "nothing",
+        ],
+    ];
+    for arguments in commands {
+        let refused = trimtab(arguments);
+        let text = said(&refused.stderr);
+        assert_eq!(refused.status.code(), Some(1), "{arguments:?}: {text}");
+        assert!(
+            text.contains("there is no catalog model 'nothing'; the catalog has ")
+                && text.contains("short-period"),
+            "{arguments:?}: {text}"
+        );
+    }
+}
+
+/// The plan with one maneuver as the scenario has it, whose elevator is in a file beside the plan.
+#[test]
+fn inputs_of_a_plan_are_read_from_files_beside_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let time: Vec<f64> = (0..=500).map(|k| f64::from(k) * 0.04).collect();
+    let moved = |t: f64| if (2.0..3.0).contains(&t) { 1.5 } else { 0.25 };
+    let rows: String = time
+        .iter()
+        .map(|&t| format!("{t},{}\n", moved(t)))
+        .collect();
+    let recording = format!("t[s],stick[deg]\n{rows}");
+    std::fs::write(folder.path().join("flown.csv"), recording).expect("written");
+    let mut plan = plan();
+    plan["scenario"]["inputs"]["de"] = json!({"unit": "deg", "design": {"shape": "recorded", "file": "flown.csv", "channel": "stick"}});
+    plan["maneuvers"] = json!([{"name": "as flown", "design": {"kind": "scenario"}}]);
+    plan["rate_limits"] = json!({});
+    let file = folder.path().join("plan.json");
+    std::fs::write(&file, plan.to_string()).expect("written");
+    let output = folder.path().join("designs/of/it");
+    let (file, output) = (file.to_string_lossy(), output.to_string_lossy());
+    let done = trimtab(&["design", &file, "--json", "-o", &output]);
+    assert!(done.status.success(), "{}", said(&done.stderr));
+    let designs: Designs = serde_json::from_slice(&done.stdout).expect("designs");
+    let values = &designs.maneuvers[0].inputs[0].values;
+    assert_eq!(values.len(), time.len());
+    for (t, value) in time.iter().zip(values) {
+        assert!((value - moved(*t)).abs() < 1e-9, "{t}: {value}");
+    }
+    // the scenario has them in itself
+    let scenario = format!("{output}/as_flown.toml");
+    let flown = trimtab(&["simulate", &scenario]);
+    assert!(flown.status.success(), "{}", said(&flown.stderr));
+}
+
+#[test]
+fn maneuvers_whose_files_would_be_the_same_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut plan = plan();
+    plan["maneuvers"][0]["name"] = json!("a/b");
+    plan["maneuvers"][1]["name"] = json!("a_b");
+    let file = folder.path().join("plan.json");
+    std::fs::write(&file, plan.to_string()).expect("written");
+    let output = folder.path().join("designs");
+    let refused = trimtab(&[
+        "design",
+        &file.to_string_lossy(),
+        "-o",
+        &output.to_string_lossy(),
+    ]);
+    let text = said(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(1), "{text}");
+    assert!(text.contains("'a/b' and 'a_b'"), "{text}");
+    assert!(!output.exists());
+}
+
 #[test]
 fn trim_and_design_are_commands() {
-    let said = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).expect("text");
     let arguments = [
         "trim",
         "six-degrees-of-freedom",

@@ -162,6 +162,7 @@ async fn jobs_of_a_tag_are_a_campaign() {
         "tag=campaign%207&by=alpha,alpha",
         "tag=campaign%207&by=a,b,c,d,e",
         "tag=campaign%207&group=a,b,c,d,e,f,g,h,i",
+        "tag=campaign%207&group=mean(alpha)",
     ] {
         let refused = server.get(&format!("/v1/campaigns?{wrong}")).await;
         assert_eq!(refused.status, 400, "{wrong}: {}", refused.text());

@@ -112,7 +112,8 @@ fn aerodynamics_are_estimated_from_a_recording_that_was_corrected_first() {
     );
     let unknown = fit(&["--reconstruct", "x"]);
     assert!(
-        said(&unknown.stderr).contains("no such catalog model"),
+        said(&unknown.stderr)
+            .contains("--reconstruct: there is no catalog model 'x'; the catalog has "),
         "{}",
         said(&unknown.stderr)
     );

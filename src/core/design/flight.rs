@@ -124,11 +124,14 @@ impl Flight {
         let planned = scenario.planned(self.model());
         let planned = planned.map_err(|error| Fault::new("", "bad_design", error.to_string()))?;
         let step = self.scenario.step;
-        let limited = |(samples, limit): (Vec<f64>, &f64)| rate_limited(samples, limit * step);
+        let limits = self.trim.iter().zip(&self.rate_limits);
+        let limited = |(samples, (trim, limit)): (Vec<f64>, (&f64, &f64))| {
+            rate_limited(samples, *trim, limit * step)
+        };
         Ok(planned
             .inputs
             .into_iter()
-            .zip(&self.rate_limits)
+            .zip(limits)
             .map(limited)
             .collect())
     }
@@ -179,12 +182,13 @@ pub(super) fn departure(series: &[f64]) -> f64 {
     series.iter().map(|y| (y - first).abs()).fold(0.0, f64::max)
 }
 
-/// Follows the samples by no more than `most` from one to the next.
-fn rate_limited(mut samples: Vec<f64>, most: f64) -> Vec<f64> {
+/// Follows the samples by no more than `most` from one to the next; one step before the first they are at trim.
+fn rate_limited(mut samples: Vec<f64>, trim: f64, most: f64) -> Vec<f64> {
     if most.is_finite() {
-        for k in 1..samples.len() {
-            let before = samples[k - 1];
-            samples[k] = before + (samples[k] - before).clamp(-most, most);
+        let mut before = trim;
+        for sample in &mut samples {
+            *sample = before + (*sample - before).clamp(-most, most);
+            before = *sample;
         }
     }
     samples
@@ -262,8 +266,11 @@ fn trims(scenario: &Scenario, model: &Model, units: &[Unit], planned: &Planned) 
         .collect()
 }
 
-/// Output error with the noise that is expected.
-fn problem(model: Model, planned: Planned, noise: Vec<f64>) -> Problem {
+/// Output error with the noise that is expected, and without priors: bounds are of what maneuvers tell, and a prior would count once in each.
+fn problem(mut model: Model, planned: Planned, noise: Vec<f64>) -> Problem {
+    for info in &mut model.parameters {
+        info.document.prior = None;
+    }
     let start = |parameter: usize, _| Ok::<f64, Infallible>(planned.parameters[parameter]);
     let Ok(layout) = Unknowns::new(&model, 1, start);
     let samples = planned.time.len();

@@ -38,7 +38,7 @@ pub use spec::{Amplitudes, DesignKind, DesignSpec, ManeuverDesign, MultistepShap
 use nalgebra::DMatrix;
 
 use crate::flight::{Fault, Faults, Unit};
-use crate::model::{Model, ModelDocument, Per};
+use crate::model::{Model, Per};
 use crate::simulate::{InputDesign, Scenario};
 use bounds::{Bounds, among, ln_det_covariance};
 use flight::{Flight, Flown, departure};
@@ -51,9 +51,9 @@ const MOST_MANEUVERS: usize = 20;
 /// parameters times simulations, over all maneuvers.
 ///
 /// # Errors
-/// Faults of the model; every part of the plan that does not fit, by its JSON pointer.
-pub fn design(spec: &DesignSpec, document: &ModelDocument, most: f64) -> Result<Designs, Faults> {
-    let mut flight = Flight::of(spec, Model::compile(document)?)?;
+/// Every part of the plan that does not fit, by its JSON pointer.
+pub fn design(spec: &DesignSpec, model: Model, most: f64) -> Result<Designs, Faults> {
+    let mut flight = Flight::of(spec, model)?;
     check(spec, &flight, most)?;
     let mut maneuvers = Vec::new();
     let mut information = Vec::new();
@@ -173,9 +173,8 @@ fn input(flight: &Flight, place: usize, samples: &[f64], made: &Made) -> Designe
     let values: Vec<f64> = samples.iter().map(|u| unit.from_si(*u)).collect();
     let trim = unit.from_si(flight.trim[place]);
     let square: f64 = values.iter().map(|u| (u - trim).powi(2)).sum();
-    let rates = values
-        .windows(2)
-        .map(|pair| (pair[1] - pair[0]).abs() / step);
+    let before = std::iter::once(&trim).chain(&values);
+    let rates = before.zip(&values).map(|(a, b)| (b - a).abs() / step);
     let moving: Vec<f64> = moving(&values, trim);
     let recorded = flight
         .scenario

@@ -24,7 +24,7 @@ pub struct DesignedInput {
     pub rms: f64,
     /// Integral of the square of the deflection from trim, unit² s.
     pub energy: f64,
-    /// The largest rate, per second.
+    /// The largest rate, per second, from trim one step before the first sample on.
     pub rate: f64,
     /// (largest − smallest)/(2 √2 rms): 1 of a sine, and what a low one costs for the same power. Absent where it does not move.
     pub relative_peak_factor: Option<f64>,

@@ -6,7 +6,8 @@ use utoipa::ToSchema;
 
 use crate::simulate::Scenario;
 
-/// Maneuvers to be designed for one model at one flight condition, and compared.
+/// Maneuvers to be designed for one model at one flight condition, and compared. Priors of the model are left out: the bounds
+/// are those of the maneuvers alone.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DesignSpec {
@@ -21,7 +22,8 @@ pub struct DesignSpec {
     /// One or more.
     #[schema(min_items = 1)]
     pub maneuvers: Vec<ManeuverDesign>,
-    /// By input: the largest rate of its deflection, in its unit per second. Steps become ramps.
+    /// By input: the largest rate of its deflection, in its unit per second. Steps become ramps, at the
+    /// first sample from trim.
     #[serde(
         default,
         deserialize_with = "crate::model::unique",

@@ -38,7 +38,7 @@ pub use corrected::{Corrected, corrected};
 pub use event::{Event, EventBody, Prepared};
 pub use one_call::{diagnose, fit};
 pub use plan::Plan;
-pub use planned::PlannedDesign;
+pub use planned::{NoDesign, PlannedDesign};
 pub use predicted::{PredictedOutput, PredictedSegment, PredictionSpec, predicted};
 pub use prepare::{MOST_MANEUVERS, prepare};
 pub use provenance::Maker;

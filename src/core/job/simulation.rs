@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 use super::spec::ModelSource;
 use crate::flight::{Faults, Maneuver};
 use crate::model::{Model, ModelDocument};
-use crate::simulate::Scenario;
+use crate::simulate::{Scenario, ScenarioError};
 
 /// What is to be simulated.
 #[derive(Clone, PartialEq, Debug, Deserialize, ToSchema)]
@@ -53,10 +53,7 @@ impl SimulationSpec {
     ) -> Result<Maneuver, NoSimulatedManeuver> {
         let unfit = NoSimulatedManeuver::Scenario;
         let mut scenario = self.scenario.clone();
-        let unread = |file: &str| Err(format!("{file}: files are not read here; design the input"));
-        scenario
-            .read_recorded(unread)
-            .map_err(|error| unfit(error.to_string()))?;
+        without_files(&mut scenario).map_err(|error| unfit(error.to_string()))?;
         let samples = scenario.duration / scenario.step;
         // written so that NaN is refused
         let is_short = samples < most as f64;
@@ -69,4 +66,10 @@ impl SimulationSpec {
             .fly(&model)
             .map_err(|error| unfit(error.to_string()))
     }
+}
+
+/// Where a scenario is sent in, its inputs are not read from files.
+pub(super) fn without_files(scenario: &mut Scenario) -> Result<(), ScenarioError> {
+    let unread = |file: &str| Err(format!("{file}: files are not read here; design the input"));
+    scenario.read_recorded(unread)
 }

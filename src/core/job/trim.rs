@@ -51,21 +51,36 @@ impl ModelTrimSpec {
         if !faults.is_empty() {
             return Err(faults.into());
         }
-        let model = Model::compile(&document)?;
+        let model = Model::compile(&document).map_err(|faults| -> Faults {
+            let faults = faults.into_iter();
+            faults.map(|fault| self.located(fault)).collect()
+        })?;
         let parameters: Vec<f64> = (model.parameters.iter())
             .map(|info| match info.document.start {
                 Start::Value(value) => info.unit.to_si(value),
                 Start::FromData(_) => 0.0,
             })
             .collect();
-        let within = |mut fault: Fault| {
-            fault.pointer = format!("/conditions{}", fault.pointer);
-            fault
-        };
         trim(&model, &parameters, &self.conditions).map_err(|faults| {
-            let faults: Vec<Fault> = faults.into_iter().map(within).collect();
-            faults.into()
+            let faults = faults.into_iter();
+            faults.map(|fault| fault.under("/conditions")).collect()
         })
+    }
+
+    /// A fault of the model where it stands: beside the model where a value differs from its own.
+    fn located(&self, mut fault: Fault) -> Fault {
+        let parameters = self.parameters.keys().map(|name| ("parameters", name));
+        let constants = self.constants.keys().map(|name| ("constants", name));
+        for (field, name) in parameters.chain(constants) {
+            let given = format!("/{field}/{}", escape(name));
+            let is_of_it = (fault.pointer.strip_prefix(&given))
+                .is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
+            if is_of_it {
+                fault.pointer = given;
+                return fault;
+            }
+        }
+        fault.under("/model")
     }
 }
 

@@ -15,7 +15,7 @@ use crate::http::problem::{Problem, ProblemDocument};
 use crate::http::request::json::JsonBody;
 use crate::http::request::query::Parameters;
 use crate::http::service::{Server, Service};
-use crate::job::PlannedDesign;
+use crate::job::{NoDesign, PlannedDesign};
 
 pub(crate) fn router() -> OpenApiRouter<Server> {
     OpenApiRouter::new().routes(routes!(design_maneuvers))
@@ -59,8 +59,10 @@ async fn design_maneuvers(
     let document = find_model(&service, &spec.source()).await?;
     let document = document.map_err(|fault| Problem::new(Code::UnknownModel, fault.message))?;
     let design = move || {
-        let refused = |faults| Problem::of_faults(Code::InvalidDesign, faults);
-        let designs = spec.design(&document, MOST_WORK).map_err(refused)?;
+        let designs = spec.design(&document, MOST_WORK).map_err(|why| match why {
+            NoDesign::Model(faults) => Problem::of_faults(Code::InvalidModel, faults),
+            NoDesign::Plan(faults) => Problem::of_faults(Code::InvalidDesign, faults),
+        })?;
         let maneuver = wanted.and_then(|place| designs.maneuvers.get(place));
         Ok(match maneuver {
             Some(maneuver) => (

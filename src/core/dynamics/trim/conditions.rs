@@ -78,6 +78,10 @@ impl Conditions {
                     reader
                         .faults
                         .push(Fault::new(&pointer, "bad_bounds", message));
+                } else if let Some(message) = held_outside(&all, place, [least, most]) {
+                    reader
+                        .faults
+                        .push(Fault::new(&pointer, "bad_bounds", message));
                 }
                 (lower[place], upper[place]) = (least, most);
             }
@@ -126,6 +130,18 @@ impl Conditions {
         }
         rows
     }
+}
+
+/// Why a state or input cannot be held where it is: its limits exclude the value.
+fn held_outside(all: &[Condition], place: usize, [least, most]: [f64; 2]) -> Option<String> {
+    let held = (all.iter()).find(|one| one.subject == Subject::Unknown(place))?;
+    let is_within = (least..=most).contains(&held.wanted);
+    (!is_within).then(|| {
+        let wanted = held.wanted;
+        format!(
+            "it is held at {wanted} (SI), outside {least} to {most}: change what is held or the limits"
+        )
+    })
 }
 
 /// Where the airspeed is held and the velocity is a state, the search begins in flight, not at rest.
@@ -283,8 +299,11 @@ impl Reader<'_> {
     }
 }
 
-/// `20[deg]` in SI, where its dimension is that of the unit.
+/// `20[deg]` in SI, where its dimension is that of the unit; a number alone is in the unit, as [`TrimValue::Number`] is.
 fn with_unit(text: &str, unit: Unit) -> Result<f64, String> {
+    if let Ok(number) = text.trim().parse() {
+        return Ok(unit.to_si(number));
+    }
     let formula = ChannelFormula::parse(text).map_err(|why| why.to_string())?;
     let value = formula.number(&Nothing).map_err(|why| why.to_string())?;
     let dimension = formula.dimension(&Nothing).map_err(|why| why.to_string())?;
@@ -292,6 +311,10 @@ fn with_unit(text: &str, unit: Unit) -> Result<f64, String> {
         Some(dimension) if dimension != unit.dimension => Err(format!(
             "'{text}' is in {dimension} where {} is needed; write its unit in square brackets",
             unit.dimension
+        )),
+        // arithmetic is in SI: without a unit its meaning is clear only where the model's unit is SI too
+        _ if !text.contains('[') && unit.to_si(value) != value => Err(format!(
+            "'{text}' has no unit, and arithmetic is in SI: write its unit in square brackets"
         )),
         _ => Ok(value),
     }

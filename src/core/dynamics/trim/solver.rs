@@ -139,8 +139,9 @@ fn step(
             }
         }
     }
-    for (place, z) in moved.iter_mut().enumerate() {
-        *z = z.max(conditions.lower[place]).min(conditions.upper[place]);
+    for &place in free {
+        let (lower, upper) = (conditions.lower[place], conditions.upper[place]);
+        moved[place] = moved[place].max(lower).min(upper);
     }
     (moved != z).then_some(moved)
 }

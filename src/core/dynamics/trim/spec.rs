@@ -10,7 +10,7 @@ use utoipa::ToSchema;
 pub enum TrimValue {
     /// In the document's unit of the quantity.
     Number(f64),
-    /// A number with its unit in square brackets, or arithmetic of such.
+    /// A number with its unit in square brackets, or arithmetic of such; a number alone is in the document's unit.
     Text(String),
 }
 
@@ -47,7 +47,7 @@ pub struct TrimSpec {
     )]
     #[schema(example = json!({"u": 60}))]
     pub start: IndexMap<String, TrimValue>,
-    /// States and inputs: the smallest and the largest value that they may take.
+    /// States and inputs: the smallest and the largest value that they may take. A value that is held must be within them.
     #[serde(
         default,
         deserialize_with = "crate::model::unique",

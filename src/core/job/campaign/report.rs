@@ -4,6 +4,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::mean::channel_of;
 use super::recording::UsedRecording;
 use crate::estimate::Estimate;
 
@@ -60,6 +61,10 @@ impl CampaignQuestion {
             if let Some(name) = { twice }.next() {
                 return Some((field, format!("'{name}' is there twice; name it once")));
             }
+        }
+        if let Some(name) = self.group.iter().find(|name| channel_of(name).is_some()) {
+            let message = format!("'{name}': a mean is a number: name it under \"by\"");
+            return Some(("group", message));
         }
         let degree = self.degree.filter(|&degree| degree > MOST_DEGREE)?;
         Some((

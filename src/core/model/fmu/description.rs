@@ -64,7 +64,7 @@ impl<'m> Description<'m> {
              <fmiModelDescription fmiVersion=\"2.0\" modelName=\"{}\" guid=\"{}\" description=\"{}\" generationTool=\"Trimtab\" variableNamingConvention=\"structured\" numberOfEventIndicators=\"0\">\n\
              <ModelExchange modelIdentifier=\"{identifier}\" canGetAndSetFMUstate=\"true\" completedIntegratorStepNotNeeded=\"true\">{files}</ModelExchange>\n\
              <CoSimulation modelIdentifier=\"{identifier}\" canHandleVariableCommunicationStepSize=\"true\" canInterpolateInputs=\"true\" canGetAndSetFMUstate=\"true\">{files}</CoSimulation>\n\
-             <UnitDefinitions>\n{}</UnitDefinitions>\n\
+             {}\
              <DefaultExperiment startTime=\"0\" stopTime=\"{:?}\" stepSize=\"{:?}\"/>\n\
              <ModelVariables>\n{}</ModelVariables>\n\
              <ModelStructure>\n{}</ModelStructure>\n\
@@ -217,6 +217,7 @@ fn number(value: f64) -> String {
 }
 
 /// Each unit once, with the exponents of its base units where they are whole.
+/// Without units there is no element: the schema wants one `Unit` or more in it.
 fn units(variables: &[Variable]) -> String {
     let mut all = IndexMap::new();
     for variable in variables.iter().filter(|variable| has_unit(&variable.si)) {
@@ -238,7 +239,11 @@ fn units(variables: &[Variable]) -> String {
             )
         }
     };
-    all.iter().map(unit).collect()
+    let units: String = all.iter().map(unit).collect();
+    match units.is_empty() {
+        true => units,
+        false => format!("<UnitDefinitions>\n{units}</UnitDefinitions>\n"),
+    }
 }
 
 /// The name of a model as an identifier of C.
@@ -256,7 +261,7 @@ fn escaped(text: &str) -> String {
             '>' => escaped.push_str("&gt;"),
             '"' => escaped.push_str("&quot;"),
             // what XML cannot have
-            c if c.is_control() => escaped.push(' '),
+            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => escaped.push(' '),
             c => escaped.push(c),
         }
     }

@@ -285,7 +285,10 @@ fn missing(coefficients: &[(String, Axis)]) -> Vec<String> {
         .collect()
 }
 
-/// Two hyphens end a comment.
+/// A comment of XML has neither two hyphens in a row nor control characters.
 fn in_comment(note: &str) -> String {
-    note.replace(['\n', '\r'], " ").replace("--", "- -")
+    let is_no_text = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
+    let note = note.replace(is_no_text, " ");
+    // the first pass leaves the last two of three hyphens together
+    note.replace("--", "- -").replace("--", "- -")
 }

@@ -6,7 +6,7 @@ use crate::flight::Maneuver;
 
 impl Scenario {
     /// Reads the inputs whose design is `recorded` in a file: `read` gives the recording of a path. Times count from
-    /// its first sample, values are taken over into the unit of the input.
+    /// its first sample, values are taken over into the unit of the input. The scenario then has the samples in place of the file.
     ///
     /// # Errors
     /// A file that cannot be read, or a channel or unit that is not in it.
@@ -22,9 +22,8 @@ impl Scenario {
             let InputDesign::Recorded {
                 file: Some(file),
                 channel,
-                time,
-                values,
-            } = &mut input.design
+                ..
+            } = &input.design
             else {
                 continue;
             };
@@ -38,10 +37,16 @@ impl Scenario {
             let unit = unit_like(&input.unit, recorded.unit, &format!("inputs.{name}.unit"))?;
             let begin = maneuver.time()[0];
             let samples = maneuver.time().iter().zip(&recorded.values);
-            (*time, *values) = samples
+            let (time, values) = samples
                 .filter(|(_, value)| value.is_finite())
                 .map(|(t, value)| (t - begin, unit.from_si(*value)))
                 .unzip();
+            input.design = InputDesign::Recorded {
+                file: None,
+                channel: None,
+                time,
+                values,
+            };
         }
         Ok(())
     }
