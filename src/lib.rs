@@ -62,7 +62,7 @@
 //!    the help of `src/cli/request.rs`; the table of formats in `src/guide/recordings.md`.
 //!
 //! **Add the layout of a logger.**
-//! 1. `tests/ingest/layouts.rs`: a small file of your own making in it. Most go in as they are.
+//! 1. `tests/common/layouts.rs`: a small file of your own making in it. Most go in as they are.
 //! 2. Where names or units are missing: `src/core/ingest/mapping/<name>.toml`, and a row of `BUNDLED` beside it; `recognise` has the
 //!    titles by which it is used without being named. The list in `src/guide/recordings.md`.
 //!

@@ -207,5 +207,40 @@ pub(crate) fn layouts() -> Vec<Layout> {
             0.02,
             ("q", 0.5, "deg/s"),
         ),
+        layout(
+            "LabChart",
+            "Interval=\t0.02 s\nTimeFormat=\tStartOfBlock\nDateFormat=\t\nChannelTitle=\tElevator\tPitch rate\nRange=\t10.000 V\t100.0 V\nUnitName=\tdeg\tdeg/s\n7.00\t-1.5\t0.5\t#1 doublet\n7.02\t-1.5\t0.6\n7.04\t-1.5\t0.7\n",
+            3,
+            0.04,
+            ("Elevator", -1.5, "deg"),
+        ),
+        layout(
+            "CloudAhoy",
+            "Metadata,CA_CSV.3\nTAIL,OWN\nDATA,\nseconds/t,degrees/Pitch,feet/ALT (GPS),knots/IAS,G/G-load\n0.0,2.5,4200,95,1.0\n0.5,2.6,4201,95,1.0\n1.0,2.7,4202,95,1.1\n",
+            3,
+            1.0,
+            ("Pitch", 2.5, "deg"),
+        ),
+        layout(
+            "VBOX",
+            "File created on 01/03/2026 at 10:15:00\n\n[header]\nsatellites\ntime\n\n[comments]\nown\n\n[column names]\nsats time lat long velocity heading height Pitch\n\n[data]\n012 095959.90 +02826.000000 -00486.000000 172.800 084.10 +01311.20 +2.5\n012 100000.00 +02826.000120 -00486.000060 172.900 084.10 +01311.30 +2.6\n012 100000.10 +02826.000240 -00486.000120 173.000 084.10 +01311.40 +2.7\n",
+            3,
+            0.2,
+            ("V_ground", 48.0, "m/s"),
+        ),
+        layout(
+            "Tecplot",
+            "TITLE = \"run\"\nVARIABLES = \"t [s]\"\n\"alpha [deg]\"\n\"q [deg/s]\"\nZONE T=\"run 1\", I=3, F=POINT\n 0.00 3.0 0.5\n 0.02 3.1 0.6\n 0.04 3.2 0.7\n",
+            3,
+            0.04,
+            ("q", 0.5, "deg/s"),
+        ),
+        layout(
+            "R, write.table",
+            "\"t [s]\" \"alpha_deg\"\n\"1\" 0 3\n\"2\" 0.1 4\n\"3\" 0.2 5\n",
+            3,
+            0.2,
+            ("alpha_deg", 3.0, "deg"),
+        ),
     ]
 }

@@ -237,6 +237,48 @@ fn arrays_of_structs_and_cells_of_matlab_are_read() {
     }
 }
 
+/// By the conventions of netCDF: what is stored times `scale_factor`, and `add_offset` more; `_FillValue` is no value.
+#[test]
+fn packed_numbers_are_unpacked_as_the_file_says() {
+    let file = bytes("packed.nc");
+    let text = r#"{"time": {"from": "time", "unit": "s"}, "channels": {"alpha": {"from": "alpha"}, "q": {"from": "q"}}}"#;
+    let reading = read(&file, Some(&Mapping::from_json(text).unwrap())).unwrap();
+    let channel = |name: &str| &reading.maneuver.channels()[name].values;
+    for (name, expected) in [
+        ("alpha", [1.5, 2.5, f64::NAN, 3.5, 4.5]),
+        ("q", [10.0, -20.0, 30.0, -40.0, 50.0]),
+    ] {
+        for (value, expected) in channel(name).iter().zip(expected) {
+            let off = value.to_degrees() - expected;
+            assert!(
+                off.abs() < 1e-12 || (value.is_nan() && expected.is_nan()),
+                "{name}: {off}"
+            );
+        }
+    }
+    let told = &reading.findings[0].message;
+    assert!(told.contains("'alpha', 'q'"), "{told}");
+}
+
+/// A reference to nothing keeps its place: h5py reads the elements of `run/alpha` as -alpha, none, alpha.
+#[test]
+fn references_to_nothing_keep_their_places() {
+    let file = bytes("v73_nothing.mat");
+    let third = mapping("run(3).t", "run(3).alpha", "run(3).q");
+    let reading = read(&file, Some(&third)).unwrap();
+    assert_is_the_recording(&reading.maneuver, "run(3)");
+    for (source, expected) in [
+        ("run(2).alpha", "'run/alpha' has nothing at its element 2"),
+        ("run(4).alpha", "to rec(3).alpha"),
+        ("run.single", "each of 3 structs"),
+    ] {
+        let error = read(&file, Some(&mapping("run(3).t", source, "run(3).q"))).unwrap_err();
+        let fault = &error.faults()[0];
+        assert_eq!(fault.pointer, "/channels/alpha/from", "{source}");
+        assert!(fault.message.contains(expected), "{source}: {fault}");
+    }
+}
+
 /// Whatever byte is another, the answer is a recording or a fault.
 #[test]
 fn no_damage_to_heaps_and_references_panics() {

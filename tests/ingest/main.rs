@@ -7,6 +7,7 @@ mod common {
     pub(crate) mod repository;
 }
 
+mod ames;
 mod corruptions;
 mod findings;
 mod flight_data;
@@ -17,8 +18,10 @@ mod layouts;
 mod mdf4;
 mod mutations;
 mod newcomers;
+mod octave;
 mod parquet;
 mod programs;
 mod structs;
 mod tdms;
+mod text_logs;
 mod times;

@@ -5,32 +5,13 @@ use rand_chacha::ChaCha8Rng;
 use trimtab_core::ingest::{Format, Limits, Mapping, quality, read_recording, summary};
 
 use crate::common::repository;
+use beginnings::BEGINNINGS;
+
+#[path = "../fuzz/targets/common/beginnings.rs"]
+mod beginnings;
 
 /// As many of each text.
 const TRIED: u64 = 2000;
-
-/// What a fuzz target puts before its seeds.
-const BEGINNINGS: [(&str, &str); 7] = [
-    (
-        "flysight/sensor.csv",
-        "$FLYS,1\n$COL,BARO,time,pressure\n$COL,",
-    ),
-    (
-        "programs/octave.txt",
-        "# Created by Octave 8.4.0\n# name: t\n# type: ",
-    ),
-    ("programs/ames.txt", "14 1001\n"),
-    (
-        "programs/ardupilot.txt",
-        "FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\nFMT, 130, 40, IMU, QBff, TimeUS,I,GyrX,GyrY\n",
-    ),
-    ("programs/tecplot.txt", "VARIABLES = \"t [s]\" \"a\"\n"),
-    ("programs/vbox.txt", "[column names]\n"),
-    (
-        "programs/labchart.txt",
-        "Interval=\t0.02 s\nChannelTitle=\t",
-    ),
-];
 
 const WORDS: [&str; 16] = [
     "\n",

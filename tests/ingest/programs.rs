@@ -4,21 +4,35 @@
 use trimtab_core::flight::{Maneuver, Unit};
 use trimtab_core::ingest::{Format, IngestError, Limits, Mapping, Reading, code, read_recording};
 
-fn reading(text: &str, mapping: Option<&Mapping>) -> Result<Reading, IngestError> {
+use crate::common::layouts::layouts;
+
+pub(crate) fn reading(text: &str, mapping: Option<&Mapping>) -> Result<Reading, IngestError> {
     let limits = Limits::default();
     read_recording(text.as_bytes(), Format::Unstated, None, mapping, &limits)
 }
 
-fn read(text: &str) -> Reading {
+pub(crate) fn read(text: &str) -> Reading {
     reading(text, None).unwrap_or_else(|error| panic!("{text}\n{error}"))
 }
 
-fn mapping(text: &str) -> Mapping {
+/// The file of a layout.
+fn file(name: &str) -> &'static str {
+    let mut layouts = layouts().into_iter();
+    let found = layouts.find(|layout| layout.name == name);
+    found.expect("a layout of this name").file
+}
+
+pub(crate) fn mapping(text: &str) -> Mapping {
     Mapping::from_json(text).unwrap()
 }
 
 /// A channel has this first value in this unit, and the recording so many samples over so many seconds.
-fn assert_read(maneuver: &Maneuver, samples: usize, seconds: f64, channel: (&str, f64, &str)) {
+pub(crate) fn assert_read(
+    maneuver: &Maneuver,
+    samples: usize,
+    seconds: f64,
+    channel: (&str, f64, &str),
+) {
     assert_eq!(maneuver.len(), samples);
     let duration = maneuver.duration();
     assert!((duration - seconds).abs() < 1e-9, "{duration} s");
@@ -34,7 +48,7 @@ fn assert_read(maneuver: &Maneuver, samples: usize, seconds: f64, channel: (&str
     );
 }
 
-fn told(reading: &Reading, code: &str) -> String {
+pub(crate) fn told(reading: &Reading, code: &str) -> String {
     let mut findings = reading.findings.iter();
     let found = findings.find(|finding| finding.code == code);
     found.map_or(String::new(), |finding| finding.message.clone())
@@ -63,6 +77,34 @@ fn a_step_that_the_header_says_is_taken_where_no_column_has_times() {
         .iter()
         .any(|finding| finding.message.contains("as line 2 says"));
     assert!(said, "{:?}", counted.findings);
+    // a comma in it may stand between thousands: the numbers of the table tell, or it is asked for
+    let rate = |rate: &str, row: &str| {
+        let rows = [row; 3].map(|row| format!("{row}\n")).concat();
+        reading(
+            &format!("Sample rate: {rate} Hz\n\na [deg];b [deg]\n{rows}"),
+            None,
+        )
+    };
+    for (said, row, seconds) in [
+        ("1,000", "1.5;2", 0.002),
+        ("1,000", "1,5;2", 2.0),
+        ("1.000", "1,5;2", 0.002),
+        ("1.000", "1;2", 2.0),
+        ("1,000.0", "1;2", 0.002),
+        ("12,5", "1;2", 0.16),
+    ] {
+        let duration = rate(said, row).unwrap().maneuver.duration();
+        assert!(
+            (duration - seconds).abs() < 1e-9,
+            "{said}, {row}: {duration}"
+        );
+    }
+    let doubtful = rate("1,000", "1;2").unwrap_err();
+    assert_eq!(doubtful.faults()[0].code, code::AMBIGUOUS_NUMBER);
+    assert!(
+        doubtful.to_string().starts_with("line 1: the comma"),
+        "{doubtful}"
+    );
     // a column of times goes before what the header says
     let both = read("Sample rate;50\n\nt [s];a [deg]\n0;1\n0.1;2\n0.2;3\n");
     assert_read(&both.maneuver, 3, 0.2, ("a", 1.0, "deg"));
@@ -83,8 +125,7 @@ fn times_that_stand_again_are_no_channel() {
 /// LabChart's text export (ADInstruments' knowledge base, "How can channel titles, ranges, intervals ... be imported").
 #[test]
 fn labchart_says_in_the_first_cell_what_a_line_is() {
-    let chart = "Interval=\t0.02 s\nTimeFormat=\tStartOfBlock\nDateFormat=\t\nChannelTitle=\tElevator\tPitch rate\nRange=\t10.000 V\t100.0 V\nUnitName=\tdeg\tdeg/s\n7.00\t-1.5\t0.5\t#1 doublet\n7.02\t-1.5\t0.6\n7.04\t-1.5\t0.7\n";
-    let chart = read(chart).maneuver;
+    let chart = read(file("LabChart")).maneuver;
     assert_read(&chart, 3, 0.04, ("Elevator", -1.5, "deg"));
     assert_eq!(chart.channels().len(), 2);
 }
@@ -114,8 +155,7 @@ fn a_title_may_be_a_unit_of_time() {
 /// CloudAhoy's CSV: units stand before the names.
 #[test]
 fn units_may_stand_before_names() {
-    let text = "Metadata,CA_CSV.3\nTAIL,OWN\nDATA,\nseconds/t,degrees/Pitch,feet/ALT (GPS),knots/IAS,G/G-load\n0.0,2.5,4200,95,1.0\n0.5,2.6,4201,95,1.0\n1.0,2.7,4202,95,1.1\n";
-    let flight = read(text).maneuver;
+    let flight = read(file("CloudAhoy")).maneuver;
     assert_read(&flight, 3, 1.0, ("Pitch", 2.5, "deg"));
     assert_read(&flight, 3, 1.0, ("IAS", 95.0, "kt"));
     // a title with a slash in it is no unit and a name
@@ -141,25 +181,25 @@ fn parts_of_a_time_stand_in_any_order() {
 /// VBOX files (Racelogic, "VBO file format"): sections, time of day as one number, minutes of arc, west positive.
 #[test]
 fn a_vbox_file_says_its_columns_in_a_section() {
-    let text = "File created on 01/03/2026 at 10:15:00\n\n[header]\nsatellites\ntime\n\n[comments]\nown\n\n[column names]\nsats time lat long velocity heading height Pitch\n\n[data]\n012 095959.90 +02826.000000 -00486.000000 172.800 084.10 +01311.20 +2.5\n012 100000.00 +02826.000120 -00486.000060 172.900 084.10 +01311.30 +2.6\n012 100000.10 +02826.000240 -00486.000120 173.000 084.10 +01311.40 +2.7\n";
+    let text = file("VBOX");
     let drive = read(text);
     assert_read(&drive.maneuver, 3, 0.2, ("V_ground", 48.0, "m/s"));
     assert_read(&drive.maneuver, 3, 0.2, ("lat", 47.1, "deg"));
     assert_read(&drive.maneuver, 3, 0.2, ("lon", 8.1, "deg"));
     assert!(told(&drive, "recognised").contains("vbox"));
+    // of the vertical velocity the file does not say the unit, and firmware differs in it
+    let climbing = text.replace("height Pitch", "height vert-vel");
+    let climbing = read(&climbing);
+    assert_read(&climbing.maneuver, 3, 0.2, ("vert_vel", 2.5, "-"));
+    assert!(told(&climbing, "no_unit").contains("vert_vel"));
 }
 
 /// Tecplot's "Data Format Guide": `VARIABLES` over one or several lines.
 #[test]
 fn tecplot_names_its_variables_before_the_zone() {
-    for variables in [
-        "VARIABLES = \"t [s]\"\n\"alpha [deg]\"\n\"q [deg/s]\"",
-        "variables=\"t [s]\", \"alpha [deg]\", \"q [deg/s]\"",
-    ] {
-        let text = format!(
-            "TITLE = \"run\"\n{variables}\nZONE T=\"run 1\", I=3, F=POINT\n 0.00 3.0 0.5\n 0.02 3.1 0.6\n 0.04 3.2 0.7\n"
-        );
-        assert_read(&read(&text).maneuver, 3, 0.04, ("q", 0.5, "deg/s"));
+    let one_line = "TITLE = \"run\"\nvariables=\"t [s]\", \"alpha [deg]\", \"q [deg/s]\"\nZONE T=\"run 1\", I=3, F=POINT\n 0.00 3.0 0.5\n 0.02 3.1 0.6\n 0.04 3.2 0.7\n";
+    for text in [file("Tecplot"), one_line] {
+        assert_read(&read(text).maneuver, 3, 0.04, ("q", 0.5, "deg/s"));
     }
 }
 
@@ -167,10 +207,10 @@ fn tecplot_names_its_variables_before_the_zone() {
 #[test]
 fn numbers_of_rows_need_no_title() {
     for text in [
-        "\"t_s\" \"alpha_deg\"\n\"1\" 0 3\n\"2\" 0.1 4\n\"3\" 0.2 5\n",
+        file("R, write.table"),
         "t[s] alpha_deg\n0 0.0 3.0\n1 0.1 4.0\n2 0.2 5.0\n",
     ] {
-        let maneuver = read(&text.replace("t_s", "t [s]")).maneuver;
+        let maneuver = read(text).maneuver;
         assert_read(&maneuver, 3, 0.2, ("alpha_deg", 3.0, "deg"));
     }
     // what is not counted may be a value without a title
@@ -192,102 +232,6 @@ fn units_alone_are_no_names() {
     let by_number = r#"{"time": {"from": "(:,1)"}, "channels": {"alpha": {"from": "(:,2)"}, "q": {"from": "(:,3)"}}}"#;
     let read = reading(text, Some(&mapping(by_number))).unwrap();
     assert_read(&read.maneuver, 2, 0.02, ("q", 4.1, "deg/s"));
-}
-
-/// NASA Ames FFI 1001 (Gaines and Hipskind): numbers are multiplied by what the header says, and one of each stands for no value.
-#[test]
-fn headers_of_nasa_ames_say_factors_and_missing_values() {
-    let text = "20 1001\nOwn, Making\nOwn\nOwn aircraft\nOwn campaign\n1 1\n2026 03 01 2026 03 02\n0.0400\nTime [seconds]; UT seconds from midnight\n3\n1.0 0.1 0.01\n999999.9999 99999 9999\nAngle of attack [deg]\nElevator [deg]\nMach number\n0\n2\nPreliminary Data\nTime ALPHA DE MACH\ns deg deg none\n36900.00 3.0 -10 12\n36900.04 999999.9999 -11 13\n36900.08 3.2 -12 9999\n";
-    let flight = read(text).maneuver;
-    assert_read(&flight, 3, 0.08, ("ALPHA", 3.0, "deg"));
-    assert_read(&flight, 3, 0.08, ("DE", -1.0, "deg"));
-    assert_read(&flight, 3, 0.08, ("MACH", 0.12, "-"));
-    assert!(flight.channels()["ALPHA"].values[1].is_nan());
-    assert!(flight.channels()["MACH"].values[2].is_nan());
-    // ICARTT, the same with commas
-    let icartt = "17, 1001\nOwn\nOwn\nOwn\nOWN\n1, 1\n2026, 03, 01, 2026, 04, 02\n0.02\nTime_Start, seconds, since midnight UTC\n2\n1, 1\n-9999, -9999\nAlpha, deg, angle of attack\nPs, hPa, static pressure\n0\n1\nTime_Start, Alpha, Ps\n36900.00, 3.0, 870.1\n36900.02, -9999, 870.1\n";
-    let flight = read(icartt).maneuver;
-    assert_read(&flight, 2, 0.02, ("Ps", 870.1, "hPa"));
-    assert!(flight.channels()["Alpha"].values[1].is_nan());
-    // a header that is longer than the file is none
-    assert!(
-        reading(
-            &icartt.replace("17, 1001", "18446744073709551615, 1001"),
-            None
-        )
-        .is_err()
-    );
-    let skipped = mapping(r#"{"skip": 9223372036854775807, "channels": {"a": {"from": "(:,1)"}}}"#);
-    assert!(reading(icartt, Some(&skipped)).is_err());
-}
-
-/// Octave's manual, "Simple File I/O", and its ls-oct-text.cc.
-#[test]
-fn variables_of_octave_are_taken_by_name() {
-    let text = "# Created by Octave 8.4.0, Sun Mar 01 10:15:00 2026 UTC <own@own>\n# name: t\n# type: double_range\n# base, limit, increment\n0 0.3 0.1\n\n\n# name: rec\n# type: scalar struct\n# ndims: 2\n 1 1\n# length: 2\n# name: alpha\n# type: matrix\n# rows: 4\n# columns: 1\n 3\n 3.5\n NaN\n NA\n\n\n# name: note\n# type: string\n# elements: 1\n# length: 4\nmade\n\n\n\n\n# name: d\n# type: matrix\n# rows: 4\n# columns: 2\n 0 1\n 1 2\n 2 3\n 3 4\n\n\n# name: n\n# type: int32 matrix\n# ndims: 2\n 2 2\n  1\n  2\n  3\n  4\n\n\n";
-    let said = r#"{"time": {"from": "t", "unit": "s"}, "channels": {"alpha": {"from": "rec.alpha", "unit": "deg"}, "q": {"from": "d(:,2)", "unit": "deg/s"}}}"#;
-    let octave = reading(text, Some(&mapping(said))).unwrap().maneuver;
-    assert_read(&octave, 4, 0.3, ("alpha", 3.0, "deg"));
-    assert_read(&octave, 4, 0.3, ("q", 1.0, "deg/s"));
-    assert!(octave.channels()["alpha"].values[3].is_nan());
-    // integers stand column by column
-    let whole = r#"{"time": {"from": "n(:,1)", "unit": "s"}, "channels": {"n": {"from": "n(:,2)", "unit": "-"}}}"#;
-    let whole = reading(text, Some(&mapping(whole))).unwrap().maneuver;
-    assert_read(&whole, 2, 1.0, ("n", 3.0, "-"));
-    let unmapped = reading(text, None).unwrap_err();
-    assert_eq!(unmapped.faults()[0].code, code::MAPPING_NEEDED);
-    assert!(
-        unmapped.to_string().contains("'rec.alpha' (4x1)"),
-        "{unmapped}"
-    );
-    for at in 0..text.len() {
-        let _ = reading(&text[..at], Some(&mapping(said)));
-    }
-    // a matrix without columns has no values, however many rows it says
-    let endless = text.replace(" 2 2\n  1\n", " 1e18 0\n  1\n");
-    assert!(reading(&endless, Some(&mapping(said))).is_ok());
-}
-
-/// Mission Planner's text of a DataFlash log: a line for each message, numbers as they are meant.
-#[test]
-fn a_log_of_ardupilot_as_text_is_the_log() {
-    let mut text = String::from(
-        "FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\nFMT, 130, 40, IMU, QBff, TimeUS,I,GyrX,GyrY\nFMT, 131, 27, ATT, Qcc, TimeUS,Roll,Pitch\nFMT, 132, 70, MSG, QZ, TimeUS,Message\nFMT, 133, 19, GPS, QLL, TimeUS,Lat,Lng\nFMT, 134, 76, UNIT, QbZ, TimeUS,Id,Label\nFMT, 135, 20, MULT, Qbd, TimeUS,Id,Mult\nFMT, 136, 44, FMTU, QBNN, TimeUS,FmtType,UnitIds,MultIds\n",
-    );
-    text += "UNIT, 0, 115, s\nUNIT, 0, 100, deg\nMULT, 0, 66, 0.01\nMULT, 0, 70, 1E-06\nFMTU, 0, 131, sdd, FBB\nMSG, 900000, ArduPlane, of our own\n";
-    for at in 0..10 {
-        let time = 1_000_000 + 20_000 * at;
-        text += &format!("IMU, {time}, 0, 0.01, {}\n", 0.1 * f64::from(at));
-        if at % 5 == 0 {
-            text += &format!("ATT, {}, -1.25, {}.50\n", time + 300, 2 + at);
-            text += &format!("GPS, {}, 47.1234567, -8.7654321\n", time + 300);
-        }
-    }
-    text += "IMU, 12000";
-    let log = read(&text).maneuver;
-    assert_eq!(log.len(), 12);
-    let first = |name: &str, unit: &str| {
-        let values = &log.channels()[name].values;
-        let value = values.iter().find(|value| !value.is_nan()).unwrap();
-        value / Unit::parse(unit).unwrap().scale
-    };
-    assert_eq!(log.channels()["q"].values[0], 0.0);
-    for (name, unit, expected) in [
-        ("phi", "deg", -1.25),
-        ("theta", "deg", 2.5),
-        ("lat", "deg", 47.123_456_7),
-        ("lon", "deg", -8.765_432_1),
-    ] {
-        let found = first(name, unit);
-        assert!((found - expected).abs() < 1e-9, "{name}: {found}");
-    }
-    // units are those that the log says
-    let own = mapping(r#"{"channels": {"theta": {"from": "ATT.Pitch"}}}"#);
-    let own = reading(&text, Some(&own)).unwrap().maneuver;
-    assert_read(&own, 2, 0.1, ("theta", 2.5, "deg"));
-    let silent = mapping(r#"{"channels": {"p": {"from": "IMU.GyrX"}}}"#);
-    let silent = reading(&text, Some(&silent)).unwrap_err();
-    assert_eq!(silent.faults()[0].pointer, "/channels/p/unit");
 }
 
 /// What has no columns of samples is refused by its name, with what makes CSV of it.

@@ -136,3 +136,44 @@ fn no_damage_to_a_tdms_file_panics() {
         }
     }
 }
+
+/// One waveform of three doubles whose axis is in a unit, as NI's "TDMS File Format Internal Structure" has it.
+fn waveform(unit: &str) -> Vec<u8> {
+    let text = |text: &str| [&(text.len() as u32).to_le_bytes()[..], text.as_bytes()].concat();
+    let said = |name: &str, value: &str| {
+        [text(name), 0x20u32.to_le_bytes().to_vec(), text(value)].concat()
+    };
+    let increment = [
+        text("wf_increment"),
+        10u32.to_le_bytes().to_vec(),
+        40f64.to_le_bytes().to_vec(),
+    ];
+    // doubles in one dimension, three of them
+    let index = [20u32, 10, 1, 3, 0].map(u32::to_le_bytes).concat();
+    let meta = [
+        1u32.to_le_bytes().to_vec(),
+        text("/'Air'/'alpha'"),
+        index,
+        3u32.to_le_bytes().to_vec(),
+        increment.concat(),
+        said("wf_xunit_string", unit),
+        said("unit_string", "deg"),
+    ]
+    .concat();
+    let raw = [1.5f64, 2.5, 3.5].map(f64::to_le_bytes).concat();
+    let lengths = [(meta.len() + raw.len()) as u64, meta.len() as u64].map(u64::to_le_bytes);
+    let head = [0xeu32, 4713].map(u32::to_le_bytes).concat();
+    [&b"TDSm"[..], &head, &lengths.concat(), &meta, &raw].concat()
+}
+
+#[test]
+fn steps_of_a_waveform_are_in_the_unit_of_its_axis() {
+    for (unit, expected) in [("", 40.0), ("s", 40.0), ("ms", 0.04)] {
+        let Reading { maneuver, .. } = read(&waveform(unit), None).unwrap();
+        let step = maneuver.time()[1] - maneuver.time()[0];
+        assert!((step - expected).abs() < 1e-12, "{unit}: {step}");
+        assert_eq!(degrees(&maneuver, "alpha"), [1.5, 2.5, 3.5]);
+    }
+    // a spectrum has no times
+    assert!(read(&waveform("Hz"), None).is_err());
+}

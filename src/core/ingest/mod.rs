@@ -190,9 +190,10 @@ pub fn inspect(
 ) -> Result<Option<Inspection>, IngestError> {
     let Opened { bytes, contents } = contents::open(bytes, format, limits)?;
     let inspected = match contents {
-        Contents::Table | Contents::TableOrMatrix | Contents::Ames => {
+        Contents::Table | Contents::TableOrMatrix => {
             csv::inspect(&bytes, charset, mapping, limits)?
         }
+        Contents::Ames => ames::inspect(&bytes, charset, mapping, limits)?,
         Contents::Workbook => {
             let table = workbook::table(&bytes, limits)?;
             csv::inspect(table.as_bytes(), Some(workbook::CHARSET), mapping, limits)?

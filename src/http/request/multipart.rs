@@ -104,7 +104,8 @@ async fn part(field: Field<'_>) -> Result<Part, Problem> {
     })
 }
 
-/// The content of a part. All of the body is there: it is one piece, which is not copied.
+/// The content of a part. `multer` has copied the body once; as all of it is there, a part comes in one piece, which is not
+/// copied again.
 async fn bytes(mut field: Field<'_>) -> Result<Bytes, Problem> {
     let mut content = Bytes::new();
     while let Some(piece) = field.chunk().await.map_err(|error| unread(&error))? {

@@ -6,6 +6,8 @@ use std::sync::LazyLock;
 use libfuzzer_sys::fuzz_target;
 use trimtab_core::ingest::{self, Format, Mapping};
 
+#[path = "common/beginnings.rs"]
+mod beginnings;
 #[path = "common/recording.rs"]
 mod recording;
 
@@ -16,7 +18,8 @@ static MAPPING: LazyLock<Mapping> = LazyLock::new(|| {
 
 fuzz_target!(|bytes: &[u8]| {
     // what begins otherwise is a table of text
-    let file = [b"$FLYS,1\n$COL,BARO,time,pressure\n$COL,".as_slice(), bytes].concat();
+    let (_, beginning) = beginnings::BEGINNINGS[0];
+    let file = [beginning.as_bytes(), bytes].concat();
     for mapping in [None, Some(&*MAPPING)] {
         let read = ingest::read_mapped(&file, Format::Csv, mapping, &recording::LIMITS);
         recording::look_at(read);

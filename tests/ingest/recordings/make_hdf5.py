@@ -117,3 +117,27 @@ with h5py.File(here / "v73_structs.mat", "w", userblock_size=512) as file:
     cells.attrs["MATLAB_class"] = np.bytes_("cell")
 with open(here / "v73_structs.mat", "r+b") as file:
     file.write(b"MATLAB 7.3 MAT-file, as h5py writes it".ljust(124) + b"\x00\x02IM")
+# of the second struct nothing is said, as of an element that was never written
+with h5py.File(here / "v73_nothing.mat", "w", userblock_size=512) as file:
+    run = file.create_group("run")
+    run.attrs["MATLAB_class"] = np.bytes_("struct")
+    for name, values in {"t": time, "alpha": alpha, "q": rate}.items():
+        dataset = run.create_dataset(name, (3, 1), dtype=h5py.ref_dtype)
+        for place, factor in {0: -1, 2: 1}.items():
+            dataset[place, 0] = referred(file, factor * values.reshape(5, 1))
+    single = run.create_dataset("single", (3, 1), dtype=h5py.ref_dtype)
+    for place in (0, 2):
+        single[place, 0] = referred(file, [[place]])
+with open(here / "v73_nothing.mat", "r+b") as file:
+    file.write(b"MATLAB 7.3 MAT-file, as h5py writes it".ljust(124) + b"\x00\x02IM")
+
+# numbers in two bytes, as netCDF packs them
+with h5py.File(here / "packed.nc", "w") as file:
+    file["time"] = time
+    stored = {"alpha": [115, 215, -9999, 315, 415], "q": [120, 90, 140, 70, 160]}
+    attributes = {"alpha": (0.01, 0.35, -9999, "deg"), "q": (1.0, -110.0, -32768, "deg/s")}
+    for name, numbers in stored.items():
+        file[name] = np.array(numbers, "i2")
+        factor, offset, fill, unit = attributes[name]
+        said = {"scale_factor": factor, "add_offset": offset, "_FillValue": np.int16(fill), "units": np.bytes_(unit)}
+        file[name].attrs.update(said)

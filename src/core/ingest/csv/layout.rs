@@ -14,7 +14,7 @@ use super::{
     labview::units_of_labview,
     sample::{self, Held, Kind, Looked},
     sample_rows::{SampleRows, by_wide_blanks, width},
-    stated::{self, Stated},
+    stated::{self, Announced},
 };
 
 /// What a mapping, or nobody, says of the layout.
@@ -39,7 +39,7 @@ pub(super) struct Layout<'a> {
     /// The rows, and the number of the line before them.
     pub(super) rows: Lines<'a>,
     /// The step between samples that the lines above say.
-    pub(super) stated: Option<Stated>,
+    pub(super) announced: Option<Announced>,
     /// The first rows that have as many cells.
     pub(super) first: Vec<Vec<&'a str>>,
 }
@@ -107,7 +107,7 @@ fn header_only<'a>(
         above: vec![(first.line, cells)],
         misfit: None,
         rows: first.behind.clone(),
-        stated: None,
+        announced: None,
         first: Vec::new(),
     })
 }
@@ -242,7 +242,7 @@ impl Block {
             width,
             above: above.collect(),
             misfit,
-            stated: stated::step(&lines[..start]),
+            announced: stated::step(&lines[..start]),
             rows: lines[start..]
                 .first()
                 .map_or(lines[lines.len() - 1].behind.clone(), |looked| {

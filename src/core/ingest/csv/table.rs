@@ -64,12 +64,13 @@ impl<'a> Table<'a> {
         {
             return Err(misfit(line, cells, layout.width, layout.delimiter).into());
         }
+        let decimal = shown(&marks, layout.delimiter, &layout.first);
         let titles = Titles {
             names: head.names,
             units: head.units,
             first: layout.first,
             width: layout.width,
-            stated: layout.stated,
+            stated: layout.announced.map(|announced| announced.stated(decimal)),
         };
         Ok(Self {
             delimiter: layout.delimiter,
@@ -114,6 +115,20 @@ impl<'a> Table<'a> {
             header: of_header.chain(described).collect(),
             time: self.described.name_of_time(plan),
             is_cut_off: !self.rows.rest().ends_with(['\n', '\r']),
+        }
+    }
+}
+
+/// The decimal mark, where the numbers of a table show it.
+fn shown(marks: &Marks, delimiter: Delimiter, first: &[Vec<&str>]) -> Option<Decimal> {
+    let has_point = |cell: &&str| cell.contains('.') && cell.trim().parse::<f64>().is_ok();
+    match marks.decimal {
+        Decimal::Comma => Some(Decimal::Comma),
+        Decimal::Point => {
+            let are_points = delimiter == Delimiter::Byte(b',')
+                || marks.has_thousands
+                || first.iter().flatten().any(has_point);
+            are_points.then_some(Decimal::Point)
         }
     }
 }

@@ -131,7 +131,7 @@ pub(super) fn of(titles: &Titles, said: &MappedTime, faults: &mut Vec<Fault>) ->
     if from.is_none_or(|at| titles.is_empty(at))
         && let Some(even) = stated(titles, found(titles))
     {
-        return Some(even);
+        return even.map_err(|fault| faults.push(fault)).ok();
     }
     if let Some(at) = from.filter(|_| said.has_parts()) {
         return in_parts(titles, parts, at, said)
@@ -237,13 +237,23 @@ fn no_time(titles: &Titles) -> Fault {
 
 /// The times that the lines above a table say: even ones, where no column has any; or those of a first column without a title
 /// that goes on by the step.
-fn stated(titles: &Titles, found: Option<usize>) -> Option<Time> {
-    let step = titles.stated?.step;
+///
+/// # Errors
+/// Their number can be read in two ways.
+fn stated(titles: &Titles, found: Option<usize>) -> Option<Result<Time, Fault>> {
+    let stated = titles.stated?;
     let is_there = found.is_some_and(|at| !titles.is_empty(at));
     let is_in_parts = parts::found(titles).is_some();
     if is_there || is_in_parts || titles.names.is_none() {
         return None;
     }
+    let Some(step) = stated.step else {
+        let message = format!(
+            "line {}: the comma in its number may be a decimal comma or stand between thousands, and no number of the table tells which; say in a mapping how far samples are apart, as time = {{step = 0.02, unit = \"s\"}}",
+            stated.line
+        );
+        return Some(Err(of_file(code::AMBIGUOUS_NUMBER, message)));
+    };
     let first = titles
         .first
         .iter()
@@ -254,10 +264,10 @@ fn stated(titles: &Titles, found: Option<usize>) -> Option<Time> {
             .windows(2)
             .all(|pair| ((pair[1] - pair[0]) / step - 1.0).abs() < 1e-3);
     let unit = RecordedUnit::parse_time("s").ok()?.unit();
-    Some(match titles.title(0).is_empty() && goes_on {
+    Some(Ok(match titles.title(0).is_empty() && goes_on {
         true => Time::Numbers { at: 0, unit },
         false => Time::Even { start: 0.0, step },
-    })
+    }))
 }
 
 /// The column of dates that goes with a column of times of day.

@@ -19,6 +19,9 @@ pub(super) struct Column {
     pub(super) width: usize,
 }
 
+/// The letter of doubles as they are meant, with no factor to come, which a log as text becomes. Logs have no such letter.
+pub(super) const MEANT: u8 = b'=';
+
 /// Mark (two bytes) and kind of a message.
 pub(super) const HEAD: usize = 3;
 
@@ -130,7 +133,7 @@ fn number(letter: u8) -> Option<Stored> {
         b'q' => stored!(i64, Order::Little),
         b'Q' => stored!(u64, Order::Little),
         b'f' => stored!(f32, Order::Little),
-        b'd' => stored!(f64, Order::Little),
+        b'd' | MEANT => stored!(f64, Order::Little),
         b'c' => stored!(i16, Order::Little, / 100.0),
         b'C' => stored!(u16, Order::Little, / 100.0),
         b'e' => stored!(i32, Order::Little, / 100.0),

@@ -20,16 +20,15 @@ pub(super) fn read(
     mapping: Option<&Mapping>,
     limits: &Limits,
 ) -> Result<Reading, IngestError> {
-    let of_text = match text::is_text(bytes) {
-        true => Some(text::binary(bytes, limits)?),
-        false => None,
-    };
-    let bytes = of_text.as_deref().unwrap_or(bytes);
-    let tables = scan::tables(bytes).map_err(|fault| match of_text {
-        Some(_) => text::has_nothing(),
-        None => fault,
-    })?;
-    Log::of(bytes, tables, limits).read(mapping, "ardupilot")
+    if !text::is_text(bytes) {
+        let tables = scan::tables(bytes)?;
+        return Log::of(bytes, tables, limits).read(mapping, "ardupilot");
+    }
+    let (bytes, mut findings) = text::binary(bytes, limits)?;
+    let tables = scan::tables(&bytes).map_err(|_| text::has_nothing())?;
+    let mut reading = Log::of(&bytes, tables, limits).read(mapping, "ardupilot")?;
+    reading.findings.append(&mut findings);
+    Ok(reading)
 }
 
 #[cfg(test)]

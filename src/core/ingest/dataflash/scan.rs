@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use super::super::messages::{Field, Row, Table};
 use super::super::{code, fault::of_file};
-use super::definition::{Definition, HEAD};
+use super::definition::{Definition, HEAD, MEANT};
 use crate::flight::Fault;
 
 pub(super) const MARK: [u8; 2] = [0xa3, 0x95];
@@ -106,6 +106,8 @@ struct Units {
     factors: HashMap<char, f64>,
 }
 
+/// Letters of columns whose numbers have their factor already.
+const HAVE_FACTORS: [u8; 6] = [b'c', b'C', b'e', b'E', b'L', MEANT];
 /// The letter of the column that says which of several sensors a message is of.
 const INSTANCE: char = '#';
 
@@ -127,8 +129,8 @@ impl Units {
             for &row in rows {
                 let row = row as usize;
                 let of_kind = (unit_ids.text(bytes, row), factor_ids.text(bytes, row));
-                let kind = kind.value(bytes, row).unwrap_or(0.0);
-                units.of_kind.insert(kind as u8, of_kind);
+                let kind = kind.value(bytes, row).filter(|kind| kind.is_finite());
+                units.of_kind.extend(kind.map(|kind| (kind as u8, of_kind)));
             }
         }
         for (name, column) in [("UNIT", "Label"), ("MULT", "Mult")] {
@@ -141,7 +143,10 @@ impl Units {
             };
             for &row in rows {
                 let row = row as usize;
-                let letter = char::from(id.value(bytes, row).unwrap_or(0.0) as u8);
+                let letter = id.value(bytes, row).filter(|id| id.is_finite());
+                let Some(letter) = letter.map(|letter| char::from(letter as u8)) else {
+                    continue;
+                };
                 if name == "UNIT" {
                     units.units.insert(letter, column.text(bytes, row));
                 } else if let Some(factor) = column.value(bytes, row) {
@@ -166,7 +171,7 @@ impl Units {
             .nth(at)
             .and_then(|id| self.factors.get(&id));
         match factor {
-            Some(&factor) if factor != 1.0 && factor != 0.0 && !b"cCeEL".contains(&letter) => {
+            Some(&factor) if factor != 1.0 && factor != 0.0 && !HAVE_FACTORS.contains(&letter) => {
                 format!("{factor} {unit}")
             }
             _ => unit.clone(),
@@ -212,10 +217,15 @@ fn of_kind(
     let instance = units.instance(kind, definition);
     let mut by_instance: BTreeMap<Option<u32>, Vec<Row>> = BTreeMap::new();
     for &row in rows {
-        let number = instance.map(|at| {
-            let value = definition.columns[at].value(bytes, row as usize);
-            value.unwrap_or(0.0) as u32
-        });
+        let value = instance.map(|at| definition.columns[at].value(bytes, row as usize));
+        let number = match value {
+            None => None,
+            // a message that does not say which sensor it is of is of none
+            Some(value) => match value.filter(|value| *value >= 0.0) {
+                Some(value) => Some(value as u32),
+                None => continue,
+            },
+        };
         by_instance.entry(number).or_default().push(row);
     }
     // instances are few: more of them are numbers of something else

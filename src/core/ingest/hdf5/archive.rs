@@ -1,19 +1,22 @@
 //! A file as a mapping sees it: datasets by path, read when they are asked for.
 
+use std::collections::BTreeSet;
+
 use super::super::mapping::Archive;
 use super::super::matrix::Matrix;
 use super::super::name::identifier_like;
 use super::super::stored::Stored;
 use super::super::text::{LISTED, listed, quoted};
-use super::super::{Limits, code};
+use super::super::{Limits, code, note};
 use super::attribute;
 use super::dataset::Dataset;
 use super::datatype::{Field, Type};
 use super::file::File;
 use super::objects::Object;
+use super::packing::Packing;
 use super::references::{self, Followed};
 use super::room;
-use crate::flight::Fault;
+use crate::flight::{Fault, Finding, FindingCode};
 
 pub(in super::super) struct Datasets<'a> {
     file: File<'a>,
@@ -30,6 +33,8 @@ pub(in super::super) struct Datasets<'a> {
     columns: usize,
     /// The table that was read last, and its bytes: all of its fields are in them.
     table: Option<(usize, Vec<u8>)>,
+    /// Names of datasets whose numbers were packed.
+    packed: BTreeSet<String>,
 }
 
 /// A code and a message.
@@ -52,7 +57,18 @@ impl<'a> Datasets<'a> {
             values: Vec::new(),
             columns: 1,
             table: None,
+            packed: BTreeSet::new(),
         }
+    }
+
+    /// That numbers were packed, and are read as they are meant.
+    pub(super) fn unpacked(&self) -> Option<Finding> {
+        let names = note::listed(self.packed.iter().map(|name| quoted(name)));
+        let message = format!(
+            "the file says factors, offsets or missing values of {names} (scale_factor, add_offset, _FillValue, missing_value): they were applied"
+        );
+        let remedy = "leave them out of the mapping";
+        (!self.packed.is_empty()).then(|| note::note(FindingCode::Recognised, message, remedy))
     }
 
     /// What there is, for a message.
@@ -211,9 +227,16 @@ impl Archive for Datasets<'_> {
             ));
         };
         let by_columns = object.class.is_some();
+        let packing = Packing::of(&self.file, &object.header).filter(|_| !by_columns);
         let bytes = dataset
             .bytes(&self.file, &mut self.room)
             .map_err(of_fault)?;
+        if let Some(packing) = packing {
+            self.packed.insert(object.name());
+            let stored = bytes.chunks_exact(number.width).map(number.read);
+            self.values = stored.map(|stored| packing.unpacked(stored)).collect();
+            return Ok(Matrix::of_rows(&self.values, columns));
+        }
         if by_columns || columns == 1 {
             // MATLAB's first dimension is the last one here
             let shape = if columns == 1 {

@@ -21,6 +21,16 @@ pub(super) fn bytes<'a>(file: &File<'a>, header: &Header<'a>, name: &str) -> Opt
     })
 }
 
+/// The attribute of a name, where it is one number.
+pub(super) fn number(file: &File, header: &Header, name: &str) -> Option<f64> {
+    let mut messages = header.all(kind::ATTRIBUTE);
+    messages.find_map(|message| {
+        let (mut kind, mut value) = parts(file.within(message), name)?;
+        let number = Type::read(&mut kind)?.number()?;
+        value.take(number.width).map(number.read)
+    })
+}
+
 /// Whether there is an attribute of a name.
 pub(super) fn is_there(file: &File, header: &Header, name: &str) -> bool {
     let mut messages = header.all(kind::ATTRIBUTE);

@@ -24,6 +24,7 @@ mod heap;
 mod index;
 mod layout;
 mod objects;
+mod packing;
 mod pickle;
 mod references;
 mod room;
@@ -76,5 +77,7 @@ pub(super) fn read(
         );
         return Err(of_file(code::MAPPING_NEEDED, message).into());
     };
-    mapping.apply(&mut datasets, limits)
+    let mut reading = mapping.apply(&mut datasets, limits)?;
+    reading.findings.extend(datasets.unpacked());
+    Ok(reading)
 }

@@ -78,10 +78,11 @@ pub(super) fn follow<'a>(
             None if is_last => return following.gather(&member, &references),
             _ => return Err(say_which(&member, references.len())),
         };
+        let Some(address) = references[which] else {
+            return Err(is_nothing(&member, which));
+        };
         let named = path[..=at].to_vec();
-        here = following
-            .object(named, references[which])
-            .map_err(of_fault)?;
+        here = following.object(named, address).map_err(of_fault)?;
         said = rest;
     }
     match said {
@@ -100,10 +101,20 @@ fn say_which(object: &Object, count: usize) -> Why {
     (code::UNKNOWN_SOURCE, message)
 }
 
-/// The addresses in the bytes of references.
-fn addresses(file: &File, bytes: &[u8], width: usize) -> Vec<u64> {
+fn is_nothing(object: &Object, which: usize) -> Why {
+    let name = object.name();
+    let message = format!(
+        "{} has nothing at its element {}; map another source",
+        quoted(&name),
+        which + 1
+    );
+    (code::UNREADABLE_SOURCE, message)
+}
+
+/// The addresses in the bytes of references; `None` of one to nothing, which keeps its place.
+fn addresses(file: &File, bytes: &[u8], width: usize) -> Vec<Option<u64>> {
     let all = bytes.chunks_exact(width.max(1));
-    all.filter_map(|bytes| {
+    all.map(|bytes| {
         let bytes = bytes.iter().rev();
         let address = bytes.fold(0, |sum: u64, &byte| sum << 8 | u64::from(byte));
         (address != 0 && !file.is_undefined(address)).then_some(address)
@@ -150,7 +161,7 @@ impl<'a> Following<'_, 'a> {
     }
 
     /// One number, or a row of as many, of each.
-    fn gather(&mut self, of: &Object<'a>, references: &[u64]) -> Result<Followed<'a>, Why> {
+    fn gather(&mut self, of: &Object<'a>, references: &[Option<u64>]) -> Result<Followed<'a>, Why> {
         let not_one = || {
             let message = format!(
                 "{} is not numbers of one size in each of {} structs; name one of them, as rec(1).alpha",
@@ -160,7 +171,8 @@ impl<'a> Following<'_, 'a> {
             (code::UNREADABLE_SOURCE, message)
         };
         let (mut values, mut columns) = (Vec::new(), None);
-        for &address in references {
+        for address in references {
+            let address = address.ok_or_else(not_one)?;
             let object = self.object(of.path.clone(), address).map_err(of_fault)?;
             let dataset = object.dataset.as_ref().ok_or_else(not_one)?;
             let number = dataset.kind.number().ok_or_else(not_one)?;

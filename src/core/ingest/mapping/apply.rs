@@ -31,12 +31,20 @@ impl Mapping {
         limits
             .columns(self.channels.len() + 1)
             .map_or(Ok(()), Err)?;
-        let with_units = self.with_units_of(&*archive);
-        with_units.taken_from(archive, limits)
+        let of_channels = self.channels.values();
+        let sources: Vec<Result<Source, String>> = of_channels
+            .map(|channel| Source::meant(&channel.from, archive))
+            .collect();
+        let with_units = self.with_units_of(&sources, archive);
+        with_units.taken_from(sources, archive, limits)
     }
 
-    /// With the units that the file says, where the mapping says none.
-    fn with_units_of(&self, archive: &impl Archive) -> Cow<'_, Self> {
+    /// With the units that the file says of the sources that are read, where the mapping says none.
+    fn with_units_of(
+        &self,
+        sources: &[Result<Source, String>],
+        archive: &impl Archive,
+    ) -> Cow<'_, Self> {
         if self
             .channels
             .values()
@@ -45,27 +53,20 @@ impl Mapping {
             return Cow::Borrowed(self);
         }
         let mut mapping = self.clone();
-        let silent = mapping.channels.values_mut();
-        for channel in silent.filter(|channel| channel.unit.is_empty()) {
-            let sources = channel.from.iter().map(str::parse::<Source>);
-            let mut units = sources
-                .flatten()
-                .filter_map(|source| archive.unit(&source.path));
-            channel.unit = units.next().unwrap_or_default();
+        for (channel, source) in mapping.channels.values_mut().zip(sources) {
+            if let (true, Ok(source)) = (channel.unit.is_empty(), source) {
+                channel.unit = archive.unit(&source.path).unwrap_or_default();
+            }
         }
         Cow::Owned(mapping)
     }
 
     fn taken_from(
         &self,
+        sources: Vec<Result<Source, String>>,
         archive: &mut impl Archive,
         limits: &Limits,
     ) -> Result<Reading, IngestError> {
-        let sources: Vec<Result<Source, String>> = self
-            .channels
-            .values()
-            .map(|channel| Source::meant(&channel.from, archive))
-            .collect();
         let readable: Vec<Option<Source>> =
             sources.iter().map(|source| source.clone().ok()).collect();
         let axes = Axes::of(self, &readable, archive)?;

@@ -55,20 +55,20 @@ impl Draft {
         self.0.channels.insert(name.to_string(), channel);
     }
 
-    /// A channel whose numbers are multiplied, of which one stands for no value.
+    /// A channel whose numbers are multiplied, of which some stand for no value.
     pub(in super::super) fn scaled(
         &mut self,
         name: &str,
         from: &str,
         unit: &str,
         scale: f64,
-        missing: f64,
+        missing: &[f64],
     ) {
         let channel = MappedChannel {
             from: Titles::One(from.to_string()),
             unit: unit.to_string(),
             scale: (scale != 1.0).then_some(scale),
-            missing: vec![NoValue::Number(missing)],
+            missing: missing.iter().copied().map(NoValue::Number).collect(),
             ..MappedChannel::default()
         };
         self.0.channels.insert(name.to_string(), channel);
@@ -95,12 +95,39 @@ impl Mapping {
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// What the document says of time and channels as TOML, a channel a line.
+    /// The document as TOML, a channel a line.
     pub fn to_toml(&self) -> String {
-        let mut text = format!("time = {}\n\n[channels]\n", inline(&self.time));
+        let mut text = String::new();
+        if let Ok(toml::Value::Table(all)) = toml::Value::try_from(self) {
+            for (member, value) in &all {
+                if !["time", "channels"].contains(&member.as_str()) {
+                    text += &format!("{member} = {value}\n");
+                }
+            }
+        }
+        text += &format!("time = {}\n\n[channels]\n", inline(&self.time));
         for (name, channel) in &self.channels {
             text += &format!("{name} = {}\n", inline(channel));
         }
         text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_draft_is_all_in_its_document() {
+        let mut draft = Draft::default();
+        draft.skipped(20);
+        draft.time("(:,1)", "s", None);
+        draft.scaled("alpha", "(:,2)", "deg", 0.1, &[-9999.0, -8888.0]);
+        draft.channel("q", "(:,3)", "deg/s");
+        let mapping = draft.mapping();
+        let text = mapping.to_toml();
+        assert!(text.starts_with("skip = 20\ntime = "), "{text}");
+        assert_eq!(Mapping::from_toml(&text).as_ref(), Ok(&mapping), "{text}");
+        assert_eq!(Mapping::from_json(&mapping.to_json()), Ok(mapping));
     }
 }

@@ -163,19 +163,28 @@ fn found<'f>(file: &'f File, group: &str, start: Option<Stamp>) -> Vec<Found<'f>
     found.collect()
 }
 
-/// The times that the properties of a waveform say.
+/// The times that the properties of a waveform say, in the unit of its axis: seconds where it says none; none where its axis is
+/// another than time.
 fn waveform(object: &Object, start: Option<Stamp>) -> Option<Time> {
     let number = |name: &str| match object.properties.get(name) {
         Some(Value::Number(number)) if number.is_finite() => Some(*number),
         _ => None,
     };
     let step = number("wf_increment").filter(|step| *step > 0.0)?;
+    let unit = match object.properties.get("wf_xunit_string") {
+        Some(Value::Text(unit)) if !unit.trim().is_empty() => unit.trim(),
+        _ => "s",
+    };
+    let unit = RecordedUnit::parse_time(unit).ok()?.unit();
     let of_stamp = match (object.properties.get("wf_start_time"), start) {
         (Some(Value::Time(stamp)), Some(start)) => stamp.since(start),
         _ => 0.0,
     };
-    let start = of_stamp + number("wf_start_offset").unwrap_or(0.0);
-    Some(Time::Even { start, step })
+    let offset = number("wf_start_offset").unwrap_or(0.0);
+    Some(Time::Even {
+        start: of_stamp + unit.to_si(offset),
+        step: unit.to_si(step),
+    })
 }
 
 impl Found<'_> {

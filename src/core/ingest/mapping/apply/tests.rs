@@ -188,6 +188,41 @@ fn faults_of_axes_stand_at_their_place() {
     assert_eq!(places(unsaid), ["invalid_mapping /channels/a/from"]);
 }
 
+/// Only `b` is there, in km; of `a`, which is not, a unit is said all the same.
+struct Renamed;
+
+impl Archive for Renamed {
+    fn matrix(&mut self, path: &[String]) -> Result<Matrix<'_>, (&'static str, String)> {
+        match path.join(".").as_str() {
+            "t" => Ok(Matrix::of_rows(&[0.0, 1.0], 1)),
+            "b" | "c" => Ok(Matrix::of_rows(&[1.0, 2.0], 1)),
+            _ => Err((code::UNKNOWN_SOURCE, "there is b and c".to_string())),
+        }
+    }
+
+    fn unit(&self, path: &[String]) -> Option<String> {
+        let units = [("a", "m"), ("b", "km")];
+        let of = units.into_iter().find(|(name, _)| path == [*name]);
+        of.map(|(_, unit)| unit.to_string())
+    }
+}
+
+#[test]
+fn a_unit_is_that_of_the_source_that_is_read() {
+    let of = |from: &str| {
+        let text =
+            format!(r#"{{"time": {{{T}}}, "channels": {{"h": {{"from": ["a", "{from}"]}}}}}}"#);
+        Mapping::from_json(&text)?.apply(&mut Renamed, &Limits::default())
+    };
+    assert_eq!(
+        of("b").unwrap().maneuver.channels()["h"].values,
+        [1000.0, 2000.0]
+    );
+    // of c no unit is said: that of another is none
+    let refused = of("c");
+    assert_eq!(places(refused), ["invalid_mapping /channels/h/unit"]);
+}
+
 #[test]
 fn all_faults_stand_at_their_place_in_the_mapping() {
     let channels = r#""b": {"from": "x.y", "unit": "-"}, "c": {"from": "m(:,3)", "unit": "-"}, "d": {"from": "r(3,:)", "unit": "-"}"#;
