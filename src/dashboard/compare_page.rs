@@ -161,7 +161,8 @@ fn bars_of(row: &ComparedParameter) -> ErrorBars {
         x: place as f64,
         value: value.estimate * scale,
         error: value.standard_error.map(|error| error * scale),
-        job,
+        ends: None,
+        series: job,
         is_outlier: false,
     });
     ErrorBars {
@@ -170,6 +171,7 @@ fn bars_of(row: &ComparedParameter) -> ErrorBars {
             row.parameter
         ),
         along: None,
+        places: "job",
         points: points.collect(),
         curve: Vec::new(),
     }
