@@ -5,6 +5,7 @@
 
 mod audit;
 mod backup;
+mod bordered;
 mod campaign;
 mod cancel;
 mod changes;
@@ -24,6 +25,7 @@ mod fit;
 mod form;
 mod health;
 mod inspect;
+mod intervals;
 mod jobs;
 mod join;
 mod key;

@@ -35,6 +35,7 @@ impl ProgressLine {
         match told {
             estimate::Progress::Start(report) => self.say(&report.text),
             estimate::Progress::Iteration(iteration) => self.iteration(iteration),
+            estimate::Progress::Step(step) => self.say(&step.finding),
         }
     }
 

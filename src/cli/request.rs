@@ -9,13 +9,14 @@ use super::Failure;
 use super::changes::Changes;
 use super::document::{document, in_file};
 use super::file_rows::FileRows;
+use super::intervals::interval_options;
 use super::mapping::MappingOption;
 use super::pairs::{once, pair};
 use super::recording::read_recording;
 use super::start_method::start_method;
 use crate::estimate::{
-    Derivatives, Estimator, FrequencyOptions, Method, Noise, NoiseStructure, Options, Role,
-    StartMethod,
+    Derivatives, Estimator, FrequencyOptions, IntervalOptions, Method, Noise, NoiseStructure,
+    Options, Role, StartMethod,
 };
 use crate::flight::Maneuver;
 use crate::job::{
@@ -87,6 +88,10 @@ pub(super) struct Request {
     /// The band of frequencies of an estimator of the frequency domain, Hz: 0.1-1.5. Alone it asks for output_error_frequency.
     #[arg(long, value_name = "FROM-TO", value_parser = band, conflicts_with = "filter_error")]
     band: Option<[f64; 2]>,
+    /// 95 % confidence intervals by refits, side by side with the error bounds: all methods, or some with their settings:
+    /// bootstrap[:COUNT], block:SAMPLES, profile[:NAME+NAME...], monte_carlo[:COUNT], seed:NUMBER, with commas between.
+    #[arg(long, value_name = "METHODS", num_args = 0..=1, require_equals = true, default_missing_value = "", value_parser = interval_options)]
+    intervals: Option<IntervalOptions>,
     /// Stop when a step is shorter than this many standard errors.
     #[arg(long, default_value_t = Options::default().tolerance)]
     pub tolerance: f64,
@@ -227,6 +232,7 @@ impl Request {
                         false => NoiseStructure::Diagonal,
                     },
                 },
+                confidence_intervals: self.intervals.clone(),
                 frequency: self.band.map(FrequencyOptions::of_band),
                 tolerance: self.tolerance,
                 max_iterations: self.max_iterations,

@@ -1,11 +1,9 @@
 //! Results as tables for the terminal.
 
-use std::ops::RangeBounds;
-
-use comfy_table::presets::UTF8_BORDERS_ONLY;
-use comfy_table::{CellAlignment, Table};
 use indexmap::IndexMap;
 
+pub(super) use super::bordered::bordered;
+use super::intervals::intervals;
 use super::notes;
 use crate::estimate::{
     Coefficient, Estimate, FilterEstimate, Measure, Mode, OutputFit, ParameterEstimate,
@@ -16,6 +14,7 @@ use crate::flight::{bounded, decimals, five_digits_beside, two_digits};
 /// All tables of an estimate, and what to know beside them.
 pub(super) fn result(estimate: &Estimate, truth: Option<&IndexMap<String, f64>>) -> String {
     let mut parts = vec![parameters(estimate, truth), outputs(&estimate.outputs)];
+    parts.extend(estimate.confidence_intervals.as_ref().map(intervals));
     parts.extend(estimate.filter.as_ref().map(process_noise));
     if !estimate.modes.is_empty() {
         parts.push(modes(&estimate.modes));
@@ -157,25 +156,6 @@ pub(super) fn modes(modes: &[Mode]) -> String {
         "",
     ];
     bordered(header, rows, 0..0)
-}
-
-/// A table whose columns `numeric` are aligned on the right.
-pub(super) fn bordered<'h>(
-    header: impl IntoIterator<Item = &'h str>,
-    rows: impl IntoIterator<Item = Vec<String>>,
-    numeric: impl RangeBounds<usize>,
-) -> String {
-    let mut table = Table::new();
-    table
-        .load_style(UTF8_BORDERS_ONLY)
-        .set_header(header.into_iter().collect::<Vec<_>>())
-        .add_rows(rows);
-    for (number, column) in table.column_iter_mut().enumerate() {
-        if numeric.contains(&number) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
-    table.to_string()
 }
 
 fn label(parameter: &ParameterEstimate) -> String {

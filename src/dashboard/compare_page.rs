@@ -148,7 +148,8 @@ fn bars_of(row: &ComparedParameter) -> ErrorBars {
         x: place as f64,
         value: value.estimate * scale,
         error: value.standard_error.map(|error| error * scale),
-        job,
+        ends: None,
+        series: job,
         is_outlier: false,
     });
     ErrorBars {
@@ -157,6 +158,7 @@ fn bars_of(row: &ComparedParameter) -> ErrorBars {
             row.parameter
         ),
         along: None,
+        places: "job",
         points: points.collect(),
         curve: Vec::new(),
     }

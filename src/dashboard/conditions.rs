@@ -173,7 +173,8 @@ fn figure_of(curve: &CampaignCurve, offered: &Offered, chosen: &Chosen, ids: &[&
             x: at(point)? * wide,
             value: point.estimate * scale,
             error: Some(point.standard_error * scale),
-            job: ids
+            ends: None,
+            series: ids
                 .iter()
                 .position(|id| *id == point.job)
                 .unwrap_or_default(),
@@ -192,6 +193,7 @@ fn figure_of(curve: &CampaignCurve, offered: &Offered, chosen: &Chosen, ids: &[&
         ),
         curve: line(curve, &chosen.by, [scale, wide]),
         along: Some(along),
+        places: "job",
         points,
     }
 }

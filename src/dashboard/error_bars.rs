@@ -1,4 +1,5 @@
-//! A number of several jobs as points with error bars: side by side, or over a condition with a curve.
+//! A number of several jobs, or by several methods, as points with error bars: side by side, or over a condition with a
+//! curve.
 
 use maud::{Markup, html};
 
@@ -13,8 +14,10 @@ pub(super) struct Point {
     pub value: f64,
     /// None of a fixed parameter.
     pub error: Option<f64>,
-    /// Whose it is: the place of a job from 0.
-    pub job: usize,
+    /// Where the bar ends, if that is not two standard errors to each side.
+    pub ends: Option<[f64; 2]>,
+    /// Whose it is: the place of a job or a method from 0.
+    pub series: usize,
     pub is_outlier: bool,
 }
 
@@ -22,8 +25,10 @@ pub(super) struct Point {
 pub(super) struct ErrorBars {
     /// For those who do not see it.
     pub label: String,
-    /// Where `x` are places, a number for each: that of the job from 1. Else the condition with its unit.
+    /// Where `x` are places, a number for each: that of the series from 1. Else the condition with its unit.
     pub along: Option<String>,
+    /// What a series is.
+    pub places: &'static str,
     pub points: Vec<Point>,
     /// By `x`: the curve, and its band of 2 standard errors.
     pub curve: Vec<[f64; 3]>,
@@ -37,6 +42,15 @@ const BOTTOM: f64 = 38.0;
 
 /// Error bars are two standard errors to each side.
 const TIMES: f64 = 2.0;
+
+impl Point {
+    /// Where its bar begins and ends.
+    fn bar(&self) -> Option<[f64; 2]> {
+        let of_error = |error: f64| [self.value - TIMES * error, self.value + TIMES * error];
+        let bar = self.ends.or_else(|| self.error.map(of_error));
+        bar.filter(|ends| ends.iter().all(|end| end.is_finite()))
+    }
+}
 
 impl ErrorBars {
     /// As SVG, in the colours of the page.
@@ -61,40 +75,46 @@ impl ErrorBars {
                 (self.band(x, y))
                 @for point in self.points.iter().filter(|point| point.value.is_finite()) {
                     @let (cx, cy) = (round(x(point.x)), round(y(point.value)));
-                    g stroke=(colour(point.job)) stroke-width="2" fill=(colour(point.job)) {
-                        @if let Some(error) = point.error.filter(|error| error.is_finite()) {
-                            line x1=(cx) x2=(cx) y1=(round(y(point.value - TIMES * error))) y2=(round(y(point.value + TIMES * error))) {}
+                    g stroke=(colour(point.series)) stroke-width="2" fill=(colour(point.series)) {
+                        @if let Some([lower, upper]) = point.bar() {
+                            line x1=(cx) x2=(cx) y1=(round(y(lower))) y2=(round(y(upper))) {}
                         }
                         circle cx=(cx) cy=(cy) r="3.5" fill=[point.is_outlier.then_some("var(--paper)")] {}
                     }
                 }
                 @match self.along {
                     None => @for point in &self.points {
-                        text x=(round(x(point.x))) y=(base + 15.0) text-anchor="middle" { (point.job + 1) }
+                        text x=(round(x(point.x))) y=(base + 15.0) text-anchor="middle" { (point.series + 1) }
                     },
                     Some(_) => @for tick in steps(first, last) {
                         line x1=(round(x(tick))) x2=(round(x(tick))) y1=(base) y2=(base + 4.0) stroke="currentColor" {}
                         text x=(round(x(tick))) y=(base + 15.0) text-anchor="middle" { (tidy(tick)) }
                     },
                 }
-                text x=(round(0.5 * (LEFT + width - RIGHT))) y=(HEIGHT - 6.0) text-anchor="middle" { (self.along.as_deref().unwrap_or("job")) }
+                text x=(round(0.5 * (LEFT + width - RIGHT))) y=(HEIGHT - 6.0) text-anchor="middle" { (self.along.as_deref().unwrap_or(self.places)) }
             }
         }
     }
 
     /// What is drawn, as CSV.
     pub(super) fn table(&self) -> String {
-        let mut csv = CsvWriter::with_header([
-            self.along.as_deref().unwrap_or("place"),
-            "value",
-            "standard_error",
-            "job",
-        ]);
+        let along = self.along.as_deref().unwrap_or("place");
+        let has_ends = self.points.iter().any(|point| point.ends.is_some());
+        let mut csv = match has_ends {
+            true => CsvWriter::with_header([along, "value", "lower", "upper", self.places]),
+            false => CsvWriter::with_header([along, "value", "standard_error", self.places]),
+        };
         for point in &self.points {
             csv.number(point.x);
             csv.number(point.value);
-            csv.number(point.error);
-            csv.text(&(point.job + 1).to_string());
+            match (has_ends, point.bar()) {
+                (true, bar) => {
+                    csv.number(bar.map(|[lower, _]| lower));
+                    csv.number(bar.map(|[_, upper]| upper));
+                }
+                (false, _) => csv.number(point.error),
+            }
+            csv.text(&(point.series + 1).to_string());
             csv.end_row();
         }
         csv.finish()
@@ -124,8 +144,8 @@ impl ErrorBars {
     /// Of all points with their bars, and of the curve; its band may be wider.
     fn range(&self) -> (f64, f64) {
         let bars = self.points.iter().flat_map(|point| {
-            let error = TIMES * point.error.unwrap_or_default();
-            [point.value - error, point.value + error]
+            let none = [point.value, point.value];
+            point.bar().unwrap_or(none)
         });
         let (low, high) = extremes(bars.chain(self.curve.iter().map(|[_, value, _]| *value)));
         let room = 0.06 * (high - low);
@@ -211,11 +231,13 @@ mod tests {
         let figure = ErrorBars {
             label: "Ma".into(),
             along: None,
+            places: "job",
             points: vec![Point {
                 x: 0.0,
                 value: 1.0,
                 error: Some(0.5),
-                job: 2,
+                ends: None,
+                series: 2,
                 is_outlier: false,
             }],
             curve: Vec::new(),

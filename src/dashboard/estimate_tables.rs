@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use super::intervals::intervals;
 use crate::estimate::{Estimate, FilterEstimate, Measure, Mode, OutputFit, five_digits as number};
 use crate::flight::{Shown, bounded, decimals, five_digits_beside, shown_in, two_digits};
 
@@ -12,6 +13,7 @@ pub(super) fn tables(estimate: &Estimate, [of_parameters, of_fit]: [&Markup; 2])
         h2 id="parameters" { "Parameters" }
         (of_parameters)
         div.scroll tabindex="0" role="region" aria-labelledby="parameters" { (parameter_table(estimate)) }
+        @if let Some(found) = &estimate.confidence_intervals { (intervals(found)) }
         @if let Some(filter) = &estimate.filter {
             h2 id="process-noise" { "Process noise" }
             div.scroll tabindex="0" role="region" aria-labelledby="process-noise" { (process_noise_table(filter)) }

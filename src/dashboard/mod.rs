@@ -22,6 +22,7 @@ mod force_figure;
 mod guide;
 mod guide_page;
 mod guide_text;
+mod intervals;
 mod job_page;
 mod jobs_page;
 mod layout;

@@ -253,7 +253,7 @@ fn the_budget_and_a_request_to_stop_end_it_with_what_there_is() {
                 ControlFlow::Continue(())
             }
         }
-        Progress::Start(_) => ControlFlow::Continue(()),
+        Progress::Start(_) | Progress::Step(_) => ControlFlow::Continue(()),
     });
     assert_eq!(
         result.expect("a result").estimate.outcome,

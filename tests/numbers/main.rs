@@ -40,6 +40,7 @@ mod estimation;
 mod filter_error;
 mod findings;
 mod frequency;
+mod intervals;
 mod invisible_effects;
 mod knowledge;
 mod likelihood;

@@ -476,6 +476,7 @@ impl Told {
                 }
                 self.texts.push(report.text.clone());
             }
+            Progress::Step(_) => {}
         }
     }
 }

@@ -59,6 +59,13 @@ fn output_error_of_the_largest_model() {
 }
 
 #[test]
+fn confidence_intervals() {
+    let given = json!({"start": {"kind": "document"}, "confidence_intervals": {}});
+    let flown = (json!("short-period"), long_elevator(100_000));
+    ends("intervals, 100 000 x 9", flown, &options(given), 8.0);
+}
+
+#[test]
 fn differences_and_complex_steps() {
     for technique in [
         "forward_difference",

@@ -45,6 +45,7 @@ mod filter_error;
 mod findings;
 mod flown;
 mod guide;
+mod intervals;
 mod jobs;
 mod keys;
 mod layouts;

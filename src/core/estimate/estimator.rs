@@ -5,6 +5,7 @@ use crate::estimate::equation_error::equation_error;
 use crate::estimate::filter_error::finer_steps::filter_error_in_steps;
 use crate::estimate::findings::findings;
 use crate::estimate::frequency::{equation_error_frequency, output_error_frequency};
+use crate::estimate::intervals;
 use crate::estimate::options::estimator::Estimator;
 use crate::estimate::output_error::finer_steps::from_start;
 use crate::estimate::problem::Problem;
@@ -39,6 +40,9 @@ pub fn estimate(problem: &Problem, watcher: &mut Watcher<'_>) -> Result<Solution
     let short = (estimate.findings.iter()).any(|finding| finding.code == not_converged);
     for row in &mut estimate.parameters {
         row.provisional = short && !row.fixed;
+    }
+    if let Some(options) = &problem.options.confidence_intervals {
+        intervals::add(problem, options, &mut solution, watcher);
     }
     Ok(solution)
 }

@@ -26,6 +26,7 @@
 //! regression   the problem of equation error
 //! start        where to begin; multiple shooting
 //! output_error, filter_error, frequency, study
+//! intervals    confidence intervals from many refits
 //! findings     what a reader of the answer should know beside its numbers
 //! ```
 //!
@@ -41,6 +42,7 @@ mod evaluation;
 mod filter_error;
 mod findings;
 mod frequency;
+mod intervals;
 mod likelihood;
 mod linear;
 mod monte_carlo;
@@ -75,6 +77,7 @@ pub use monte_carlo::{DRAWS, MonteCarlo};
 pub use options::error_bounds::ErrorBoundsKind;
 pub use options::estimator::Estimator;
 pub use options::frequency::{Ends, FrequencyOptions, Trend};
+pub use options::intervals::IntervalOptions;
 pub use options::process_noise::ProcessNoise;
 pub use options::role::Role;
 pub use options::start::StartMethod;
@@ -97,6 +100,10 @@ pub use report::identifiability::{
     CorrelatedPair, DataInformation, Identifiability, NearlyCollinearSet,
 };
 pub use report::integration::{HalvedSteps, Integration};
+pub use report::intervals::{
+    Bootstrap, ConfidenceInterval, ConfidenceIntervals, IntervalEnd, IntervalMethod,
+    MonteCarloFits, ParameterIntervals,
+};
 pub use report::iteration::{Iteration, Outcome};
 pub(crate) use report::mode::root;
 pub use report::mode::{Measure, Mode, ModeName};

@@ -152,7 +152,7 @@ fn range(samples: &mut [Vec<f64>]) -> Range {
 }
 
 /// Between the two order statistics at its sides (Hyndman and Fan's definition 7, which numpy has).
-fn percentile(sorted: &[f64], share: f64) -> f64 {
+pub(super) fn percentile(sorted: &[f64], share: f64) -> f64 {
     let at = share * (sorted.len() - 1) as f64;
     let (below, above) = (at.floor() as usize, at.ceil() as usize);
     sorted[below] + (at - at.floor()) * (sorted[above] - sorted[below])

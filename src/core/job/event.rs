@@ -47,7 +47,7 @@ pub enum EventBody {
     Start(StartReport),
     /// The solver finished an iteration (number 0: the start value).
     Iteration(Iteration),
-    /// A derivative study found something.
+    /// A derivative study found something, or the work on confidence intervals got on.
     Finding(StudyStep),
     /// A diagnosis got on: a candidate was tried, refused or accepted.
     Diagnosis(Step),
@@ -103,6 +103,7 @@ impl From<Progress<'_>> for EventBody {
         match progress {
             Progress::Start(report) => Self::Start(report.clone()),
             Progress::Iteration(iteration) => Self::Iteration(iteration.clone()),
+            Progress::Step(step) => Self::Finding(step.clone()),
         }
     }
 }

@@ -34,7 +34,7 @@ pub(crate) struct Colour {
     /// By output.
     pub models: Vec<Autoregression>,
     /// A square root of the covariance of the innovations, outputs by outputs.
-    root: DMatrix<f64>,
+    pub root: DMatrix<f64>,
 }
 
 impl Colour {
@@ -116,7 +116,7 @@ fn correlation(a: &[f64], b: &[f64], same: bool) -> f64 {
 }
 
 /// A matrix whose square is `covariance`; what missing samples made negative of it is none.
-fn root(covariance: DMatrix<f64>) -> DMatrix<f64> {
+pub(crate) fn root(covariance: DMatrix<f64>) -> DMatrix<f64> {
     let deviation = covariance.diagonal().map(f64::sqrt);
     let scale = deviation.map(|d| if d > 0.0 { d.recip() } else { 0.0 });
     // as correlations: units must not decide what is rounding

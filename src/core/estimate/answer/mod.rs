@@ -201,6 +201,7 @@ impl Ending<'_> {
             findings: Vec::new(),
             filter: None,
             frequency: None,
+            confidence_intervals: None,
             modes: modes(problem, self.theta, self.bounds),
         }
     }

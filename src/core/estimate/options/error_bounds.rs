@@ -14,3 +14,13 @@ pub enum ErrorBoundsKind {
     /// The Cramér-Rao bound F⁻¹, for white residuals. Spares three looks at the data.
     Conventional,
 }
+
+impl ErrorBoundsKind {
+    /// As it is written in a job.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Corrected => "corrected",
+            Self::Conventional => "conventional",
+        }
+    }
+}

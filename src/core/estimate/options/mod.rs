@@ -3,6 +3,7 @@
 pub(super) mod error_bounds;
 pub(super) mod estimator;
 pub(super) mod frequency;
+pub(super) mod intervals;
 pub(super) mod process_noise;
 pub(super) mod role;
 pub(super) mod start;
@@ -17,6 +18,7 @@ use crate::simulate::{InputInterpolation, Integrator};
 use error_bounds::ErrorBoundsKind;
 use estimator::Estimator;
 use frequency::FrequencyOptions;
+use intervals::IntervalOptions;
 use process_noise::ProcessNoise;
 use start::StartMethod;
 use steps::StepsPerSample;
@@ -55,6 +57,9 @@ pub struct Options {
     /// The band of the frequency-domain estimators; they need one, and no other may have one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frequency: Option<FrequencyOptions>,
+    /// Confidence intervals by other ways than error bounds, side by side with these; absent: none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub confidence_intervals: Option<IntervalOptions>,
     /// Converged when a full step would move the estimate by less than this many standard errors:
     /// √(gᵀ H⁻¹ g), g the gradient and H the Hessian of the cost that the step is made with.
     #[schema(example = 1e-5, exclusive_minimum = 0.0)]
@@ -79,6 +84,7 @@ impl Default for Options {
             derivatives: Derivatives::default(),
             process_noise: IndexMap::new(),
             frequency: None,
+            confidence_intervals: None,
             tolerance: 1e-5,
             max_iterations: 50,
         }

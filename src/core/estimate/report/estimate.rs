@@ -9,6 +9,7 @@ use super::fit::{FitSummary, OutputFit};
 use super::frequency::FrequencyEstimate;
 use super::identifiability::Identifiability;
 use super::integration::Integration;
+use super::intervals::ConfidenceIntervals;
 use super::iteration::Outcome;
 use super::mode::Mode;
 use super::parameter::{Bound, ParameterEstimate};
@@ -74,6 +75,9 @@ pub struct Estimate {
     /// Modes of the motion, fastest first; none for reconstruction models.
     #[serde(default)]
     pub modes: Vec<Mode>,
+    /// 95 % confidence intervals by several methods, where `confidence_intervals` of the options asked for them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub confidence_intervals: Option<ConfidenceIntervals>,
     /// What a reader of these numbers should know: of the data in use, of the job, of the fit.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<Finding>,

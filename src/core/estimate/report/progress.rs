@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use super::iteration::Iteration;
 use super::start::StartReport;
+use super::study_step::StudyStep;
 
 /// News of an estimation under way.
 #[derive(Clone, Copy, Debug)]
@@ -12,6 +13,8 @@ pub enum Progress<'a> {
     Start(&'a StartReport),
     /// An iteration of the estimator.
     Iteration(&'a Iteration),
+    /// Confidence intervals got on.
+    Step(&'a StudyStep),
 }
 
 /// Told of all progress; may stop the estimation.

@@ -21,11 +21,12 @@ use crate::estimate::problem::unusable::Unusable;
 use clock::{Times, least, once};
 use underway::Study;
 
+pub use crate::estimate::report::study_step::StudyStep;
 pub use clock::Clock;
 pub use operations::{formula, operations, simulations};
 pub use report::{
     CostPoint, DerivativeStudy, DescentResult, ErrorCurve, ErrorPoint, FormulaOperations,
-    ProblemSize, StudyStep, TechniqueResult,
+    ProblemSize, TechniqueResult,
 };
 pub use underway::{Listener, NoStudy};
 

@@ -146,22 +146,6 @@ pub struct DescentResult {
     pub cost_excess: f64,
 }
 
-/// How far the study is.
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize, ToSchema)]
-pub struct StudyStep {
-    /// How many findings there are so far, this one included.
-    #[schema(example = 7)]
-    pub number: usize,
-    /// How many there will be.
-    #[schema(example = 19)]
-    pub of: usize,
-    /// What was found, in a sentence.
-    #[schema(
-        example = "complex_step: gradient error at most 2.1e-14 for steps from 1e-300 to 1e-8"
-    )]
-    pub finding: String,
-}
-
 impl ErrorCurve {
     /// Step and error of the best point.
     pub fn best(&self) -> Option<(f64, f64)> {

@@ -6,11 +6,12 @@ use nalgebra::DVector;
 
 use super::clock::Clock;
 use super::gradients;
-use super::report::{ProblemSize, StudyStep};
+use super::report::ProblemSize;
 use crate::estimate::likelihood::weighting::Weighting;
 use crate::estimate::options::technique::Derivatives;
 use crate::estimate::problem::Problem;
 use crate::estimate::problem::unusable::Unusable;
+use crate::estimate::report::study_step::StudyStep;
 
 /// Told of each finding, and of nothing new from time to time; may stop the study.
 pub type Listener<'o> = dyn FnMut(Option<&StudyStep>) -> ControlFlow<()> + 'o;

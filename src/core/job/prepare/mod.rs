@@ -11,6 +11,7 @@ mod flown;
 mod frequency;
 mod gaps;
 mod initial;
+mod intervals;
 mod knowledge;
 mod missing;
 mod plausible;
@@ -96,6 +97,7 @@ pub fn prepare(
     if spec.kind == JobKind::DerivativeStudy {
         study::check(&problem)?;
     }
+    intervals::check(&problem)?;
     checks::check_stiffness(&problem)?;
     checks::check_estimator(&problem)?;
     let case = match spec.kind {
@@ -173,6 +175,7 @@ fn check_settings(spec: &JobSpec, model: &Model, faults: &mut Vec<Fault>) {
     checks::check_options(&spec.options, model, faults);
     filter::check_options(&spec.options, model, faults);
     frequency::check_options(spec, model, faults);
+    intervals::check_options(spec, faults);
     checks::check_names(spec, model, faults);
     faults.extend(spec.strict.unknown());
 }
