@@ -54,6 +54,7 @@ mod paths;
 mod play_and_limits;
 mod predictions;
 mod priors;
+mod recursive;
 mod response;
 mod segments;
 mod sensitivities;
