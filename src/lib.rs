@@ -92,8 +92,8 @@
 //!    `TRIMTAB_WRITE_GUIDE=1 cargo test --test service guide::`, and what shows them is built after that.
 
 pub use trimtab_core::{
-    design, diagnose, dynamics, estimate, flight, ingest, job, model, response, simulate, stop,
-    structure,
+    design, diagnose, dynamics, estimate, flight, ingest, job, model, recursive, response,
+    simulate, stop, structure,
 };
 
 pub mod cli;

@@ -58,6 +58,7 @@ mod study;
 mod study_tables;
 mod submit;
 mod table;
+mod track;
 mod trim;
 mod two_step;
 mod upload;
@@ -91,6 +92,7 @@ enum Command {
     Demo(demo::Demo),
     Fit(fit::Fit),
     Study(study::Study),
+    Track(Box<track::Track>),
     Structure(Box<structure::StructureCommand>),
     Diagnose(diagnose::Diagnose),
     Linear(linear::Linear),
@@ -139,6 +141,7 @@ pub fn main() -> ExitCode {
         Command::Demo(demo) => block_on(demo.run()),
         Command::Fit(fit) => fit.run(),
         Command::Study(study) => study.run(),
+        Command::Track(track) => track.run(),
         Command::Structure(structure) => structure.run(),
         Command::Diagnose(diagnose) => diagnose.run(),
         Command::Linear(linear) => linear.run(),

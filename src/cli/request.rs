@@ -108,6 +108,11 @@ impl Request {
         self.files.iter().chain(&self.validate).chain(&self.last)
     }
 
+    /// The band of frequencies that was asked for, Hz.
+    pub(super) fn band(&self) -> Option<[f64; 2]> {
+        self.band
+    }
+
     /// The file of each recording, once where several rows of it are used.
     pub(super) fn files(&self) -> IndexSet<&Path> {
         self.file_rows().map(|rows| rows.file.as_path()).collect()

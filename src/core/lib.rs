@@ -15,6 +15,7 @@
 //! | A, B, C, D, H(jω) | linear system, flying qualities, trim | [`dynamics`] |
 //! | u(t), F⁻¹ before flight | inputs designed, bounds predicted | [`design`] |
 //! | H, γ², ε | frequency responses of recorded signals | [`response`] |
+//! | θ_k, P_k | estimates as samples come in: least squares, Fourier regression, Kalman filter | [`recursive`] |
 //! | X, F, PSE, PRESS | which terms an equation needs | [`structure`] |
 //! | S⊥, ψ, the effect that is missing | screening, trials, verdict | [`diagnose`] |
 //!
@@ -22,7 +23,7 @@
 //!
 //! [`job`] is what may be asked of all this in one document, and the events by which its progress is told. Arrows go
 //! one way: `job → diagnose → estimate → simulate → model → flight`, `job → design → dynamics → estimate`,
-//! `estimate, response → spectral`, `job → structure`, `ingest, structure → flight`. Everything here is synchronous
+//! `estimate, response → spectral`, `job → structure`, `recursive → estimate`, `ingest, structure → flight`. Everything here is synchronous
 //! and deterministic: no server, no database, no clock, no environment, no hidden randomness. The service around it
 //! is the crate `trimtab`.
 //!
@@ -90,6 +91,7 @@ pub mod flight;
 pub mod ingest;
 pub mod job;
 pub mod model;
+pub mod recursive;
 pub mod response;
 pub mod simulate;
 pub mod spectral;

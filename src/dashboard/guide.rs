@@ -57,6 +57,7 @@ const TEXTS: &[(Part, &str, &str)] = pages! {
     HowTo "diagnosis";
     HowTo "turbulence";
     HowTo "frequency";
+    HowTo "in-flight";
     HowTo "structure";
     HowTo "design";
     HowTo "campaigns";

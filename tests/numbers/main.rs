@@ -55,6 +55,7 @@ mod paths;
 mod play_and_limits;
 mod predictions;
 mod priors;
+mod recursive;
 mod response;
 mod segments;
 mod sensitivities;

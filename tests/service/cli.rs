@@ -599,3 +599,67 @@ fn a_recording_can_be_predicted_instead_of_fitted() {
         "{table}"
     );
 }
+
+/// The same numbers as tests/numbers/recursive.rs has from elsewhere, as a table and as CSV, and refusals before anything is read.
+#[test]
+fn track_follows_a_recording_sample_by_sample() {
+    let common = [
+        "track",
+        "data/elevator.csv",
+        "-m",
+        "short-period",
+        "--method",
+    ];
+    let with = |more: &[&str]| succeeds(&[&common[..], more].concat());
+    let table = with(&["rls"]);
+    let last = table.lines().rev().nth(1).expect("a line");
+    assert!(
+        last.contains("25.00") && last.contains("-3.395 ± 0.026"),
+        "{table}"
+    );
+    assert!(table.lines().any(|line| line.contains(" - ")), "{table}");
+
+    let csv = with(&["rft", "--band", "0.1-1.5", "--csv"]);
+    let rows: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows[0][..3], ["t[s]", "Za[1/s]", "Za_error[1/s]"]);
+    assert_eq!(rows.len(), 1 + 626, "a line for each sample");
+    let at = rows[0]
+        .iter()
+        .position(|title| *title == "Ma[1/s^2]")
+        .expect("Ma");
+    let ma: f64 = rows[626][at].parse().expect("a number");
+    assert!((ma + 3.393_759).abs() < 1e-5, "{ma}");
+    assert_eq!(
+        (rows[1][0], rows[1][at]),
+        ("0", ""),
+        "nothing is known of one sample"
+    );
+    assert_eq!(
+        with(&["rls", "--csv", "--every", "5"]).lines().count(),
+        1 + 4 + 1
+    );
+
+    let noise = [
+        "ekf",
+        "--noise",
+        "alpha=0.05deg,q=0.08deg/s",
+        "--uncertainty",
+        "q_bias=0.005",
+    ];
+    let output = trimtab(&[&common[..], &noise].concat());
+    assert!(said(&output.stdout).contains("q_bias, rad/s"));
+    let note = said(&output.stderr);
+    assert!(
+        note.contains("more than a quarter from where the filter started") && note.contains("Ma"),
+        "{note}"
+    );
+
+    let refused = |more: &[&str]| fails(&[&common[..], more].concat());
+    assert!(refused(&["rft"]).contains("rft needs a band"));
+    assert!(refused(&["rls", "--band", "0.1-1.5"]).contains("use rft"));
+    assert!(refused(&["rls", "--forgetting", "2"]).contains("at most 1"));
+    assert!(refused(&["ekf"]).contains("standard deviation of the noise of alpha"));
+    assert!(refused(&["ekf", "--noise", "alpha=0.05m"]).contains("m where the model has -"));
+    assert!(refused(&["ekf", "--noise", "beta=1"]).contains("it has alpha, q"));
+    assert!(refused(&["ekf", "--noise", "q=often"]).contains("should be a number"));
+}

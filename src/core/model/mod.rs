@@ -8,6 +8,7 @@
 mod affine;
 pub mod catalog;
 mod compile;
+mod dependence;
 mod derivative;
 mod dimensions;
 mod document;
@@ -34,6 +35,7 @@ mod trigonometry;
 mod unique;
 
 pub(crate) use affine::{Affine, Coefficient, Factor};
+pub(crate) use dependence::Symbol;
 pub use document::{
     Constant, Definition, Input, ModelDocument, Output, Parameter, Per, Prior, Start, State,
 };

@@ -63,6 +63,36 @@ pub(super) enum Operation {
     MultiplySubtract,
 }
 
+impl Operation {
+    /// How many operands it has: a, then b, then c.
+    pub(super) fn operands(self) -> usize {
+        match self {
+            Self::Negate
+            | Self::Sin
+            | Self::Cos
+            | Self::Tan
+            | Self::Asin
+            | Self::Acos
+            | Self::Atan
+            | Self::Tanh
+            | Self::Exp
+            | Self::Ln
+            | Self::Sqrt
+            | Self::Abs
+            | Self::Sign => 1,
+            Self::Add
+            | Self::Subtract
+            | Self::Multiply
+            | Self::Divide
+            | Self::Power
+            | Self::Atan2
+            | Self::Less
+            | Self::LessOrEqual => 2,
+            Self::Select | Self::MultiplyAdd | Self::MultiplySubtract => 3,
+        }
+    }
+}
+
 impl From<Unary> for Operation {
     fn from(unary: Unary) -> Self {
         match unary {

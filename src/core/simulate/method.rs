@@ -60,7 +60,7 @@ impl Integrator {
         self.stages().len()
     }
 
-    pub(super) fn stages(self) -> &'static [Stage] {
+    pub(crate) fn stages(self) -> &'static [Stage] {
         match self {
             Self::Euler => &EULER,
             Self::Rk2 => &RK2,

@@ -49,6 +49,7 @@ pub use columns::Columns;
 pub use input_path::MOST_DELAY;
 pub(crate) use input_path::{driven, path_out_of_bounds};
 pub(crate) use march::{March, Standing};
+pub(crate) use method::Stage;
 pub use method::{InputInterpolation, Integrator};
 pub use outputs::Outputs;
 pub(crate) use pack::{PACK, Pack, multiply_add, packs};

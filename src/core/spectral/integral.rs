@@ -35,15 +35,16 @@ pub struct FourierIntegral {
 }
 
 /// Samples at either end that count by weights of their own.
-const AT_END: usize = 4;
+pub(super) const AT_END: usize = 4;
 
 /// What the integral makes of the samples: weight times sum, and corrections.
-struct Rule {
-    weight: Complex64,
+#[derive(Clone, Debug)]
+pub(super) struct Rule {
+    pub weight: Complex64,
     /// Of the first samples.
-    first: [Complex64; AT_END],
+    pub first: [Complex64; AT_END],
     /// Of the last samples, by distance from the last, for a clock that is zero there.
-    last: [Complex64; AT_END],
+    pub last: [Complex64; AT_END],
 }
 
 impl FourierIntegral {
@@ -109,7 +110,7 @@ fn lagrange(nodes: [f64; 4], own: usize, from: f64) -> [f64; 4] {
 }
 
 impl Rule {
-    fn new(between: Between, angle: f64) -> Self {
+    pub(super) fn new(between: Between, angle: f64) -> Self {
         let zero = [Complex64::ZERO; AT_END];
         let (mut first, mut last) = (zero, zero);
         let turn = |samples: f64| Complex64::from_polar(1.0, angle * samples);

@@ -15,9 +15,11 @@ mod frequencies;
 mod integral;
 mod inverse;
 mod moments;
+mod running;
 
 pub use chirp_z::ChirpZ;
 pub use frequencies::Frequencies;
 pub use integral::{Between, FourierIntegral};
 pub use inverse::invert;
 pub use moments::{line_integral, power_integrals};
+pub use running::RunningTransform;

@@ -67,13 +67,18 @@ fn is_plain(model: &Model, output: usize) -> bool {
 }
 
 impl MeasuredState {
-    /// The state at each sample of a segment, (z - b)/a, with bias and scale as `parameters` have them.
-    pub(crate) fn read(&self, model: &Model, segment: &Segment, parameters: &[f64]) -> Vec<f64> {
+    /// a in y = a x + b, with `parameters` for θ.
+    pub(crate) fn slope(&self, model: &Model, parameters: &[f64]) -> f64 {
         let jacobian = &model.observation_jacobian.program;
         let mut slopes = jacobian.workspace();
         jacobian.set_parameters(&mut slopes, parameters);
         jacobian.run(&mut slopes);
-        let slope = jacobian.result(&slopes, self.slope);
+        jacobian.result(&slopes, self.slope)
+    }
+
+    /// The state at each sample of a segment, (z - b)/a, with bias and scale as `parameters` have them.
+    pub(crate) fn read(&self, model: &Model, segment: &Segment, parameters: &[f64]) -> Vec<f64> {
+        let slope = self.slope(model, parameters);
         let program = &model.observation;
         let mut workspace = program.workspace();
         program.set_parameters(&mut workspace, parameters);

@@ -5,7 +5,7 @@
 //! those of output error. States that no output measures stay states: they are integrated from the initial
 //! values that the model gives them, driven by the measured ones.
 
-mod local_fit;
+pub(super) mod local_fit;
 pub(super) mod measured;
 pub(super) mod smoothing;
 
@@ -60,9 +60,7 @@ impl Regression {
         if measured.is_empty() && !problem.model.states.is_empty() {
             return None;
         }
-        let document = edited(&problem.model, &measured);
-        let mut model = Model::compile(&document).ok()?;
-        fix_unused(&mut model);
+        let model = regressed(&problem.model, &measured)?;
 
         let mut rest = start.clone();
         let mut segments = Vec::new();
@@ -125,6 +123,14 @@ impl Regression {
     pub(crate) fn place(&self, place: usize) -> Option<usize> {
         self.places.iter().position(|&own| own == place)
     }
+}
+
+/// The model with measured states as inputs, and their derivatives in place of the outputs that measure them; parameters that are in
+/// no equation of it are fixed. `None` where it is too large.
+pub(crate) fn regressed(model: &Model, measured: &[MeasuredState]) -> Option<Model> {
+    let mut regressed = Model::compile(&edited(model, measured)).ok()?;
+    fix_unused(&mut regressed);
+    Some(regressed)
 }
 
 /// The document with measured states as inputs, and their derivatives in place of the outputs that measure them.
