@@ -200,12 +200,14 @@ mod tests {
             x,
             value: x,
             error: Some(0.1),
-            job: 0,
+            ends: None,
+            series: 0,
             is_outlier: false,
         };
         let figure = ErrorBars {
             label: "Ma".into(),
             along: Some("alpha".into()),
+            places: "job",
             points: vec![point(0.0), point(1.0)],
             curve: vec![[0.0, 0.0, 0.1], [0.5, 0.5, 40.0], [1.0, 1.0, 0.1]],
         };
