@@ -1,4 +1,4 @@
-"""Recursive estimators on data/elevator.csv by numpy and scipy alone, for the reference numbers of tests/numbers/recursive.rs. Nothing
+"""Recursive estimators on data/elevator.csv by numpy and scipy alone, for the reference numbers of tests/numbers/recursive/independent.rs. Nothing
 here is recursive but the filter: least squares are solved anew from all rows and their weights. Run from the top of the repository."""
 
 import csv

@@ -600,7 +600,7 @@ fn a_recording_can_be_predicted_instead_of_fitted() {
     );
 }
 
-/// The same numbers as tests/numbers/recursive.rs has from elsewhere, as a table and as CSV, and refusals before anything is read.
+/// The same numbers as tests/numbers/recursive has from elsewhere, as a table and as CSV, and refusals before anything is read.
 #[test]
 fn track_follows_a_recording_sample_by_sample() {
     let common = [
