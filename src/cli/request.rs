@@ -113,6 +113,37 @@ impl Request {
         self.band
     }
 
+    /// Options of an estimation's solver, where a command has no use for them.
+    ///
+    /// # Errors
+    /// One is given.
+    pub(super) fn refuse_solver(&self, command: &str) -> Result<(), Failure> {
+        let usual = Options::default();
+        let given = [
+            ("--gauss-newton", self.gauss_newton),
+            ("--start-method", self.start_method != usual.start),
+            ("--full-noise", self.full_noise),
+            ("--filter-error", self.filter_error),
+            ("--estimator", self.estimator.is_some()),
+            ("--intervals", self.intervals.is_some()),
+            ("--tolerance", self.tolerance != usual.tolerance),
+            (
+                "--derivatives",
+                self.derivatives != usual.derivatives.name(),
+            ),
+            (
+                "--max-iterations",
+                self.max_iterations != usual.max_iterations,
+            ),
+        ];
+        match given.into_iter().find(|(_, is_given)| *is_given) {
+            Some((option, _)) => Err(Failure::new(format!(
+                "{option} is of an estimation's solver, which {command} has no use for: leave it out"
+            ))),
+            None => Ok(()),
+        }
+    }
+
     /// The file of each recording, once where several rows of it are used.
     pub(super) fn files(&self) -> IndexSet<&Path> {
         self.file_rows().map(|rows| rows.file.as_path()).collect()

@@ -58,6 +58,7 @@ pub(super) struct StructureCommand {
 
 impl StructureCommand {
     pub(super) fn run(&self) -> Result<(), Failure> {
+        self.request.refuse_solver("structure")?;
         let maneuvers = self.request.recordings()?;
         let ids: Vec<String> = maneuvers.iter().map(|maneuver| maneuver.digest()).collect();
         let document = match self.request.model.as_str() {

@@ -73,6 +73,7 @@ impl Track {
             let message = "--validate and --final are for estimations: what is followed sample by sample is predicted all the time";
             return Err(Failure::new(message));
         }
+        self.request.refuse_solver("track")?;
         let frequency = self.request.band().map(|band| FrequencyOptions {
             step_hz: Some(self.frequency_step),
             ..FrequencyOptions::of_band(band)

@@ -72,6 +72,11 @@ fn structure_finds_an_equation_from_channels() {
     .expect("JSON");
     assert_eq!(result["structure"]["method"], "orthogonal");
     assert_eq!(result["structure"]["terms"][1]["term"], "alpha");
+    let unread = fails(&[&common[..], &["--tolerance", "0.01"]].concat());
+    assert!(
+        unread.contains("--tolerance is of an estimation's solver, which structure has no use for"),
+        "{unread}"
+    );
     let refused = fails(&["structure", &path, "--output", "CD", "--variables", "alpha"]);
     assert!(refused.contains("no channel 'CD' is recorded"), "{refused}");
     std::fs::remove_file(&file).expect("removed");
@@ -656,6 +661,9 @@ fn track_follows_a_recording_sample_by_sample() {
 
     let refused = |more: &[&str]| fails(&[&common[..], more].concat());
     assert!(refused(&["rft"]).contains("rft needs a band"));
+    assert!(
+        refused(&["rls", "--filter-error"]).contains("--filter-error is of an estimation's solver")
+    );
     assert!(refused(&["rls", "--band", "0.1-1.5"]).contains("use rft"));
     assert!(refused(&["rls", "--forgetting", "2"]).contains("at most 1"));
     assert!(refused(&["ekf"]).contains("standard deviation of the noise of alpha"));
