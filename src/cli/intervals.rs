@@ -70,34 +70,13 @@ pub(super) fn intervals(found: &ConfidenceIntervals) -> String {
     if !found.parameters.is_empty() {
         parts.push(bordered(header, rows, 3..7));
     }
-    parts.extend(made_of(found));
+    parts.extend(found.made_of());
     parts.extend(found.remarks.iter().map(|remark| format!("note: {remark}")));
     parts.join("\n")
 }
 
-fn made_of(found: &ConfidenceIntervals) -> Option<String> {
-    let bootstrap = found.bootstrap.map(|made| {
-        format!(
-            "bootstrap: {} replicates, blocks of {} samples",
-            made.replicates, made.block
-        )
-    });
-    let monte_carlo = found.monte_carlo.map(|made| {
-        format!(
-            "Monte Carlo: {} recordings, noise as the {} bounds have it",
-            made.recordings,
-            made.noise.name()
-        )
-    });
-    let all: Vec<String> = bootstrap.into_iter().chain(monte_carlo).collect();
-    (!all.is_empty()).then(|| all.join("; "))
-}
-
 fn of_parameter(parameter: &ParameterIntervals) -> impl Iterator<Item = Vec<String>> {
-    let name = match &parameter.segment {
-        Some(segment) => format!("{} [{segment}]", parameter.name),
-        None => parameter.name.clone(),
-    };
+    let name = parameter.label();
     let rows = parameter.intervals.iter().enumerate();
     rows.map(move |(number, interval)| {
         let [lower, upper, deviation] = numbers(interval);

@@ -17,7 +17,7 @@ pub(super) fn intervals(found: &ConfidenceIntervals) -> Markup {
     let methods = methods(found);
     html! {
         h2 id="intervals" { "95 % confidence intervals" }
-        p.soft { (made_of(found)) }
+        @if let Some(made_of) = found.made_of() { p.soft { (made_of) } }
         @for remark in &found.remarks { p.note { (remark) } }
         @if !methods.is_empty() {
             div.scroll tabindex="0" role="region" aria-labelledby="intervals" { (table(found, &methods)) }
@@ -26,7 +26,7 @@ pub(super) fn intervals(found: &ConfidenceIntervals) -> Markup {
                 @for parameter in &found.parameters {
                     @let bars = bars_of(parameter, &methods);
                     figure data-values=(bars.table()) {
-                        figcaption { (name(parameter)) " [" (shown_in(&parameter.unit).unit) "]" }
+                        figcaption { (parameter.label()) " [" (shown_in(&parameter.unit).unit) "]" }
                         (bars.drawn())
                     }
                 }
@@ -46,31 +46,6 @@ fn methods(found: &ConfidenceIntervals) -> Vec<IntervalMethod> {
     methods
 }
 
-fn made_of(found: &ConfidenceIntervals) -> String {
-    let bootstrap = found.bootstrap.map(|made| {
-        format!(
-            "Bootstrap: {} replicates of the residuals in blocks of {} samples.",
-            made.replicates, made.block
-        )
-    });
-    let monte_carlo = found.monte_carlo.map(|made| {
-        format!(
-            "Monte Carlo: {} simulated recordings, with noise as the {} bounds have it.",
-            made.recordings,
-            made.noise.name()
-        )
-    });
-    let all: Vec<String> = bootstrap.into_iter().chain(monte_carlo).collect();
-    all.join(" ")
-}
-
-fn name(parameter: &ParameterIntervals) -> String {
-    match &parameter.segment {
-        Some(segment) => format!("{} [{segment}]", parameter.name),
-        None => parameter.name.clone(),
-    }
-}
-
 fn of(parameter: &ParameterIntervals, method: IntervalMethod) -> Option<&ConfidenceInterval> {
     parameter.intervals.iter().find(|one| one.method == method)
 }
@@ -86,7 +61,7 @@ fn table(found: &ConfidenceIntervals, methods: &[IntervalMethod]) -> Markup {
                 @for parameter in &found.parameters {
                     @let Shown { scale, unit } = shown_in(&parameter.unit);
                     tr {
-                        th scope="row" { (name(parameter)) }
+                        th scope="row" { (parameter.label()) }
                         td.soft { (unit) }
                         @for method in methods {
                             td.number { @if let Some(interval) = of(parameter, *method) { (cell(interval, scale)) } }
@@ -146,7 +121,7 @@ fn bars_of(parameter: &ParameterIntervals, methods: &[IntervalMethod]) -> ErrorB
     ErrorBars {
         label: format!(
             "{} in {unit} with its interval by each method; the table has the numbers",
-            name(parameter)
+            parameter.label()
         ),
         along: None,
         places: "method",

@@ -1,7 +1,7 @@
 //! Exact Jacobians of compiled equations, structurally zero entries left out.
 
 use super::graph::{Graph, NodeId};
-use super::program::{Program, Slots};
+use super::program::{Program, Slots, Workspace};
 
 /// ∂h/∂x and ∂h/∂θ of some equations h(x, u, t, θ): where entries are, and one program for them all.
 #[derive(Clone, Debug)]
@@ -39,6 +39,38 @@ impl Jacobian {
             program: Program::compile(graph, slots, &roots),
             by_state,
             by_parameter,
+        }
+    }
+    /// to += ∂h/∂x from, where `program` was run `at`: slopes `from` of states are rows of `width`.
+    pub(crate) fn add_by_state(
+        &self,
+        at: &Workspace<f64>,
+        width: usize,
+        from: &[f64],
+        to: &mut [f64],
+    ) {
+        for (entry, &(row, state)) in self.by_state.iter().enumerate() {
+            let factor = self.program.result(at, entry);
+            let from = &from[state * width..(state + 1) * width];
+            for (to, from) in to[row * width..(row + 1) * width].iter_mut().zip(from) {
+                *to += factor * from;
+            }
+        }
+    }
+
+    /// to += ∂h/∂θ: `column` is that of each parameter in rows of `width`, if it has one.
+    pub(crate) fn add_by_parameter(
+        &self,
+        at: &Workspace<f64>,
+        column: &[Option<usize>],
+        width: usize,
+        to: &mut [f64],
+    ) {
+        let first = self.by_state.len();
+        for (entry, &(row, parameter)) in self.by_parameter.iter().enumerate() {
+            if let Some(column) = column[parameter] {
+                to[row * width + column] += self.program.result(at, first + entry);
+            }
         }
     }
 }

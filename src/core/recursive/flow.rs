@@ -174,19 +174,8 @@ pub(super) fn along(
     from: &[f64],
     to: &mut [f64],
 ) {
-    for (entry, &(row, state)) in jacobian.by_state.iter().enumerate() {
-        let factor = jacobian.program.result(at, entry);
-        let from = &from[state * width..(state + 1) * width];
-        for (to, from) in to[row * width..(row + 1) * width].iter_mut().zip(from) {
-            *to += factor * from;
-        }
-    }
-    let first = jacobian.by_state.len();
-    for (entry, &(row, parameter)) in jacobian.by_parameter.iter().enumerate() {
-        if let Some(column) = column[parameter] {
-            to[row * width + column] += jacobian.program.result(at, first + entry);
-        }
-    }
+    jacobian.add_by_state(at, width, from, to);
+    jacobian.add_by_parameter(at, column, width, to);
 }
 
 fn add(to: &mut [f64], what: &[f64]) {

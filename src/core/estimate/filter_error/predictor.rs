@@ -246,13 +246,7 @@ impl Tangent {
             let mut workspace = jacobian.program.workspace();
             jacobian.program.set_parameters(&mut workspace, parameters);
             jacobian.program.run(&mut workspace);
-            add_by_parameter(
-                jacobian,
-                &workspace,
-                &tangent.column,
-                width,
-                &mut tangent.current,
-            );
+            jacobian.add_by_parameter(&workspace, &tangent.column, width, &mut tangent.current);
         }
         tangent
     }
@@ -260,8 +254,8 @@ impl Tangent {
     /// ∂y = ∂g/∂x ∂x + ∂g/∂θ.
     fn observe(&self, jacobian: &Jacobian, at: &Workspace<f64>, slopes: &mut [f64]) {
         slopes.fill(0.0);
-        add_by_state(jacobian, at, self.width, &self.current, slopes);
-        add_by_parameter(jacobian, at, &self.column, self.width, slopes);
+        jacobian.add_by_state(at, self.width, &self.current, slopes);
+        jacobian.add_by_parameter(at, &self.column, self.width, slopes);
     }
 
     /// ∂x += ∂K e - K ∂y
@@ -300,8 +294,8 @@ impl Tangent {
             }
         }
         self.slope.fill(0.0);
-        add_by_state(jacobian, at, self.width, &self.stage, &mut self.slope);
-        add_by_parameter(jacobian, at, &self.column, self.width, &mut self.slope);
+        jacobian.add_by_state(at, self.width, &self.stage, &mut self.slope);
+        jacobian.add_by_parameter(at, &self.column, self.width, &mut self.slope);
         for (sum, slope) in self.sum.iter_mut().zip(&self.slope) {
             *sum += weight * slope;
         }
@@ -309,38 +303,5 @@ impl Tangent {
 
     fn end_step(&mut self) {
         std::mem::swap(&mut self.current, &mut self.sum);
-    }
-}
-
-/// to += ∂h/∂x from
-fn add_by_state(
-    jacobian: &Jacobian,
-    at: &Workspace<f64>,
-    width: usize,
-    from: &[f64],
-    to: &mut [f64],
-) {
-    for (entry, &(row, state)) in jacobian.by_state.iter().enumerate() {
-        let factor = jacobian.program.result(at, entry);
-        let from = &from[state * width..(state + 1) * width];
-        for (to, from) in to[row * width..(row + 1) * width].iter_mut().zip(from) {
-            *to += factor * from;
-        }
-    }
-}
-
-/// to += ∂h/∂θ
-fn add_by_parameter(
-    jacobian: &Jacobian,
-    at: &Workspace<f64>,
-    column: &[Option<usize>],
-    width: usize,
-    to: &mut [f64],
-) {
-    for (entry, &(row, parameter)) in jacobian.by_parameter.iter().enumerate() {
-        if let Some(column) = column[parameter] {
-            to[row * width + column] +=
-                jacobian.program.result(at, jacobian.by_state.len() + entry);
-        }
     }
 }

@@ -162,3 +162,35 @@ impl ConfidenceInterval {
         }
     }
 }
+
+impl ParameterIntervals {
+    /// The parameter, and whose it is if not the whole job's.
+    pub fn label(&self) -> String {
+        match &self.segment {
+            Some(segment) => format!("{} [{segment}]", self.name),
+            None => self.name.clone(),
+        }
+    }
+}
+
+impl ConfidenceIntervals {
+    /// What the refits were, for people.
+    pub fn made_of(&self) -> Option<String> {
+        let bootstrap = self.bootstrap.map(|made| {
+            let drawn = match made.block {
+                1 => "single residuals".to_string(),
+                block => format!("blocks of {block} samples"),
+            };
+            format!("bootstrap: {} replicates, {drawn}", made.replicates)
+        });
+        let monte_carlo = self.monte_carlo.map(|made| {
+            format!(
+                "Monte Carlo: {} recordings, noise as the {} bounds have it",
+                made.recordings,
+                made.noise.name()
+            )
+        });
+        let all: Vec<String> = bootstrap.into_iter().chain(monte_carlo).collect();
+        (!all.is_empty()).then(|| all.join("; "))
+    }
+}
